@@ -1,0 +1,10 @@
+#pragma once
+// The whole house, but for files: <abrade/io/...> needs HDF5 and is included on its own.
+
+#include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/coupling/drag.hpp>
+#include <abrade/dem/linear_spring.hpp>
+#include <abrade/fluid/uniform_flow.hpp>
+#include <abrade/geometry/stone_shapes.hpp>
+#include <abrade/sim/simulation.hpp>
+#include <abrade/wear/sub_particle.hpp>

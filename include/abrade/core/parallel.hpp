@@ -1,0 +1,74 @@
+#pragma once
+// The one seam to threads. Results are the same bits for every number of threads: work is cut into
+// blocks of fixed size and sums are added up in block order.
+
+#include <abrade/core/types.hpp>
+
+#include <algorithm>
+#include <vector>
+
+#if defined(_OPENMP)
+#include <omp.h>
+#endif
+
+namespace abrade {
+
+/// Threads that a loop may use: 1 without OpenMP, else OMP_NUM_THREADS or the machine's cores.
+inline int thread_count() noexcept {
+#if defined(_OPENMP)
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+
+inline void set_thread_count([[maybe_unused]] int count) noexcept {
+#if defined(_OPENMP)
+    omp_set_num_threads(std::max(1, count));
+#endif
+}
+
+/// Items per block. Small enough to share out, large enough that a block repays its bookkeeping.
+inline constexpr Index block_size = 256;
+
+constexpr Index block_count(Index items) noexcept { return (items + block_size - 1) / block_size; }
+
+/// Calls `body(block, first, last)` for each block of [0, items); blocks run in any order, in parallel.
+/// `body` must not throw.
+template <class Body>
+void parallel_blocks(Index items, Body&& body) {
+    const Index blocks = block_count(items);
+    // Below a few blocks waking the other threads costs more than it saves.
+#if defined(_OPENMP)
+#pragma omp parallel for schedule(static) if (blocks > 2)
+#endif
+    for (Index block = 0; block < blocks; ++block) {
+        const Index first = block * block_size;
+        body(block, first, std::min(items, first + block_size));
+    }
+}
+
+/// Calls `body(i)` for each i in [0, items), in parallel. `body` must not throw.
+template <class Body>
+void parallel_for(Index items, Body&& body) {
+    parallel_blocks(items, [&](Index, Index first, Index last) {
+        for (Index i = first; i < last; ++i) body(i);
+    });
+}
+
+/// Sum of `term(i)` over [0, items), the same bits for every number of threads.
+/// `Sum` is default-constructed as zero and has `+=`.
+template <class Sum, class Term>
+Sum parallel_sum(Index items, Term&& term) {
+    std::vector<Sum> partial(static_cast<std::size_t>(block_count(items)), Sum{});
+    parallel_blocks(items, [&](Index block, Index first, Index last) {
+        Sum sum{};
+        for (Index i = first; i < last; ++i) sum += term(i);
+        partial[static_cast<std::size_t>(block)] = sum;
+    });
+    Sum total{};
+    for (const Sum& sum : partial) total += sum;
+    return total;
+}
+
+}  // namespace abrade

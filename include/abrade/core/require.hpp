@@ -1,0 +1,60 @@
+#pragma once
+// Errors that name the field, the rule, the value with its unit, and the remedy.
+
+#include <abrade/core/types.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace abrade {
+
+/// Bad input: something the user gave cannot be used. The run has not started.
+struct InputError : std::invalid_argument {
+    using std::invalid_argument::invalid_argument;
+};
+
+/// The shortest text that reads back as the same number: "0.3", "5e+06", "nan".
+inline std::string to_text(Real value) {
+    char buffer[40];
+    for (int digits = 6; digits <= 17; ++digits) {
+        std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
+        if (std::isnan(value) || std::strtod(buffer, nullptr) == value) break;
+    }
+    return buffer;
+}
+
+/// What a requirement says when it is broken. `field` is `Type.member`; `rule` continues "must be ...".
+struct Requirement {
+    std::string_view field;
+    std::string_view rule;
+    std::string_view unit{};    ///< "m", "Pa"; empty when dimensionless
+    std::string_view remedy{};  ///< what to do about it
+};
+
+[[noreturn]] inline void fail(const Requirement& r, std::string_view value) {
+    std::string text{r.field};
+    text.append(" must be ").append(r.rule).append(", got ").append(value);
+    if (!r.unit.empty()) text.append(" ").append(r.unit);
+    if (!r.remedy.empty()) text.append("; ").append(r.remedy);
+    throw InputError(text);
+}
+
+/// Throws InputError "field must be rule, got value unit; remedy" unless `ok`.
+inline void require(bool ok, const Requirement& r, Real value) {
+    if (!ok) fail(r, to_text(value));
+}
+
+/// The commonest rules. NaN satisfies none of them.
+inline void require_positive(Real value, std::string_view field, std::string_view unit = {},
+                             std::string_view remedy = {}) {
+    require(value > 0 && std::isfinite(value), {field, "finite and > 0", unit, remedy}, value);
+}
+inline void require_not_negative(Real value, std::string_view field, std::string_view unit = {},
+                                 std::string_view remedy = {}) {
+    require(value >= 0 && std::isfinite(value), {field, "finite and >= 0", unit, remedy}, value);
+}
+
+}  // namespace abrade

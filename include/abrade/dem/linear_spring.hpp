@@ -1,0 +1,121 @@
+#pragma once
+// The linear spring-dashpot-slider contact.
+
+#include <abrade/dem/contact_law.hpp>
+
+namespace abrade {
+
+/// Ratio of critical damping zeta that gives restitution e when the contact cannot pull.
+/// A contact that ends when its force falls to zero has
+///   e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),             zeta < 1,
+///   e = exp(-2 zeta acosh(zeta) / sqrt(zeta^2 - 1)),            zeta > 1,
+/// inverted here by bisection. T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465,
+/// doi:10.1007/s10035-007-0065-z.
+inline Real damping_ratio_without_tension(Real restitution) {
+    require(restitution > 0 && restitution <= 1, {"restitution", "in (0, 1]"}, restitution);
+    const auto restitution_of = [](Real zeta) {
+        const Real s2 = 1 - zeta * zeta;
+        if (std::abs(s2) < 1e-12) return std::exp(-2.0);
+        const Real angle = s2 > 0 ? std::acos(zeta) : std::acosh(zeta);
+        return std::exp(-2 * zeta * angle / std::sqrt(std::abs(s2)));
+    };
+    Real low = 0, high = 1;
+    while (restitution_of(high) > restitution) high *= 2;
+    for (int i = 0; i < 200 && high - low > 1e-16 * high; ++i) {
+        const Real middle = 0.5 * (low + high);
+        (restitution_of(middle) > restitution ? low : high) = middle;
+    }
+    return restitution == 1 ? 0 : 0.5 * (low + high);
+}
+
+/// Linear spring, dashpot and Coulomb slider (P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47,
+/// doi:10.1680/geot.1979.29.1.47):
+///   f_n = max(k_n delta + c_n v_n, 0),  c_n = 2 zeta sqrt(k_n m_eff)
+///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,  c_t = 2 zeta sqrt(k_t m_eff)
+/// delta overlap [m], v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s].
+/// Contact time pi sqrt(m_eff / k_n) (undamped); rigid enough when the overlap stays far below the radius.
+class LinearSpring {
+public:
+    static constexpr std::string_view name = "LinearSpring";
+
+    struct Params {
+        Real stiffness = 0;                   ///< k_n [N/m]
+        Real restitution = 1;                 ///< of a normal impact, in (0, 1] [-]
+        Real friction = 0;                    ///< mu [-]
+        Real tangential_ratio = 2.0 / 7;      ///< k_t / k_n [-]; 2/7 gives both directions the same period
+
+        void validate() const {
+            require_positive(stiffness, "LinearSpring.stiffness", "N/m", "stones on concrete use 1e6 to 1e8 N/m");
+            require(restitution > 0 && restitution <= 1, {"LinearSpring.restitution", "in (0, 1]"}, restitution);
+            require_not_negative(friction, "LinearSpring.friction");
+            require_positive(tangential_ratio, "LinearSpring.tangential_ratio");
+        }
+        void visit(auto&& f) const {
+            f("stiffness", stiffness, "N/m");
+            f("restitution", restitution, "-");
+            f("friction", friction, "-");
+            f("tangential_ratio", tangential_ratio, "-");
+        }
+    };
+
+    /// The tangential spring, half a step ahead: s_n + v_n dt/2, so that the next step adds its own half
+    /// and the spring follows the trapezoidal rule with velocities that belong to the same time as it.
+    template <class Number>
+    struct Memory {
+        Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< [m]
+    };
+
+    explicit LinearSpring(Params params) : params_(params) {
+        params_.validate();
+        damping_ratio_ = damping_ratio_without_tension(params_.restitution);
+    }
+    const Params& params() const noexcept { return params_; }
+
+    template <class Number>
+    ContactResponse<Number, Memory<Number>> respond(const ContactKinematics<Number>& contact,
+                                                    const Memory<Number>& memory) const noexcept {
+        const Number kn(params_.stiffness), kt(tangential_stiffness());
+        const auto touching = contact.overlap > Number(0);
+        const Number approach = -contact.velocity.dot(contact.normal);
+        const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
+        const Number root_mass = Number(2 * damping_ratio_) * sqrt(contact.effective_mass);
+        const Number dt_half(0.5 * contact.time_step);
+
+        const auto normal = NormalSpring<Number>::at(max(contact.overlap, Number(0)), approach, kn,
+                                                     root_mass * Number(std::sqrt(params_.stiffness)), contact.time_step);
+        const Vec3Of<Number> trial = turn_into_plane(memory.spring, contact.normal) + dt_half * slip;
+        const auto tangential =
+            SlidingSpring<Number>::at(trial, slip, Number(params_.friction) * normal.force, kt,
+                                      root_mass * Number(std::sqrt(tangential_stiffness())), contact.time_step);
+
+        const Vec3Of<Number> none = Vec3Of<Number>::Zero();
+        const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
+        const Vec3Of<Number> next = tangential.spring + dt_half * slip;
+        // A contact that opened gives back nothing: what its tangential spring held is lost to sliding.
+        const Number left_over = Number(0.5) * kt * memory.spring.dot(memory.spring);
+        return {{select(touching, force, none), select(touching, normal.stored + tangential.stored, Number(0)),
+                 select(touching, normal.lost, Number(0)), select(touching, tangential.lost, left_over)},
+                {select(touching, next, none)}};
+    }
+
+    Real stiffness() const noexcept { return params_.stiffness; }
+    Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
+    Real damping_ratio() const noexcept { return damping_ratio_; }
+
+    /// 2 / omega of a sphere in the midst of twelve others, the most that can touch it:
+    /// omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m, less what the dashpots take off.
+    Real stable_dt(Real mass, Real /*radius*/) const noexcept {
+        const Real kn = stiffness(), kt = tangential_stiffness();
+        const Real omega = std::sqrt(std::max(8 * (kn + 2 * kt), 40 * kt) / mass);
+        return 2 / omega * (std::sqrt(1 + square(damping_ratio_)) - damping_ratio_);
+    }
+
+private:
+    Params params_;
+    Real damping_ratio_ = 0;
+};
+
+static_assert(ContactLaw<LinearSpring>);
+static_assert(!ContactLaw<NoParams>);
+
+}  // namespace abrade

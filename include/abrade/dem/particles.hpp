@@ -1,0 +1,162 @@
+#pragma once
+// The columns of rigid bodies and of the spheres that they are made of.
+
+#include <abrade/geometry/sphere_union.hpp>
+
+#include <vector>
+
+namespace abrade {
+
+/// What a body is. Loose concrete is a `grain`: it moves like a stone and still wears.
+enum class Kind : std::uint8_t { stone, concrete, grain, fixed };
+
+/// How a body enters the simulation.
+struct BodyState {
+    Vec3 position = Vec3::Zero();                        ///< of the centroid [m]
+    Vec3 velocity = Vec3::Zero();                        ///< [m/s]
+    Quaternion orientation = Quaternion::Identity();     ///< principal frame to world
+    Vec3 angular_velocity = Vec3::Zero();                ///< world frame [rad/s]
+};
+
+/// Columns over bodies and over their member spheres. Member spheres of a body stand next to each other.
+/// `velocity` and `angular_momentum` belong to the same time as `position` between steps.
+struct Particles {
+    // [body]
+    std::vector<Vec3> position;           ///< [m]
+    std::vector<Vec3> velocity;           ///< [m/s]
+    std::vector<Quaternion> orientation;  ///< principal frame to world, unit length
+    std::vector<Vec3> angular_momentum;   ///< world frame [kg m2/s]
+    std::vector<Vec3> force, torque;      ///< everything that acts, at `position` [N], [N m]
+    std::vector<Real> mass;               ///< [kg]
+    std::vector<Real> inverse_mass;       ///< 0 for fixed bodies [1/kg]
+    std::vector<Vec3> inverse_inertia;    ///< about the principal axes, 0 for fixed bodies [1/(kg m2)]
+    std::vector<Real> volume;             ///< solid [m3]
+    std::vector<Kind> kind;
+    std::vector<Index> id;    ///< given once, never reused
+    std::vector<Index> site;  ///< lattice site of the concrete that the body is, -1 for a stone
+    std::vector<Index> first_sphere, sphere_count;
+
+    // [sphere]
+    std::vector<Index> body;
+    std::vector<Vec3> offset;       ///< from the body's centroid, principal frame [m]
+    std::vector<Real> radius;       ///< [m]
+    std::vector<Vec3> centre;       ///< world frame [m]
+    std::vector<Vec3> centre_velocity;  ///< as predicted for the force pass [m/s]
+    std::vector<Vec3> spin;         ///< the body's angular velocity, as predicted [rad/s]
+
+    Index next_id = 0;
+
+    Index bodies() const noexcept { return static_cast<Index>(position.size()); }
+    Index spheres() const noexcept { return static_cast<Index>(body.size()); }
+
+    bool isotropic(Index b) const noexcept {
+        const Vec3& i = inverse_inertia[static_cast<std::size_t>(b)];
+        return i.x() == i.y() && i.y() == i.z();
+    }
+
+    /// Angular velocity in the world frame that goes with an angular momentum at the present orientation.
+    Vec3 angular_velocity(Index b, const Vec3& momentum) const noexcept {
+        const auto i = static_cast<std::size_t>(b);
+        if (isotropic(b)) return inverse_inertia[i].x() * momentum;
+        const Vec3 in_body = orientation[i].conjugate() * momentum;
+        return orientation[i] * Vec3(inverse_inertia[i].cwiseProduct(in_body));
+    }
+    Vec3 angular_velocity(Index b) const noexcept { return angular_velocity(b, angular_momentum[static_cast<std::size_t>(b)]); }
+
+    /// Translation and rotation [J].
+    Real kinetic_energy(Index b) const noexcept {
+        const auto i = static_cast<std::size_t>(b);
+        if (inverse_mass[i] == 0) return 0;
+        return 0.5 * mass[i] * velocity[i].squaredNorm() + 0.5 * angular_momentum[i].dot(angular_velocity(b));
+    }
+
+    /// Adds a body and returns its index. A density [kg/m3] of 0 or less, or a position that is not
+    /// finite, throws InputError.
+    Index add(const Clump& clump, Real density, const BodyState& state, Kind body_kind) {
+        require_positive(density, "density", "kg/m3");
+        require(state.position.allFinite() && state.velocity.allFinite() && state.angular_velocity.allFinite(),
+                {"BodyState", "finite", "", "look for a NaN in position or velocity"}, state.position.sum());
+        const Index b = bodies();
+        const Real m = density * clump.volume;
+        const bool held = body_kind == Kind::fixed;
+        const Vec3 inertia = density * clump.principal_moments;
+        position.push_back(state.position);
+        velocity.push_back(held ? Vec3(Vec3::Zero()) : state.velocity);
+        orientation.push_back(state.orientation.normalized());
+        const Vec3 spin_in_body = orientation.back().conjugate() * state.angular_velocity;
+        angular_momentum.push_back(held ? Vec3(Vec3::Zero()) : Vec3(orientation.back() * Vec3(inertia.cwiseProduct(spin_in_body))));
+        force.push_back(Vec3::Zero());
+        torque.push_back(Vec3::Zero());
+        mass.push_back(m);
+        inverse_mass.push_back(held ? 0 : 1 / m);
+        inverse_inertia.push_back(held ? Vec3(Vec3::Zero()) : Vec3(inertia.cwiseInverse()));
+        volume.push_back(clump.volume);
+        kind.push_back(body_kind);
+        id.push_back(next_id++);
+        site.push_back(-1);
+        first_sphere.push_back(spheres());
+        sphere_count.push_back(static_cast<Index>(clump.members.size()));
+        for (const Sphere& member : clump.members) {
+            body.push_back(b);
+            offset.push_back(member.centre);
+            radius.push_back(member.radius);
+            centre.push_back(Vec3::Zero());
+            centre_velocity.push_back(Vec3::Zero());
+            spin.push_back(Vec3::Zero());
+        }
+        place_spheres(b, velocity.back(), angular_velocity(b));
+        return b;
+    }
+
+    /// Puts the member spheres of body b where its position and orientation say.
+    void place_spheres(Index b, const Vec3& body_velocity, const Vec3& body_spin) noexcept {
+        const auto i = static_cast<std::size_t>(b);
+        const auto first = static_cast<std::size_t>(first_sphere[i]);
+        if (sphere_count[i] == 1) {
+            centre[first] = position[i];
+            centre_velocity[first] = body_velocity;
+            spin[first] = body_spin;
+            return;
+        }
+        const Mat3 rotation = orientation[i].toRotationMatrix();
+        for (std::size_t s = first; s < first + static_cast<std::size_t>(sphere_count[i]); ++s) {
+            const Vec3 arm = rotation * offset[s];
+            centre[s] = position[i] + arm;
+            centre_velocity[s] = body_velocity + body_spin.cross(arm);
+            spin[s] = body_spin;
+        }
+    }
+
+    /// Takes out the bodies marked in `gone` [body]; the order of the rest stays. Returns where each old
+    /// sphere is now, -1 if gone.
+    std::vector<Index> remove(const std::vector<char>& gone) {
+        std::vector<Index> moved(static_cast<std::size_t>(spheres()), -1);
+        std::size_t to = 0, sphere_to = 0;
+        for (std::size_t from = 0; from < position.size(); ++from) {
+            if (gone[from]) continue;
+            const auto first = static_cast<std::size_t>(first_sphere[from]);
+            for_each_body_column([&](auto& column) { column[to] = column[from]; });
+            first_sphere[to] = static_cast<Index>(sphere_to);
+            for (std::size_t s = first; s < first + static_cast<std::size_t>(sphere_count[to]); ++s, ++sphere_to) {
+                for_each_sphere_column([&](auto& column) { column[sphere_to] = column[s]; });
+                body[sphere_to] = static_cast<Index>(to);
+                moved[s] = static_cast<Index>(sphere_to);
+            }
+            ++to;
+        }
+        for_each_body_column([&](auto& column) { column.resize(to); });
+        for_each_sphere_column([&](auto& column) { column.resize(sphere_to); });
+        return moved;
+    }
+
+private:
+    void for_each_body_column(auto&& f) {
+        f(position), f(velocity), f(orientation), f(angular_momentum), f(force), f(torque), f(mass), f(inverse_mass);
+        f(inverse_inertia), f(volume), f(kind), f(id), f(site), f(first_sphere), f(sphere_count);
+    }
+    void for_each_sphere_column(auto&& f) {
+        f(body), f(offset), f(radius), f(centre), f(centre_velocity), f(spin);
+    }
+};
+
+}  // namespace abrade

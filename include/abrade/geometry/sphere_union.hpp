@@ -1,0 +1,160 @@
+#pragma once
+// Volume, centre and inertia of a union of overlapping spheres: what overlaps counts once.
+
+#include <abrade/core/require.hpp>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace abrade {
+
+struct Sphere {
+    Vec3 centre = Vec3::Zero();  ///< [m]
+    Real radius = 0;             ///< [m]
+};
+
+/// Volume integrals of a solid of unit density.
+struct SolidMoments {
+    Real volume = 0;               ///< [m3]
+    Vec3 centroid = Vec3::Zero();  ///< [m]
+    Mat3 inertia = Mat3::Zero();   ///< about the centroid, [m5]; times density [kg/m3] gives [kg m2]
+};
+
+namespace detail {
+
+/// Integrals of 1, x and x x^T over the solid, from which every other moment follows.
+struct RawMoments {
+    Real volume = 0;
+    Vec3 first = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
+
+    SolidMoments about_centroid() const {
+        const Vec3 c = first / volume;
+        const Mat3 covariance = second - volume * c * c.transpose();
+        return {volume, c, covariance.trace() * Mat3::Identity() - covariance};
+    }
+};
+
+/// Adds the part of a ball between the planes `from` and `to` (signed distances from its centre along
+/// `axis`). The integrands are polynomials of degree 4 at most, so three Gauss points are exact.
+inline void add_ball_slice(RawMoments& sum, const Sphere& ball, const Vec3& axis, Real from, Real to) {
+    if (to <= from) return;
+    static constexpr std::array<std::pair<Real, Real>, 3> gauss{
+        {{-0.7745966692414834, 5.0 / 9}, {0.0, 8.0 / 9}, {0.7745966692414834, 5.0 / 9}}};
+    const Mat3 along = axis * axis.transpose();
+    const Mat3 across = Mat3::Identity() - along;
+    for (const auto& [node, weight] : gauss) {
+        const Real s = 0.5 * (from + to) + 0.5 * (to - from) * node;
+        const Real rho2 = std::max(0.0, square(ball.radius) - s * s);
+        const Real area = 0.5 * (to - from) * weight * pi * rho2;
+        const Vec3 centre = ball.centre + s * axis;
+        sum.volume += area;
+        sum.first += area * centre;
+        sum.second += area * (centre * centre.transpose() + 0.25 * rho2 * across);
+    }
+}
+
+/// Exact moments of one sphere or of the union of two.
+inline RawMoments exact_moments(std::span<const Sphere> spheres) {
+    RawMoments sum;
+    if (spheres.size() == 1) {
+        add_ball_slice(sum, spheres[0], Vec3::UnitX(), -spheres[0].radius, spheres[0].radius);
+        return sum;
+    }
+    const Sphere &a = spheres[0], &b = spheres[1];
+    const Real distance = (b.centre - a.centre).norm();
+    if (distance <= std::abs(a.radius - b.radius)) return exact_moments({a.radius > b.radius ? &a : &b, 1});
+    const Vec3 axis = (b.centre - a.centre) / distance;
+    // The plane of the common circle, seen from a; beyond the touching distance each ball is whole.
+    const Real plane = (square(distance) + square(a.radius) - square(b.radius)) / (2 * distance);
+    add_ball_slice(sum, a, axis, -a.radius, std::min(plane, a.radius));
+    add_ball_slice(sum, b, axis, std::max(plane - distance, -b.radius), b.radius);
+    return sum;
+}
+
+/// Rays along z on a square grid of midpoints; along each ray the union of intervals is exact.
+inline RawMoments ray_moments(std::span<const Sphere> spheres, int rays_across) {
+    Vec3 low = spheres[0].centre, high = low;
+    for (const Sphere& s : spheres) {
+        low = low.cwiseMin((s.centre.array() - s.radius).matrix());
+        high = high.cwiseMax((s.centre.array() + s.radius).matrix());
+    }
+    const Real dx = (high.x() - low.x()) / rays_across, dy = (high.y() - low.y()) / rays_across;
+    RawMoments sum;
+    std::vector<std::pair<Real, Real>> intervals;
+    for (int i = 0; i < rays_across; ++i) {
+        for (int j = 0; j < rays_across; ++j) {
+            const Real x = low.x() + (i + 0.5) * dx, y = low.y() + (j + 0.5) * dy;
+            intervals.clear();
+            for (const Sphere& s : spheres) {
+                const Real h2 = square(s.radius) - square(x - s.centre.x()) - square(y - s.centre.y());
+                if (h2 > 0) intervals.emplace_back(s.centre.z() - std::sqrt(h2), s.centre.z() + std::sqrt(h2));
+            }
+            std::sort(intervals.begin(), intervals.end());
+            for (std::size_t k = 0; k < intervals.size();) {
+                Real from = intervals[k].first, to = intervals[k].second;
+                for (++k; k < intervals.size() && intervals[k].first <= to; ++k) to = std::max(to, intervals[k].second);
+                const Real m0 = (to - from) * dx * dy, m1 = 0.5 * (to * to - from * from) * dx * dy;
+                sum.volume += m0;
+                sum.first += Vec3(x * m0, y * m0, m1);
+                const Real zz = (cube(to) - cube(from)) / 3 * dx * dy;
+                sum.second += Mat3{{x * x * m0, x * y * m0, x * m1}, {x * y * m0, y * y * m0, y * m1}, {x * m1, y * m1, zz}};
+            }
+        }
+    }
+    return sum;
+}
+
+}  // namespace detail
+
+/// Volume, centroid and inertia tensor of the union of `spheres`.
+/// Exact (to round-off) for one and for two spheres; for more by rays, whose error in volume was
+/// measured at below 1e-4 with the default 200 rays across.
+/// Throws InputError when there is no sphere, or one with a radius that is not > 0.
+inline SolidMoments union_moments(std::span<const Sphere> spheres, int rays_across = 200) {
+    require(!spheres.empty(), {"union_moments.spheres", "at least 1 sphere"}, 0);
+    for (const Sphere& s : spheres) require_positive(s.radius, "Sphere.radius", "m");
+    const bool exact = spheres.size() <= 2;
+    return (exact ? detail::exact_moments(spheres) : detail::ray_moments(spheres, rays_across)).about_centroid();
+}
+
+/// A rigid body made of spheres, described in its principal frame: origin at the centroid, axes along
+/// the principal axes of inertia.
+struct Clump {
+    std::string name;
+    std::vector<Sphere> members;
+    Real volume = 0;                        ///< of the union [m3]
+    Vec3 principal_moments = Vec3::Zero();  ///< for unit density [m5]
+    Real bounding_radius = 0;               ///< about the centroid [m]
+};
+
+/// Moves `members` into the principal frame of their union. A single sphere stays where it is, exactly.
+inline Clump make_clump(std::string name, std::vector<Sphere> members) {
+    const SolidMoments moments = union_moments(members);
+    Clump clump{std::move(name), std::move(members), moments.volume, Vec3::Zero(), 0};
+    if (clump.members.size() == 1) {
+        const Real r = clump.members[0].radius;
+        clump.members[0].centre.setZero();
+        clump.volume = 4.0 / 3 * pi * cube(r);
+        clump.principal_moments.setConstant(0.4 * clump.volume * r * r);
+        clump.bounding_radius = r;
+        return clump;
+    }
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(moments.inertia);
+    Mat3 axes = solver.eigenvectors();
+    if (axes.determinant() < 0) axes.col(0) = -axes.col(0).eval();  // a rotation, not a mirror
+    clump.principal_moments = solver.eigenvalues();
+    for (Sphere& s : clump.members) {
+        s.centre = (axes.transpose() * (s.centre - moments.centroid)).eval();
+        clump.bounding_radius = std::max(clump.bounding_radius, s.centre.norm() + s.radius);
+    }
+    return clump;
+}
+
+}  // namespace abrade

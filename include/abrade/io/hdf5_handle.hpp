@@ -1,0 +1,77 @@
+#pragma once
+// What every call of the HDF5 C library needs: an identifier that closes itself, silence, and one clear
+// reason.
+
+#include <hdf5.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace abrade {
+
+namespace hdf5 {
+
+/// Owns one HDF5 identifier of any kind (file, group, dataset, data space, type, property list).
+class Handle {
+public:
+    Handle() = default;
+    explicit Handle(hid_t id) noexcept : id_{id} {}
+    Handle(Handle&& other) noexcept : id_{std::exchange(other.id_, H5I_INVALID_HID)} {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(id_, other.id_);
+        return *this;
+    }
+    ~Handle() {
+        if (id_ >= 0) H5Idec_ref(id_);
+    }
+
+    hid_t get() const noexcept { return id_; }
+    /// False where the HDF5 call that made it failed.
+    explicit operator bool() const noexcept { return id_ >= 0; }
+    /// Gives the identifier away: the caller closes it.
+    hid_t release() noexcept { return std::exchange(id_, H5I_INVALID_HID); }
+
+private:
+    hid_t id_ = H5I_INVALID_HID;
+};
+
+/// While it lives HDF5 prints nothing; then the caller's own setting is back.
+class Quiet {
+public:
+    Quiet() noexcept {
+        H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    }
+    ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+    Quiet(const Quiet&) = delete;
+    Quiet& operator=(const Quiet&) = delete;
+
+private:
+    H5E_auto2_t function_ = nullptr;
+    void* data_ = nullptr;
+};
+
+/// What HDF5 says went wrong in the last failed call of this thread: the innermost message of its stack.
+inline std::string reason() {
+    std::string text;
+    const auto take_first = [](unsigned depth, const H5E_error2_t* error, void* out) -> herr_t {
+        if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(out) = error->desc;
+        return 0;
+    };
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &text);
+    return text.empty() ? std::string{"no reason given"} : text;
+}
+
+/// "cannot read 'run.h5', bodies/position: <reason>".
+inline std::string message(std::string_view action, const std::filesystem::path& file,
+                           std::string_view object, std::string_view why) {
+    std::string text = "cannot ";
+    text.append(action).append(" '").append(file.string()).append("'");
+    if (!object.empty()) text.append(", ").append(object);
+    return text.append(": ").append(why);
+}
+
+}  // namespace hdf5
+}  // namespace abrade

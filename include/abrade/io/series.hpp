@@ -1,0 +1,238 @@
+#pragma once
+// Point clouds over time for ParaView: one HDF5 file of columns, and per cloud one XDMF 3 file that names
+// them.
+
+#include <abrade/core/fields.hpp>
+#include <abrade/core/require.hpp>
+#include <abrade/io/file_error.hpp>
+#include <abrade/io/hdf5_file.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abrade {
+
+/// Writes `stem.h5` and, for each cloud, `stem_<cloud>.xdmf`: a temporal collection of Polyvertex grids.
+/// One file per cloud, because ParaView then gives each its own filters and colours.
+/// In ParaView choose "Xdmf3 Reader T": the older "XDMF Reader" reads the same file, but complains of times
+/// without points. The number of points may change from one time to the next. After every write both files
+/// are complete on disk: a run that is killed leaves a series that opens and ends at the last write.
+class SeriesWriter {
+public:
+    explicit SeriesWriter(const std::filesystem::path& stem,
+                          Hdf5Storage storage = {.number = StoredNumber::real32, .gzip = 1})
+        : stem_{stem}, storage_{storage}, data_{Hdf5File::create(with_suffix(".h5"))} {}
+
+    /// Stores, once, what does not change: positions [m] (3 components) and fields of a cloud. Every later
+    /// `write` to the cloud refers to them. Calling it again replaces them for the times that follow.
+    void set_constant(std::string_view cloud, const FieldView& positions,
+                      std::span<const FieldView> fields = {}) {
+        Cloud& c = find_or_begin(cloud);
+        const std::string group = c.name + "/constant_" + std::to_string(c.constants++);
+        c.points = checked_count(c, positions);
+        c.constant_geometry = geometry(store(group, positions));
+        c.constant_fields.clear();
+        for (const FieldView& field : fields)
+            c.constant_fields += attribute(store_checked(c, group, field, c.points));
+    }
+
+    /// Adds one time [s] with its own positions. Times of a cloud must rise.
+    void write(std::string_view cloud, Real time, const FieldView& positions,
+               std::span<const FieldView> fields = {}) {
+        Cloud& c = find_or_begin(cloud);
+        const std::size_t points = checked_count(c, positions);
+        require(c.constant_fields.empty() || points == c.points,
+                {"SeriesWriter." + c.name + " positions",
+                 "as many as those of its constant fields (" + std::to_string(c.points) + ")", "points"},
+                static_cast<Real>(points));
+        add_time(c, time, points, &positions, fields);
+    }
+
+    /// Adds one time [s] at the positions given to `set_constant`.
+    void write(std::string_view cloud, Real time, std::span<const FieldView> fields) {
+        Cloud& c = find_or_begin(cloud);
+        if (c.constant_geometry.empty())
+            fail({"SeriesWriter." + c.name, "given positions by set_constant before it is written without"},
+                 "none");
+        add_time(c, time, c.points, nullptr, fields);
+    }
+
+    /// The XDMF file of a cloud: what a user opens.
+    std::filesystem::path xdmf_path(std::string_view cloud) const {
+        return with_suffix("_" + std::string{cloud} + ".xdmf");
+    }
+
+    /// Closes the data file. What was written stays readable in any case.
+    void close() { data_.close(); }
+
+private:
+    struct Cloud {
+        std::string name;
+        std::size_t points = 0;  ///< of the constant positions
+        int constants = 0;
+        int times = 0;
+        Real last_time = -std::numeric_limits<Real>::infinity();
+        std::string constant_geometry;  ///< XDMF text; empty while there are none
+        std::string constant_fields;    ///< XDMF text
+        std::fstream xdmf;
+        std::streamoff end = 0;  ///< where the closing tags begin
+    };
+    struct Item {
+        const FieldView* field;
+        std::string path;  ///< in the HDF5 file
+    };
+
+    static constexpr std::string_view closing_tags_ = "    </Grid>\n  </Domain>\n</Xdmf>\n";
+
+    std::filesystem::path with_suffix(const std::string& suffix) const {
+        std::filesystem::path path = stem_;
+        return path += suffix;
+    }
+
+    Cloud& find_or_begin(std::string_view name) {
+        if (const auto found = clouds_.find(name); found != clouds_.end()) return found->second;
+        if (name.empty() || name.find_first_of("/<>&\"' ") != name.npos)
+            fail({"SeriesWriter cloud", "a name without spaces, '/' or signs of XML"},
+                 "'" + std::string{name} + "'");
+        Cloud& c = clouds_[std::string{name}];
+        c.name = name;
+        c.xdmf.open(xdmf_path(name), std::ios::in | std::ios::out | std::ios::trunc | std::ios::binary);
+        const std::string head =
+            "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"" + c.name +
+            "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+        append(c, head);
+        return c;
+    }
+
+    /// Overwrites the closing tags by `text` and the closing tags, in one go: the file is whole before and
+    /// after.
+    void append(Cloud& c, const std::string& text) {
+        c.xdmf.seekp(c.end);
+        const std::string block = text + std::string{closing_tags_};
+        c.xdmf.write(block.data(), static_cast<std::streamsize>(block.size()));
+        c.xdmf.flush();
+        if (!c.xdmf)
+            throw FileError("cannot write '" + xdmf_path(c.name).string() +
+                            "': is the disk full or the folder gone?");
+        c.end += static_cast<std::streamoff>(text.size());
+    }
+
+    static std::size_t checked_count(const Cloud& c, const FieldView& positions) {
+        require(positions.components == 3, {"SeriesWriter." + c.name + " positions", "of 3 components"},
+                positions.components);
+        return positions.count();
+    }
+
+    Item store(const std::string& group, const FieldView& field) {
+        data_.write(group, field, storage_);
+        return {&field, group + "/" + std::string{field.name}};
+    }
+
+    Item store_checked(const Cloud& c, const std::string& group, const FieldView& field, std::size_t points) {
+        require(
+            field.values.size() == points * static_cast<std::size_t>(field.components),
+            {"SeriesWriter." + c.name + "." + std::string{field.name},
+             "one row per point (" + std::to_string(points) + " x " + std::to_string(field.components) + ")",
+             "values"},
+            static_cast<Real>(field.values.size()));
+        return store(group, field);
+    }
+
+    void add_time(Cloud& c, Real time, std::size_t points, const FieldView* positions,
+                  std::span<const FieldView> fields) {
+        require(std::isfinite(time) && time > c.last_time,
+                {"SeriesWriter." + c.name + " time",
+                 "later than the one before (" + to_text(c.last_time) + ")", "s"},
+                time);
+        const std::string group = c.name + "/time_" + std::to_string(c.times);
+        std::string text = "      <Grid Name=\"" + c.name +
+                           "\" GridType=\"Uniform\">\n        <Time Value=\"" + to_text(time) + "\"/>\n" +
+                           topology(points);
+        text += positions == nullptr ? c.constant_geometry : geometry(store(group, *positions));
+        for (const FieldView& field : fields) text += attribute(store_checked(c, group, field, points));
+        text += c.constant_fields + "      </Grid>\n";
+        data_.flush();  // the data first: the XDMF never names what is not on disk
+        append(c, text);
+        c.last_time = time;
+        ++c.times;
+    }
+
+    /// One vertex per point. ParaView's newer reader draws only what is listed, so the list 0, 1, 2, ... is
+    /// stored, once for each number of points.
+    std::string topology(std::size_t points) {
+        const std::string count = std::to_string(points);
+        const std::string list = "vertices/of_" + count;
+        if (!data_.contains(list)) {
+            std::vector<Real> numbers(points);
+            std::iota(numbers.begin(), numbers.end(), Real{0});
+            data_.write("vertices", {"of_" + count, "-", 1, numbers}, {StoredNumber::int32, storage_.gzip});
+        }
+        return "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + count +
+               "\" NodesPerElement=\"1\"><DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" "
+               "Dimensions=\"" +
+               count + "\">" + escape(data_.path().filename().string()) + ":/" + list +
+               "</DataItem></Topology>\n";
+    }
+
+    std::string geometry(const Item& item) const {
+        return "        <Geometry GeometryType=\"XYZ\">" + data_item(item) + "</Geometry>\n";
+    }
+
+    std::string attribute(const Item& item) const {
+        const int n = item.field->components;
+        const std::string_view kind = n == 1   ? "Scalar"
+                                      : n == 3 ? "Vector"
+                                      : n == 6 ? "Tensor6"
+                                      : n == 9 ? "Tensor"
+                                               : "Matrix";
+        return "        <Attribute Name=\"" + escape(item.field->name) + "\" AttributeType=\"" +
+               std::string{kind} + "\" Center=\"Node\"><Information Name=\"unit\" Value=\"" +
+               escape(item.field->unit) + "\"/>" + data_item(item) + "</Attribute>\n";
+    }
+
+    std::string data_item(const Item& item) const {
+        std::string shape = std::to_string(item.field->count());
+        if (item.field->components > 1) shape += " " + std::to_string(item.field->components);
+        return "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"" +
+               std::string{storage_.number == StoredNumber::real32 ? "4" : "8"} + "\" Dimensions=\"" + shape +
+               "\">" + escape(data_.path().filename().string()) + ":/" + escape(item.path) + "</DataItem>";
+    }
+
+    static std::string escape(std::string_view text) {
+        std::string out;
+        for (const char c : text) {
+            switch (c) {
+                case '&':
+                    out += "&amp;";
+                    break;
+                case '<':
+                    out += "&lt;";
+                    break;
+                case '>':
+                    out += "&gt;";
+                    break;
+                case '"':
+                    out += "&quot;";
+                    break;
+                default:
+                    out += c;
+            }
+        }
+        return out;
+    }
+
+    std::filesystem::path stem_;
+    Hdf5Storage storage_;
+    Hdf5File data_;
+    std::map<std::string, Cloud, std::less<>> clouds_;
+};
+
+}  // namespace abrade

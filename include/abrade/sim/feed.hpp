@@ -1,0 +1,129 @@
+#pragma once
+// Sediment supplied at the upstream end.
+
+#include <abrade/dem/particles.hpp>
+#include <abrade/geometry/stone_shapes.hpp>
+#include <abrade/geometry/surfaces.hpp>
+
+#include <optional>
+#include <random>
+
+namespace abrade {
+
+/// One class of stones in the supply.
+struct StoneClass {
+    Real size = 0;      ///< nominal diameter, that of a sphere of equal volume [m]
+    Real fraction = 0;  ///< share of the solid volume [-]
+    StoneShape shape = StoneShape::sphere;
+};
+
+/// Stones supplied at a solid volume rate, at random in a box, all from one seeded sequence.
+struct FeedParams {
+    Real volume_rate = 0;                ///< solid [m3/s]
+    std::vector<StoneClass> classes;
+    Real density = 2650;                 ///< [kg/m3]
+    Box region;                          ///< centroids are placed in it [m]
+    Vec3 velocity = Vec3::Zero();        ///< [m/s]
+    Real start = 0;                      ///< [s]
+    std::uint32_t seed = 1;
+
+    void validate() const {
+        require_positive(volume_rate, "Feed.volume_rate", "m3/s");
+        require_positive(density, "Feed.density", "kg/m3");
+        require(!classes.empty(), {"Feed.classes", "at least one stone class"}, 0);
+        Real total = 0;
+        for (const StoneClass& c : classes) {
+            require_positive(c.size, "Feed.classes.size", "m");
+            require_not_negative(c.fraction, "Feed.classes.fraction");
+            total += c.fraction;
+        }
+        require(std::abs(total - 1) < 1e-6, {"Feed.classes.fraction (sum)", "1", "", "let the fractions add up to 1"}, total);
+        const Vec3 size = region.high - region.low;
+        require(size.minCoeff() >= 0 && size.allFinite(), {"Feed.region", "a finite box with low <= high", "m"}, size.minCoeff());
+    }
+};
+
+/// Turns a volume rate into stones one by one. A stone that finds no free place waits.
+class Feed {
+public:
+    explicit Feed(FeedParams params) : params_(std::move(params)), random_(params_.seed) {
+        params_.validate();
+        Real share = 0;
+        for (const StoneClass& c : params_.classes) {
+            templates_.push_back(make_stone(c.shape, c.size));
+            // Stones are drawn by number; their shares are by volume.
+            share += c.fraction / templates_.back().volume;
+            cumulative_.push_back(share);
+        }
+        draw();
+    }
+
+    const FeedParams& params() const noexcept { return params_; }
+    Real supplied_volume() const noexcept { return supplied_; }  ///< solid [m3]
+    Index supplied_stones() const noexcept { return count_; }
+
+    /// Adds the stones that are due at time t and find a place. Calls `added(body)` for each.
+    template <class Added>
+    void supply(Particles& particles, Real t, Added&& added) {
+        const Real due = params_.volume_rate * std::max(0.0, t - params_.start);
+        while (supplied_ + templates_[next_].volume <= due) {
+            const auto state = free_place(particles);
+            if (!state) return;
+            added(particles.add(templates_[next_], params_.density, *state, Kind::stone));
+            supplied_ += templates_[next_].volume;
+            ++count_;
+            draw();
+        }
+    }
+
+private:
+    Real uniform() { return std::generate_canonical<Real, 53>(random_); }
+
+    void draw() {
+        const Real at = uniform() * cumulative_.back();
+        next_ = 0;
+        while (next_ + 1 < cumulative_.size() && cumulative_[next_] <= at) ++next_;
+    }
+
+    /// A random place whose bounding sphere touches no stone; nothing after some tries.
+    std::optional<BodyState> free_place(const Particles& particles) {
+        constexpr int tries = 20;
+        const Real reach = templates_[next_].bounding_radius;
+        for (int attempt = 0; attempt < tries; ++attempt) {
+            BodyState state;
+            for (int a = 0; a < 3; ++a)
+                state.position[a] = params_.region.low[a] + uniform() * (params_.region.high[a] - params_.region.low[a]);
+            state.velocity = params_.velocity;
+            state.orientation = random_orientation();
+            if (is_free(particles, state.position, reach)) return state;
+        }
+        return std::nullopt;
+    }
+
+    static bool is_free(const Particles& particles, const Vec3& x, Real reach) {
+        for (Index s = particles.spheres() - 1; s >= 0; --s) {
+            const auto i = static_cast<std::size_t>(s);
+            const Kind kind = particles.kind[static_cast<std::size_t>(particles.body[i])];
+            if (kind != Kind::stone && kind != Kind::grain) continue;
+            if ((particles.centre[i] - x).squaredNorm() < square(particles.radius[i] + reach)) return false;
+        }
+        return true;
+    }
+
+    /// Uniform over all rotations. K. Shoemake, in Graphics Gems III (1992) 124.
+    Quaternion random_orientation() {
+        const Real u = uniform(), a = 2 * pi * uniform(), b = 2 * pi * uniform();
+        const Real s = std::sqrt(1 - u), c = std::sqrt(u);
+        return {c * std::cos(b), s * std::sin(a), s * std::cos(a), c * std::sin(b)};
+    }
+
+    FeedParams params_;
+    std::mt19937_64 random_;
+    std::vector<Clump> templates_;
+    std::vector<Real> cumulative_;
+    std::size_t next_ = 0;
+    Real supplied_ = 0;
+    Index count_ = 0;
+};
+
+}  // namespace abrade

@@ -1,0 +1,74 @@
+#pragma once
+// The energy ledger: where every joule came from and where it went.
+
+#include <abrade/core/types.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace abrade {
+
+/// All in joules. Works are paired as f . (v_before + v_after)/2 dt, which is exactly the change in kinetic
+/// energy; so `residual` is round-off. Stored energies are state functions. What the two differ by is the
+/// `integration_residue`, O(dt^2), shown and never hidden in a loss.
+struct Ledger {
+    // now
+    Real kinetic = 0;
+    Real potential = 0;  ///< of gravity, from the origin
+    Real stored_contacts = 0, stored_bonds = 0;
+
+    // at the start
+    Real kinetic_start = 0, potential_start = 0, stored_start = 0;
+
+    // since the start
+    Real lost_normal = 0;   ///< by impact, in contacts and broken bonds
+    Real lost_sliding = 0;  ///< by friction and tangential dashpots, in contacts and broken bonds
+    Real lost_bond = 0;     ///< by damping in bonds and by breaking them
+    Real drag_input = 0;    ///< drag force times fluid velocity: put in by the flow
+    Real drag_work = 0;     ///< drag force times body velocity: what reached the bodies
+    Real buoyancy_work = 0;
+    Real gravity_work = 0;
+    Real interaction_work = 0;  ///< done on the bodies by contacts and bonds
+    Real fed_kinetic = 0, fed_potential = 0;
+    Real left_kinetic = 0, left_potential = 0, left_stored = 0;
+
+    // losses of contacts with concrete, once for each side that is concrete
+    Real concrete_lost_normal = 0, concrete_lost_sliding = 0;
+
+    /// Drag force times (fluid - body velocity): turned into heat and turbulence.
+    Real lost_drag() const noexcept { return drag_input - drag_work; }
+    Real lost() const noexcept { return lost_normal + lost_sliding + lost_bond + lost_drag(); }
+
+    /// Kinetic energy against the work done: zero but for round-off.
+    Real residual() const noexcept {
+        return kinetic - (kinetic_start + fed_kinetic - left_kinetic + gravity_work + buoyancy_work + drag_work + interaction_work);
+    }
+
+    /// Energy that passed through: what `residual` is to be measured by.
+    Real throughput() const noexcept {
+        return std::max({kinetic_start + fed_kinetic + drag_input, lost() + left_kinetic + kinetic,
+                         std::abs(gravity_work) + std::abs(buoyancy_work), 1e-300});
+    }
+    Real residual_relative() const noexcept { return std::abs(residual()) / throughput(); }
+
+    /// Works less what the state functions and the losses account for: the integrator's error in energy.
+    Real integration_residue() const noexcept {
+        const Real elastic = -interaction_work - (stored_contacts + stored_bonds - stored_start + left_stored) - lost_normal - lost_sliding - lost_bond;
+        const Real gravity = -gravity_work - (potential - potential_start - fed_potential + left_potential);
+        return elastic + gravity;
+    }
+
+    /// Calls `f(name, value)` for each column, derived ones last.
+    void visit(auto&& f) const {
+        f("kinetic", kinetic), f("potential", potential);
+        f("stored_contacts", stored_contacts), f("stored_bonds", stored_bonds);
+        f("lost_normal", lost_normal), f("lost_sliding", lost_sliding), f("lost_bond", lost_bond), f("lost_drag", lost_drag());
+        f("drag_input", drag_input), f("buoyancy_work", buoyancy_work), f("gravity_work", gravity_work);
+        f("interaction_work", interaction_work);
+        f("fed_kinetic", fed_kinetic), f("fed_potential", fed_potential);
+        f("left_kinetic", left_kinetic), f("left_potential", left_potential), f("left_stored", left_stored);
+        f("integration_residue", integration_residue()), f("residual", residual());
+    }
+};
+
+}  // namespace abrade

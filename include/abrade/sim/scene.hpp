@@ -1,0 +1,67 @@
+#pragma once
+// What is there before time starts: stones, concrete, boundaries, supply.
+
+#include <abrade/geometry/lattice.hpp>
+#include <abrade/geometry/surfaces.hpp>
+#include <abrade/sim/feed.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace abrade {
+
+/// A body of bonded spheres. Its deepest layer is held fixed, as if cast on rock.
+struct ConcreteBlock {
+    Lattice lattice;
+    Real density = 2400;  ///< of the spheres [kg/m3]
+};
+
+/// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.
+struct Scene {
+    struct Stone {
+        Clump clump;
+        Real density = 2650;  ///< [kg/m3]
+        BodyState state;
+    };
+
+    Vec3 gravity{0, 0, -standard_gravity};  ///< [m/s2]
+    std::vector<Stone> stones;
+    std::vector<Plane> walls;
+    std::optional<ConcreteBlock> concrete;
+    std::optional<FeedParams> feed;
+    Box bounds;                  ///< leaving it is an error
+    std::optional<Real> outlet;  ///< bodies that pass this x leave the simulation [m]
+    std::optional<Real> gauge;   ///< sediment passing this x is counted [m]
+
+    /// A single sphere; returns the scene so that calls can be chained.
+    Scene& add_sphere(Real radius, const BodyState& state, Real density = 2650) {
+        require_positive(radius, "Scene.add_sphere.radius", "m");
+        return add_stone(make_clump("sphere", {{Vec3::Zero(), radius}}), state, density);
+    }
+    Scene& add_stone(Clump clump, const BodyState& state, Real density = 2650) {
+        stones.push_back({std::move(clump), density, state});
+        return *this;
+    }
+    Scene& add_wall(const Vec3& point, const Vec3& normal) {
+        require(normal.norm() > 0, {"Scene.add_wall.normal", "longer than 0"}, normal.norm());
+        walls.push_back({point, normal.normalized()});
+        return *this;
+    }
+
+    void validate() const {
+        require(gravity.allFinite(), {"Scene.gravity", "finite", "m/s2"}, gravity.sum());
+        for (const Plane& wall : walls) wall.validate();
+        for (const Stone& stone : stones) {
+            require_positive(stone.density, "Scene.stones.density", "kg/m3");
+            require(bounds.contains(stone.state.position),
+                    {"Scene.stones.position", "inside Scene.bounds", "m", "move the stone or widen the bounds"}, stone.state.position.norm());
+        }
+        if (concrete) {
+            require_positive(concrete->density, "Scene.concrete.density", "kg/m3");
+            require(!concrete->lattice.sites.empty(), {"Scene.concrete.lattice", "of at least one sphere"}, 0);
+        }
+        if (feed) feed->validate();
+    }
+};
+
+}  // namespace abrade

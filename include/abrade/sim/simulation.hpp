@@ -1,0 +1,267 @@
+#pragma once
+// One simulation from four policies: the builder, the loop and its guards.
+
+#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/stepper.hpp>
+#include <abrade/sim/snapshot.hpp>
+#include <abrade/sim/stability.hpp>
+#include <abrade/sim/world.hpp>
+
+#include <chrono>
+#include <functional>
+#include <ostream>
+
+namespace abrade {
+
+/// A run that went wrong: caught in the step where it arose. `Simulation::last_good()` holds the last state
+/// known to be sound.
+struct RunError : std::runtime_error {
+    RunError(const std::string& what, Index step_, Real time_, Index id_)
+        : std::runtime_error(what), step(step_), time(time_), id(id_) {}
+    Index step;  ///< in which it arose
+    Real time;   ///< [s]
+    Index id;    ///< of the body
+};
+
+struct RunOptions {
+    Real end_time = 0;       ///< [s]
+    Real time_step = 0;      ///< [s]; 0: `safety` times the stable step
+    Real safety = 0.5;       ///< share of the stable step that is taken [-]
+    Real observe_every = 0;  ///< [s]; 0: at the start and at the end only
+    Real skin = 0;           ///< of the neighbour list [m]; 0: a quarter of the smallest radius
+    std::function<bool()> stop{};  ///< asked now and then; true ends the run cleanly
+};
+
+/// Stands in the contact slot until `.contact(law)` fills it.
+struct ContactLawIsMissing {};
+
+/// Made by `simulate(scene)`, completed by `.contact()`, `.bond()`, `.wear()` and `.fluid()`, then run. The
+/// four policies are part of the type; an absent one costs nothing.
+template <class C = ContactLawIsMissing, BondLaw B = NoBond, WearLaw W = NoWear, FluidModel F = NoFluid, DragLaw D = CliftGauvin>
+class Simulation {
+public:
+    Simulation(Scene scene, C contact, B bond, W wear, F fluid, D drag)
+        : scene_(std::move(scene)), contact_(std::move(contact)), bond_(std::move(bond)), wear_(std::move(wear)),
+          fluid_(std::move(fluid)), drag_(std::move(drag)) {}
+
+    // --- the four slots --------------------------------------------------------------------------
+
+    template <ContactLaw L>
+    Simulation<L, B, W, F, D> contact(L law) && {
+        return {std::move(scene_), std::move(law), std::move(bond_), std::move(wear_), std::move(fluid_), std::move(drag_)};
+    }
+    template <BondLaw L>
+    Simulation<C, L, W, F, D> bond(L law) && {
+        return {std::move(scene_), std::move(contact_), std::move(law), std::move(wear_), std::move(fluid_), std::move(drag_)};
+    }
+    template <WearLaw L>
+    Simulation<C, B, L, F, D> wear(L law) && {
+        return {std::move(scene_), std::move(contact_), std::move(bond_), std::move(law), std::move(fluid_), std::move(drag_)};
+    }
+    template <FluidModel L, DragLaw Drag = CliftGauvin>
+    Simulation<C, B, W, L, Drag> fluid(L law, Drag drag = Drag{}) && {
+        return {std::move(scene_), std::move(contact_), std::move(bond_), std::move(wear_), std::move(law), std::move(drag)};
+    }
+
+    // --- running -------------------------------------------------------------------------------
+
+    /// Runs to `end_time`; may be called again to go on. `observer(simulation)` sees the start, every
+    /// `observe_every`, and the end. Throws InputError before the first step when options or scene cannot
+    /// be used, RunError when a step goes wrong.
+    template <class Observer>
+    void run(const RunOptions& options, Observer&& observer) {
+        static_assert(ContactLaw<C>, "a simulation needs a contact law: simulate(scene).contact(law)");
+        prepare(options);
+        const auto clock_start = Clock::now();
+        const Real start = time_;
+        Real next_observation = start + options.observe_every;
+        const auto steps = static_cast<Index>(std::ceil((options.end_time - start) / time_step_ - 1e-9));
+        if (steps > 0) time_step_ = (options.end_time - start) / steps;  // so that the last step ends on time
+        observer(*this);
+        for (Index n = 0; n < steps && !stopped_; ++n) {
+            do_step(start + n * time_step_);
+            const bool last = n + 1 == steps;
+            if (step_ % steps_between_checks == 0 && options.stop && options.stop()) stopped_ = true;
+            if (last || stopped_ || (options.observe_every > 0 && time_ >= next_observation - 0.5 * time_step_)) {
+                next_observation += options.observe_every;
+                wall_seconds_ = seconds_since(clock_start);
+                balance();
+                observer(*this);
+            }
+        }
+        wall_seconds_ = seconds_since(clock_start);
+    }
+    void run(const RunOptions& options) {
+        run(options, [](const Simulation&) {});
+    }
+
+    // --- what came of it -----------------------------------------------------------------------
+
+    Real time() const noexcept { return time_; }            ///< [s]
+    Index steps() const noexcept { return step_; }
+    Real time_step() const noexcept { return time_step_; }  ///< [s]
+    const StableStep& stable_time_step() const noexcept { return stable_; }
+    bool stopped() const noexcept { return stopped_; }           ///< by RunOptions::stop
+    Real wall_seconds() const noexcept { return wall_seconds_; }
+    const Ledger& ledger() const noexcept { return ledger_; }    ///< as of the last observation
+    const Particles& particles() const noexcept { return world_->particles(); }
+    const Concrete& concrete() const noexcept { return world_->concrete(); }
+    const auto& world() const noexcept { return *world_; }
+    Index bonds_broken() const noexcept { return world_->broken_tension() + world_->broken_shear(); }
+    Real sediment_passed() const noexcept { return world_->gauge_volume(); }  ///< the gauge, solid [m3]
+    const Feed* feed() const noexcept { return feed_ ? &*feed_ : nullptr; }
+    const Snapshot& last_good() const noexcept { return last_good_; }
+
+    /// Shares of wall time [-]: contacts and bonds with gathering, motion, renewal of lists.
+    struct Shares {
+        Real forces = 0, motion = 0, renewal = 0;
+    };
+    Shares wall_shares() const noexcept {
+        const Real total = std::max(1e-300, step_seconds_ + renewal_seconds_);
+        return {forces_seconds_ / total, (step_seconds_ - forces_seconds_) / total, renewal_seconds_ / total};
+    }
+
+    template <class X, class Y, class Z, class U, class V>
+    friend std::ostream& operator<<(std::ostream& out, const Simulation<X, Y, Z, U, V>& sim);
+
+    const C& contact_law() const noexcept { return contact_; }
+    const B& bond_law() const noexcept { return bond_; }
+    const W& wear_law() const noexcept { return wear_; }
+    const F& fluid_model() const noexcept { return fluid_; }
+    const D& drag_law() const noexcept { return drag_; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr Index steps_between_checks = 64;
+    /// A list is renewed at least this often, so that supply and departures are not left waiting.
+    static constexpr Index longest_list_life = 400;
+
+    static Real seconds_since(Clock::time_point start) { return std::chrono::duration<Real>(Clock::now() - start).count(); }
+
+    void prepare(const RunOptions& options) {
+        require(std::isfinite(options.end_time) && options.end_time >= time_, {"RunOptions.end_time", "finite and not before now (" + to_text(time_) + " s)", "s"}, options.end_time);
+        require(options.safety > 0 && options.safety <= 1, {"RunOptions.safety", "in (0, 1]"}, options.safety);
+        require_not_negative(options.observe_every, "RunOptions.observe_every", "s");
+        require_not_negative(options.time_step, "RunOptions.time_step", "s");
+        require_not_negative(options.skin, "RunOptions.skin", "m");
+        if (!world_) {
+            if (scene_.feed) feed_.emplace(*scene_.feed);
+            world_.emplace(std::move(scene_), PoliciesOf{contact_, bond_, wear_, fluid_, drag_});
+            const auto& radius = world_->particles().radius;
+            Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
+            world_->set_skin(options.skin > 0 ? options.skin : 0.25 * smallest);
+            stable_ = stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
+            world_->renew(time_, nullptr);
+            world_->open_ledger();
+            remember();
+        }
+        stopped_ = false;
+        time_step_ = options.time_step > 0 ? options.time_step : options.safety * stable_.seconds;
+        require(time_step_ <= stable_.seconds,
+                {"RunOptions.time_step", "at most the stable step of " + to_text(stable_.seconds) + " s (" + std::string(stable_.limit) + ")", "s",
+                 "take a smaller step, softer springs or heavier spheres"},
+                time_step_);
+        if (!std::isfinite(time_step_)) time_step_ = std::max(options.end_time - time_, 1e-300);
+        balance();
+    }
+
+    void do_step(Real t) {
+        if (world_->list_is_stale() || step_ - list_made_ >= longest_list_life) {
+            const auto start = Clock::now();
+            world_->renew(t, feed_ ? &*feed_ : nullptr);
+            list_made_ = step_;
+            remember();
+            renewal_seconds_ += seconds_since(start);
+        }
+        // Asking the clock in every step would cost small scenes dear: every 64th stands for all.
+        const bool timed = step_ % steps_between_checks == 0;
+        const auto now = [timed] { return timed ? Clock::now() : Clock::time_point{}; };
+        const auto begin = now();
+        stepper_.do_step(
+            [&](World& world, Real at, Real dt) {
+                const auto start = now();
+                world.evaluate(at, dt);
+                if (timed) forces_seconds_ += steps_between_checks * seconds_since(start);
+            },
+            *world_, t, time_step_);
+        if (timed) step_seconds_ += steps_between_checks * seconds_since(begin);
+        ++step_;
+        time_ = t + time_step_;
+        if (const Trouble trouble = world_->take_trouble(); trouble.cause != Trouble::Cause::none) raise(trouble);
+    }
+
+    [[noreturn]] void raise(const Trouble& trouble) {
+        const Particles& p = world_->particles();
+        const auto b = static_cast<std::size_t>(trouble.body);
+        const auto name = [&](std::size_t body) {
+            static constexpr std::string_view kinds[] = {"stone", "concrete sphere", "concrete grain", "fixed sphere"};
+            return std::string(kinds[static_cast<std::size_t>(p.kind[body])]) + " with id " + std::to_string(p.id[body]);
+        };
+        const auto place = [&] {
+            return "x = (" + to_text(p.position[b].x()) + ", " + to_text(p.position[b].y()) + ", " + to_text(p.position[b].z()) + ") m, speed " + to_text(p.velocity[b].norm()) + " m/s";
+        };
+        std::string text = "step " + std::to_string(step_) + " (t = " + to_text(time_) + " s, dt = " + to_text(time_step_) + " s): ";
+        switch (trouble.cause) {
+            case Trouble::Cause::lost: text += name(b) + " left the world's bounds, " + place(); break;
+            case Trouble::Cause::overlap:
+                text += name(b) + " overlaps " + (trouble.other < 0 ? std::string("a boundary") : name(static_cast<std::size_t>(trouble.other))) + " by " +
+                        to_text(std::round(1000 * trouble.measure) / 10) + " % of the smaller radius (limit " + to_text(100 * World::overlap_limit) + " %), " + place() +
+                        "; stiffer springs or a smaller step are needed";
+                break;
+            default: text += "velocity of " + name(b) + " is not finite, " + place(); break;
+        }
+        text += "; the last good state is that of t = " + to_text(last_good_.time) + " s";
+        throw RunError(text, step_, time_, p.id[b]);
+    }
+
+    void balance() { ledger_ = world_->balance(); }
+    void remember() { last_good_ = take_snapshot(world_->particles(), world_->concrete(), time_, step_); }
+
+    using PoliciesOf = Policies<std::conditional_t<ContactLaw<C>, C, LinearSpring>, B, W, F, D>;
+    using World = abrade::World<PoliciesOf>;
+
+    Scene scene_;
+    [[no_unique_address]] C contact_;
+    [[no_unique_address]] B bond_;
+    [[no_unique_address]] W wear_;
+    [[no_unique_address]] F fluid_;
+    [[no_unique_address]] D drag_;
+    std::optional<World> world_;
+    std::optional<Feed> feed_;
+    VelocityVerlet<World> stepper_;
+    Ledger ledger_;
+    StableStep stable_;
+    Snapshot last_good_;
+    Real time_ = 0, time_step_ = 0;
+    Index step_ = 0, list_made_ = 0;
+    bool stopped_ = false;
+    Real wall_seconds_ = 0, forces_seconds_ = 0, step_seconds_ = 0, renewal_seconds_ = 0;
+};
+
+/// Starts a simulation; fill the slots, then run.
+inline Simulation<> simulate(Scene scene) { return {std::move(scene), {}, NoBond{}, NoWear{}, NoFluid{}, CliftGauvin{}}; }
+
+/// Laws with their parameters, the step and why, the ledger, the wear, the wall time and where it went.
+template <class C, class B, class W, class F, class D>
+std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim) {
+    out << "contact  " << describe(sim.contact_) << "\nbond     " << describe(sim.bond_) << "\nwear     " << describe(sim.wear_) << "\nfluid    "
+        << describe(sim.fluid_);
+    if constexpr (!std::same_as<F, NoFluid>) out << " with " << describe(sim.drag_);
+    if (!sim.world_) return out << "\nnot run yet\n";
+    const auto shares = sim.wall_shares();
+    const auto percent = [](Real share) { return std::to_string(static_cast<int>(std::lround(100 * share))) + " %"; };
+    out << "\ntime     " << to_text(sim.time_) << " s in " << sim.step_ << " steps of " << to_text(sim.time_step_) << " s (stable: " << to_text(sim.stable_.seconds) << " s, set by "
+        << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres " << sim.particles().spheres() << ", near pairs "
+        << sim.world_->contacts().pairs().size() << "\n";
+    if (sim.concrete().sites() > 0)
+        out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken() << " bonds broken, worn volume " << to_text(sim.concrete().worn_volume())
+            << " m3\n";
+    out << "ledger   [J]\n";
+    sim.ledger_.visit([&](std::string_view name, Real value) {
+        if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
+    });
+    return out << "wall     " << to_text(std::round(1000 * sim.wall_seconds_) / 1000) << " s: forces " << percent(shares.forces) << ", motion " << percent(shares.motion)
+               << ", neighbour lists " << percent(shares.renewal) << "\n";
+}
+
+}  // namespace abrade

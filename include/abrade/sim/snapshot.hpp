@@ -1,0 +1,49 @@
+#pragma once
+// The state of all bodies at one time, as owned columns that the io room can save.
+
+#include <abrade/core/fields.hpp>
+#include <abrade/dem/particles.hpp>
+#include <abrade/wear/concrete.hpp>
+
+#include <string>
+#include <vector>
+
+namespace abrade {
+
+/// Columns over bodies and over concrete sites.
+struct Snapshot {
+    Real time = 0;  ///< [s]
+    Index step = 0;
+    std::vector<Real> id, kind, site;  ///< [body]; kind: 0 stone, 1 concrete, 2 grain, 3 fixed
+    std::vector<Real> position, velocity, angular_momentum;  ///< [body x 3] [m], [m/s], [kg m2/s]
+    std::vector<Real> orientation;                           ///< [body x 4] w x y z
+    std::vector<Real> fracture_rate;                         ///< [site] [-]
+
+    std::vector<FieldView> body_fields() const {
+        return {{"id", "-", 1, id}, {"kind", "-", 1, kind}, {"site", "-", 1, site}, {"position", "m", 3, position},
+                {"velocity", "m/s", 3, velocity}, {"angular_momentum", "kg m2/s", 3, angular_momentum},
+                {"orientation", "-", 4, orientation}};
+    }
+    std::vector<FieldView> site_fields() const { return {{"fracture_rate", "-", 1, fracture_rate}}; }
+};
+
+inline Snapshot take_snapshot(const Particles& particles, const Concrete& concrete, Real time, Index step) {
+    Snapshot shot;
+    shot.time = time;
+    shot.step = step;
+    const auto append = [](std::vector<Real>& column, const Vec3& v) { column.insert(column.end(), v.data(), v.data() + 3); };
+    for (std::size_t b = 0; b < particles.position.size(); ++b) {
+        shot.id.push_back(particles.id[b]);
+        shot.kind.push_back(static_cast<Real>(particles.kind[b]));
+        shot.site.push_back(particles.site[b]);
+        append(shot.position, particles.position[b]);
+        append(shot.velocity, particles.velocity[b]);
+        append(shot.angular_momentum, particles.angular_momentum[b]);
+        const Quaternion& q = particles.orientation[b];
+        shot.orientation.insert(shot.orientation.end(), {q.w(), q.x(), q.y(), q.z()});
+    }
+    for (Index s = 0; s < concrete.sites(); ++s) shot.fracture_rate.push_back(concrete.fracture(s));
+    return shot;
+}
+
+}  // namespace abrade

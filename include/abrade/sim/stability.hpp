@@ -1,0 +1,114 @@
+#pragma once
+// The largest stable time step of a scene, from its masses and springs.
+
+#include <abrade/bond/network.hpp>
+#include <abrade/sim/feed.hpp>
+
+#include <limits>
+#include <string_view>
+
+namespace abrade {
+
+struct StableStep {
+    Real seconds = std::numeric_limits<Real>::infinity();
+    std::string_view limit = "nothing moves";  ///< what sets it
+
+    void lower(Real candidate, std::string_view reason) noexcept {
+        if (candidate < seconds) seconds = candidate, limit = reason;
+    }
+};
+
+namespace detail {
+
+/// Stiffness and damping that act on one sphere, as a matrix over (displacement, rotation x radius) divided
+/// by (mass, inertia / radius^2). Twice the largest row sum bounds omega^2 of the whole system: a spring
+/// 1/2 k |a_i - a_j|^2 is at most k (|a_i|^2 + |a_j|^2).
+class SphereStiffness {
+public:
+    explicit SphereStiffness(Real mass) noexcept : per_mass_(1 / mass), per_inertia_(1 / (0.4 * mass)) {}
+
+    /// A link along the unit vector n, at one radius from the centre.
+    void add(const Vec3& n, Real normal, Real tangential) noexcept {
+        const Mat3 along = n * n.transpose();
+        const Mat3 across = Mat3::Identity() - along;
+        translation_ += normal * along + tangential * across;
+        rotation_ += tangential * across;
+        lever_ += tangential * n;
+    }
+    /// `count` links from anywhere.
+    void add_anywhere(int count, Real normal, Real tangential) noexcept {
+        translation_.diagonal().array() += count * normal;
+        rotation_.diagonal().array() += count * tangential;
+    }
+
+    Real bound() const noexcept {
+        const Real coupling = lever_.cwiseAbs().sum() * std::sqrt(per_mass_ * per_inertia_);
+        const Real moving = translation_.cwiseAbs().rowwise().sum().maxCoeff() * per_mass_;
+        const Real turning = rotation_.cwiseAbs().rowwise().sum().maxCoeff() * per_inertia_;
+        return 2 * (std::max(moving, turning) + coupling);
+    }
+
+private:
+    Real per_mass_, per_inertia_;
+    Mat3 translation_ = Mat3::Zero(), rotation_ = Mat3::Zero();
+    Vec3 lever_ = Vec3::Zero();
+};
+
+/// 2/omega (sqrt(1 + zeta^2) - zeta), zeta = c / (2 omega), for omega^2 and c bounded as above.
+inline Real damped_step(Real omega2, Real c) noexcept {
+    const Real omega = std::sqrt(omega2), zeta = 0.5 * c / omega;
+    return 2 / omega * (std::sqrt(1 + zeta * zeta) - zeta);
+}
+
+}  // namespace detail
+
+/// A clump is as stable as a sphere of this mass: its own, or what its smallest inertia amounts to at its
+/// farthest point.
+inline Real stability_mass(Real mass, Real smallest_inertia, Real bounding_radius) noexcept {
+    return std::min(mass, smallest_inertia / (0.4 * square(bounding_radius)));
+}
+
+/// Stable step of bodies under a contact law, and of bonded spheres under the bonds that they really have
+/// and up to two contacts more.
+template <ContactLaw C, BondLaw B>
+StableStep stable_step(const C& contact, const B& bond, const Particles& particles, const Network<B>& network,
+                       const std::optional<FeedParams>& feed) {
+    StableStep step;
+    std::vector<detail::SphereStiffness> stiffness, damping;
+    const auto dashpot = [](Real ratio, Real k, Real mass) { return 2 * ratio * std::sqrt(k * mass); };
+    for (Index b = 0; b < particles.bodies(); ++b) {
+        const auto i = static_cast<std::size_t>(b);
+        if (particles.inverse_mass[i] == 0) continue;
+        const Real mass = particles.mass[i];
+        const auto bonds = network.incidence().of(particles.first_sphere[i]);
+        if (bonds.empty()) {
+            Real reach = 0;
+            for (Index s = particles.first_sphere[i]; s < particles.first_sphere[i] + particles.sphere_count[i]; ++s)
+                reach = std::max(reach, particles.offset[static_cast<std::size_t>(s)].norm() + particles.radius[static_cast<std::size_t>(s)]);
+            step.lower(contact.stable_dt(stability_mass(mass, 1 / particles.inverse_inertia[i].maxCoeff(), reach), reach),
+                       "contacts of the lightest stone");
+            continue;
+        }
+        detail::SphereStiffness k(mass), c(mass);
+        for (const auto side : bonds) {
+            const Pair& pair = network.pairs()[static_cast<std::size_t>(side.pair)];
+            const Vec3 n = (particles.centre[static_cast<std::size_t>(pair.first)] - particles.centre[static_cast<std::size_t>(pair.second)]).normalized();
+            const Real other = particles.inverse_mass[static_cast<std::size_t>(particles.body[static_cast<std::size_t>(side.first ? pair.second : pair.first)])];
+            const Real effective = 1 / (1 / mass + other);
+            k.add(n, bond.stiffness(), bond.tangential_stiffness());
+            c.add(n, dashpot(bond.damping_ratio(), bond.stiffness(), effective), dashpot(bond.damping_ratio(), bond.tangential_stiffness(), effective));
+        }
+        k.add_anywhere(2, contact.stiffness(), contact.tangential_stiffness());
+        c.add_anywhere(2, dashpot(contact.damping_ratio(), contact.stiffness(), mass), dashpot(contact.damping_ratio(), contact.tangential_stiffness(), mass));
+        step.lower(detail::damped_step(k.bound(), c.bound()), "bonded concrete");
+    }
+    if (feed)
+        for (const StoneClass& stones : feed->classes) {
+            const Clump clump = make_stone(stones.shape, stones.size);
+            const Real mass = stability_mass(feed->density * clump.volume, feed->density * clump.principal_moments.minCoeff(), clump.bounding_radius);
+            step.lower(contact.stable_dt(mass, clump.bounding_radius), "contacts of the smallest stone fed");
+        }
+    return step;
+}
+
+}  // namespace abrade

@@ -1,0 +1,73 @@
+#pragma once
+// The concrete's record of what was worn off it, site by site, and the abrasion depth that follows.
+
+#include <abrade/geometry/lattice.hpp>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace abrade {
+
+/// One entry per lattice site, for as long as the simulation runs; the sphere may be long gone.
+/// Fracture rate gamma_f = fractured / cell volume, in [0, 1].
+class Concrete {
+public:
+    Concrete() = default;
+    explicit Concrete(Lattice lattice)
+        : lattice_(std::move(lattice)), fractured_(lattice_.sites.size(), 0), overflow_(lattice_.sites.size(), 0),
+          gone_(lattice_.sites.size(), 0) {}
+
+    /// Takes worn volume [m3] off a site. What a fully fractured site no longer has is booked as overflow.
+    void wear(Index site, Real volume) noexcept {
+        const auto s = static_cast<std::size_t>(site);
+        const Real taken = std::min(volume, lattice_.sites[s].cell_volume - fractured_[s]);
+        fractured_[s] += taken;
+        overflow_[s] += volume - taken;
+    }
+    void set_gone(Index site) noexcept { gone_[static_cast<std::size_t>(site)] = 1; }
+
+    Real fracture(Index site) const noexcept {
+        return fractured_[static_cast<std::size_t>(site)] / lattice_.sites[static_cast<std::size_t>(site)].cell_volume;
+    }
+    bool gone(Index site) const noexcept { return gone_[static_cast<std::size_t>(site)] != 0; }
+
+    /// Volume fractured inside all spheres, standing or gone [m3].
+    Real worn_volume() const noexcept { return sum(fractured_); }
+    /// Worn volume that hit spheres already fully fractured [m3].
+    Real overflow_volume() const noexcept { return sum(overflow_); }
+    /// Sound concrete that went with spheres that left their place [m3].
+    Real detached_volume() const noexcept {
+        Real volume = 0;
+        for (std::size_t s = 0; s < gone_.size(); ++s)
+            if (gone_[s]) volume += lattice_.sites[s].cell_volume - fractured_[s];
+        return volume;
+    }
+
+    /// Abrasion depth of each column of the lattice, [along x across] [m]: fractured volume of standing
+    /// spheres and whole cells of those gone, over the column's surface. Sums up to the volume lost.
+    std::vector<Real> depth() const {
+        std::vector<Real> depth(lattice_.column_area.size(), 0);
+        const auto layers = static_cast<std::size_t>(lattice_.count_layers);
+        for (std::size_t s = 0; s < lattice_.sites.size(); ++s)
+            depth[s / layers] += gone_[s] ? lattice_.sites[s].cell_volume : fractured_[s];
+        for (std::size_t c = 0; c < depth.size(); ++c) depth[c] /= lattice_.column_area[c];
+        return depth;
+    }
+
+    const Lattice& lattice() const noexcept { return lattice_; }
+    Index sites() const noexcept { return static_cast<Index>(lattice_.sites.size()); }
+
+private:
+    static Real sum(const std::vector<Real>& values) noexcept {
+        Real total = 0;
+        for (const Real v : values) total += v;
+        return total;
+    }
+
+    Lattice lattice_;
+    std::vector<Real> fractured_, overflow_;  ///< [site] [m3]
+    std::vector<char> gone_;                  ///< [site]
+};
+
+}  // namespace abrade

@@ -1,0 +1,41 @@
+#pragma once
+// What a wear law sees and answers, its concept, and the null policy.
+
+#include <abrade/dem/contact_law.hpp>
+
+namespace abrade {
+
+/// Concrete worn off one body by one contact in one step.
+struct WearIncrement {
+    Real normal = 0;      ///< by normal loss (impact) [m3]
+    Real tangential = 0;  ///< by tangential loss (sliding) [m3]
+};
+
+/// A wear law is a pure function of what the contact law lost in a step.
+/// - `increment` gives the volume worn off *one* of the two bodies; it is never negative;
+/// - `strength_left(fracture)` says what a sphere that is worn to `fracture` in [0, 1] still holds.
+template <class W>
+concept WearLaw = Law<W> && requires(const W& law, const ContactKinematics<Real>& contact, const ContactLoad<Real>& load) {
+    { law.increment(contact, load) } noexcept -> std::same_as<WearIncrement>;
+    { law.strength_left(Real{}) } noexcept -> std::same_as<Real>;
+};
+
+/// Nothing wears.
+struct NoWear {
+    static constexpr std::string_view name = "NoWear";
+    using Params = NoParams;
+
+    NoWear() = default;
+    explicit NoWear(Params) {}
+    const Params& params() const noexcept {
+        static constexpr Params none{};
+        return none;
+    }
+    WearIncrement increment(const ContactKinematics<Real>&, const ContactLoad<Real>&) const noexcept { return {}; }
+    Real strength_left(Real) const noexcept { return 1; }
+};
+
+static_assert(WearLaw<NoWear>);
+static_assert(!WearLaw<NoParams>);
+
+}  // namespace abrade

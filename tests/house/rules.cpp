@@ -1,0 +1,120 @@
+// The headers keep the rules of the house, and the check of that can fail.
+
+#include "rules.hpp"
+
+#include <doctest/doctest.h>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A made-up include folder, gone at the end of the test. Tests run in a folder of their own.
+class MadeUpTree {
+public:
+    MadeUpTree() { fs::remove_all(dir_); }
+    ~MadeUpTree() { fs::remove_all(dir_); }
+    MadeUpTree(const MadeUpTree&) = delete;
+    MadeUpTree& operator=(const MadeUpTree&) = delete;
+
+    void add(const std::string& path, const std::string& text) const {
+        fs::create_directories((dir_ / path).parent_path());
+        std::ofstream(dir_ / path) << text;
+    }
+    /// All offences, one a line.
+    std::string offences() const {
+        std::string all;
+        for (const std::string& offence : house::offences(dir_)) all += offence + "\n";
+        return all;
+    }
+
+private:
+    fs::path dir_ = "made_up_tree";
+};
+
+const std::string once = "#pragma once\n";
+
+}  // namespace
+
+TEST_CASE("the library keeps the rules of the house") {
+    for (const std::string& offence : house::offences(ABRADE_INCLUDE_DIR)) FAIL_CHECK(offence);
+}
+
+TEST_CASE("a tree that keeps the rules has no offence") {
+    MadeUpTree tree;
+    tree.add("abrade/core/types.hpp", once + "#include <Eigen/Core>\n");
+    tree.add("abrade/dem/stepper.hpp", once +
+                                           "#include <abrade/core/types.hpp>\n#include "
+                                           "<boost/numeric/odeint/stepper/velocity_verlet.hpp>\n");
+    tree.add("abrade/dem/linear.hpp", once + "#include <abrade/dem/stepper.hpp>\n// #include <iostream>\n");
+    tree.add("abrade/abrade.hpp", once + "#include <abrade/dem/linear.hpp>\n");
+    CHECK(tree.offences() == "");
+}
+
+TEST_CASE("each rule can be broken") {
+    MadeUpTree tree;
+    tree.add("abrade/core/types.hpp", once);
+
+    const auto says = [&](const std::string& path, const std::string& text) {
+        tree.add(path, text);
+        return tree.offences();
+    };
+    SUBCASE("a room below") {
+        tree.add("abrade/dem/linear.hpp", once);
+        CHECK(says("abrade/geometry/sphere.hpp", once + "\n#include <abrade/dem/linear.hpp>\n") ==
+              "abrade/geometry/sphere.hpp:3: includes abrade/dem/linear.hpp, which is in a room below its "
+              "own\n");
+    }
+    SUBCASE("each pair of rooms") {
+        for (std::size_t above = 0; above < house::rooms.size(); ++above)
+            for (std::size_t below = above + 1; below < house::rooms.size(); ++below) {
+                MadeUpTree pair;
+                const std::string a = "abrade/" + std::string(house::rooms[above]) + "/a.hpp";
+                const std::string b = "abrade/" + std::string(house::rooms[below]) + "/b.hpp";
+                pair.add(a, once);
+                pair.add(b, once + "#include <" + a + ">\n");
+                CHECK(pair.offences() == "");
+                pair.add(a, once + "#include <" + b + ">\n");
+                pair.add(b, once);
+                CHECK(pair.offences() == a + ":2: includes " + b + ", which is in a room below its own\n");
+            }
+    }
+    SUBCASE("a cycle inside a room") {
+        tree.add("abrade/dem/a.hpp", once + "#include <abrade/dem/b.hpp>\n");
+        CHECK(says("abrade/dem/b.hpp", once + "#include <abrade/dem/a.hpp>\n") ==
+              "cycle: abrade/dem/a.hpp -> abrade/dem/b.hpp -> abrade/dem/a.hpp\n");
+    }
+    SUBCASE("no pragma once first") {
+        CHECK(says("abrade/core/a.hpp", "// a\n#pragma once\n") ==
+              "abrade/core/a.hpp:1: must begin with #pragma once\n");
+    }
+    SUBCASE("too long") {
+        std::string text = once;
+        for (int line = 2; line <= house::longest_header; ++line) text += "\n";
+        CHECK(says("abrade/core/a.hpp", text) == "");
+        CHECK(says("abrade/core/a.hpp", text + "\n") == "abrade/core/a.hpp:401: is longer than 400 lines\n");
+    }
+    SUBCASE("heavy headers") {
+        CHECK(says("abrade/core/a.hpp", once + "#include <Eigen/Dense>\n") ==
+              "abrade/core/a.hpp:2: includes all of Eigen, must be the parts that it uses\n");
+        CHECK(says("abrade/core/a.hpp", once + "# include <iostream>\n") ==
+              "abrade/core/a.hpp:2: includes <iostream>, must be <ostream> or <iosfwd>\n");
+        CHECK(says("abrade/core/a.hpp", once + "#include <boost/numeric/odeint.hpp>\n") ==
+              "abrade/core/a.hpp:2: includes all of odeint\n");
+        CHECK(says("abrade/core/a.hpp", once + "#include <boost/numeric/odeint/stepper/euler.hpp>\n") ==
+              "abrade/core/a.hpp:2: includes odeint, which only dem/stepper.hpp may\n");
+    }
+    SUBCASE("wrong places") {
+        CHECK(says("abrade/attic/a.hpp", once) == "abrade/attic/a.hpp:1: stands in no known room\n");
+        fs::remove("made_up_tree/abrade/attic/a.hpp");
+        CHECK(says("abrade/other.hpp", once) ==
+              "abrade/other.hpp:1: only abrade.hpp stands outside the rooms\n");
+        fs::remove("made_up_tree/abrade/other.hpp");
+        CHECK(says("abrade/core/a.h", once) == "abrade/core/a.h:1: is not a .hpp\n");
+    }
+    SUBCASE("wrong names") {
+        CHECK(says("abrade/core/a.hpp", once + "#include \"types.hpp\"\n") ==
+              "abrade/core/a.hpp:2: includes \"types.hpp\", must be <abrade/ROOM/HEADER.hpp>\n");
+        CHECK(says("abrade/core/a.hpp", once + "#include <abrade/core/tpyes.hpp>\n") ==
+              "abrade/core/a.hpp:2: includes abrade/core/tpyes.hpp, which does not exist\n");
+    }
+}
