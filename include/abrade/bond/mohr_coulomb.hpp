@@ -108,7 +108,7 @@ private:
         const Real dt = bond.time_step;
         const auto normal = NormalSpring<Real>::at(std::max(bond.compression, 0.0), approach, stiffness(), cn, dt);
         const auto tangential =
-            SlidingSpring<Real>::at(shear, slip, tan_phi_ * normal.force, tangential_stiffness(), cs, dt);
+            SlidingSpring<Real>::at(shear - dt * slip, shear, slip, tan_phi_ * normal.force, tangential_stiffness(), cs, dt);
         const Vec3 force = normal.force * bond.normal + tangential.force;
         return {{force, normal.stored + tangential.stored, 0, normal.lost, tangential.lost},
                 {tangential.spring + 0.5 * dt * slip, true},

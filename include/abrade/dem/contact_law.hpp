@@ -68,6 +68,15 @@ Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number
     return scale * flat;
 }
 
+/// How much of the step centred on t_n a contact has acted, in steps: 1, but for the step in which it
+/// begins. There it began tau = overlap / approach before t_n and acts for tau + dt/2. Dashpots that count
+/// this give an impulse of second order in dt; without it restitution is first order.
+template <class Number>
+Number acting_share(Number overlap, Number approach, Real dt) noexcept {
+    const Number travel = approach * Number(dt);
+    return select(overlap < travel, Number(0.5) + overlap / max(travel, Number(1e-300)), Number(1));
+}
+
 /// Spring and dashpot along the normal, without tension.
 template <class Number>
 struct NormalSpring {
@@ -77,15 +86,9 @@ struct NormalSpring {
 
     /// f = max(k overlap + c v, 0), v the speed of approach; what the clamp holds back of the spring's
     /// push while it relaxes is lost, like what the dashpot takes.
-    ///
-    /// In the step in which a contact begins, tau = overlap / v ago, the dashpot has acted for dt/2 + tau
-    /// rather than for dt. Counting that makes its impulse second order in dt; without it restitution is
-    /// first order.
     static NormalSpring at(Number overlap, Number approach, Number stiffness, Number dashpot, Real dt) noexcept {
         const Number push = stiffness * overlap;
-        const Number travel = approach * Number(dt);
-        const Number acting = select(overlap < travel, Number(0.5) + overlap / max(travel, Number(1e-300)), Number(1));
-        const Number force = max(push + acting * dashpot * approach, Number(0));
+        const Number force = max(push + dashpot * approach, Number(0));
         return {force, Number(0.5) * push * overlap, max((force - push) * approach, Number(0)) * Number(dt)};
     }
 };
@@ -98,24 +101,24 @@ struct SlidingSpring {
     Number stored;          ///< [J]
     Number lost;            ///< by dashpot and slider together, over the step [J], >= 0
 
-    /// Elastic, perfectly plastic: the spring gives way at |k s| = limit, what it releases is lost to
-    /// sliding; the dashpot then acts only as far as the limit leaves it room. Unlike the usual form, which
-    /// stretches the spring backwards to make room for the dashpot, this never books a negative loss.
-    static SlidingSpring at(const Vec3Of<Number>& trial, const Vec3Of<Number>& slip, Number limit, Number stiffness,
-                            Number dashpot, Real dt) noexcept {
+    /// Elastic, perfectly plastic: the spring gives way at |k s| = limit; what slips, |trial| - |s|, does so
+    /// against the mean of the spring's force `before` the step and after it, which books sliding and
+    /// release by a falling limit alike to second order. The dashpot acts only as far as the limit leaves it
+    /// room. Unlike the usual form, which stretches the spring backwards to make room for the dashpot, this
+    /// never books a negative loss.
+    static SlidingSpring at(const Vec3Of<Number>& before, const Vec3Of<Number>& trial, const Vec3Of<Number>& slip, Number limit,
+                            Number stiffness, Number dashpot, Real dt) noexcept {
         const Number tiny = Number(1e-300);
-        const Number length2 = trial.dot(trial);
-        const Number reach = limit / stiffness;
-        const Number over = sqrt(reach * reach / max(length2, tiny));
-        const Vec3Of<Number> spring = select(length2 > reach * reach, Vec3Of<Number>(over * trial), trial);
-        const Number kept2 = spring.dot(spring);
+        const Number length = sqrt(trial.dot(trial)), kept = min(length, limit / stiffness);
+        const Vec3Of<Number> spring = (kept / max(length, tiny)) * trial;
+        const Number start = min(sqrt(before.dot(before)), length);
         // Largest share c <= 1 of the dashpot with |k s + c g v| <= limit: a quadratic in c.
         const Number a = dashpot * dashpot * slip.dot(slip);
         const Number b = stiffness * dashpot * spring.dot(slip);
-        const Number room = max(limit * limit - stiffness * stiffness * kept2, Number(0));
+        const Number room = max(limit * limit - stiffness * stiffness * kept * kept, Number(0));
         const Number share = select(a > tiny, min(Number(1), (sqrt(b * b + a * room) - b) / max(a, tiny)), Number(0));
-        return {-stiffness * spring - share * dashpot * slip, spring, Number(0.5) * stiffness * kept2,
-                Number(0.5) * stiffness * max(length2 - kept2, Number(0)) + share * dashpot * slip.dot(slip) * Number(dt)};
+        return {-stiffness * spring - share * dashpot * slip, spring, Number(0.5) * stiffness * kept * kept,
+                Number(0.5) * stiffness * (start + kept) * (length - kept) + share * dashpot * slip.dot(slip) * Number(dt)};
     }
 };
 

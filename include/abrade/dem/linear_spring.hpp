@@ -78,19 +78,22 @@ public:
         const auto touching = contact.overlap > Number(0);
         const Number approach = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
-        const Number root_mass = Number(2 * damping_ratio_) * sqrt(contact.effective_mass);
-        const Number dt_half(0.5 * contact.time_step);
+        const Number acting = acting_share(contact.overlap, approach, contact.time_step);
+        const Number root_mass = acting * Number(2 * damping_ratio_) * sqrt(contact.effective_mass);
+        const Number dt(contact.time_step);
 
         const auto normal = NormalSpring<Number>::at(max(contact.overlap, Number(0)), approach, kn,
                                                      root_mass * Number(std::sqrt(params_.stiffness)), contact.time_step);
-        const Vec3Of<Number> trial = turn_into_plane(memory.spring, contact.normal) + dt_half * slip;
+        const Vec3Of<Number> ahead = turn_into_plane(memory.spring, contact.normal);
+        const Vec3Of<Number> before = ahead - select(acting == Number(1), Number(0.5) * dt, Number(0)) * slip;
+        const Vec3Of<Number> trial = ahead + (acting - Number(0.5)) * dt * slip;
         const auto tangential =
-            SlidingSpring<Number>::at(trial, slip, Number(params_.friction) * normal.force, kt,
+            SlidingSpring<Number>::at(before, trial, slip, Number(params_.friction) * normal.force, kt,
                                       root_mass * Number(std::sqrt(tangential_stiffness())), contact.time_step);
 
         const Vec3Of<Number> none = Vec3Of<Number>::Zero();
         const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
-        const Vec3Of<Number> next = tangential.spring + dt_half * slip;
+        const Vec3Of<Number> next = tangential.spring + Number(0.5) * dt * slip;
         // A contact that opened gives back nothing: what its tangential spring held is lost to sliding.
         const Number left_over = Number(0.5) * kt * memory.spring.dot(memory.spring);
         return {{select(touching, force, none), select(touching, normal.stored + tangential.stored, Number(0)),
