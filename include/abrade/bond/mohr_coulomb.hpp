@@ -58,6 +58,8 @@ public:
     explicit MohrCoulomb(Params params) : params_(params) {
         params_.validate();
         tan_phi_ = std::tan(radians(params_.friction_angle));
+        dashpot_normal_ = 2 * params_.damping * std::sqrt(stiffness());
+        dashpot_shear_ = 2 * params_.damping * std::sqrt(tangential_stiffness());
     }
     const Params& params() const noexcept { return params_; }
 
@@ -66,14 +68,15 @@ public:
         const Real approach = -bond.velocity.dot(bond.normal);
         const Vec3 slip = bond.velocity + approach * bond.normal;
         const Vec3 shear = turn_into_plane(memory.spring, bond.normal) + 0.5 * dt * slip;
-        const Real root_mass = 2 * params_.damping * std::sqrt(bond.effective_mass);
-        const Real cn = root_mass * std::sqrt(kn), cs = root_mass * std::sqrt(ks);
+        const Real root_mass = std::sqrt(bond.effective_mass);
+        const Real cn = root_mass * dashpot_normal_, cs = root_mass * dashpot_shear_;
 
         if (!memory.broken) {
             const Real fn = kn * bond.compression, limit = strength_left * capacity(bond.radius);
-            const Real elastic = 0.5 * kn * square(bond.compression) + 0.5 * ks * shear.squaredNorm();
+            const Real shear2 = shear.squaredNorm();
+            const Real elastic = 0.5 * kn * square(bond.compression) + 0.5 * ks * shear2;
             if (-fn > limit) return {{Vec3::Zero(), 0, elastic, 0, 0}, {Vec3::Zero(), true}, Fate::tension};
-            if (ks * shear.norm() <= (fn + limit) * tan_phi_) {
+            if (square(ks) * shear2 <= square((fn + limit) * tan_phi_)) {
                 const Vec3 force = (fn + cn * approach) * bond.normal - ks * shear - cs * slip;
                 const Real damped = (cn * square(approach) + cs * slip.squaredNorm()) * dt;
                 return {{force, elastic, damped, 0, 0}, {shear + 0.5 * dt * slip, false}, Fate::intact};
@@ -117,6 +120,7 @@ private:
 
     Params params_;
     Real tan_phi_ = 0;
+    Real dashpot_normal_ = 0, dashpot_shear_ = 0;  ///< 2 zeta sqrt(k); times sqrt(m_eff) [N s/m]
 };
 
 static_assert(BondLaw<MohrCoulomb>);

@@ -121,7 +121,6 @@ private:
     BondSums respond_one(const Law& law, const Wear& wear, const Particles& a, const StrengthLeft& strength_left, Real dt,
                          std::size_t p) noexcept {
         const auto i = static_cast<std::size_t>(pairs_[p].first), j = static_cast<std::size_t>(pairs_[p].second);
-        const auto body_i = static_cast<std::size_t>(bodies_[p].first), body_j = static_cast<std::size_t>(bodies_[p].second);
         const Vec3 apart = a.centre[i] - a.centre[j];
         const Real length = apart.norm();
         BondKinematics bond;
@@ -130,7 +129,7 @@ private:
         const Real arm = 0.5 * length;
         bond.velocity = a.centre_velocity[i] - a.centre_velocity[j] - (arm * (a.spin[i] + a.spin[j])).cross(bond.normal);
         bond.radius = std::min(a.radius[i], a.radius[j]);
-        bond.effective_mass = 1 / (a.inverse_mass[body_i] + a.inverse_mass[body_j]);
+        bond.effective_mass = effective_mass_[p];
         bond.time_step = dt;
 
         const auto [answer, memory, fate] =
@@ -151,13 +150,19 @@ private:
 
     void index(const Particles& particles) {
         bodies_.clear();
-        for (const Pair& pair : pairs_)
-            bodies_.push_back({particles.body[static_cast<std::size_t>(pair.first)], particles.body[static_cast<std::size_t>(pair.second)]});
+        effective_mass_.clear();
+        for (const Pair& pair : pairs_) {
+            const Pair bodies{particles.body[static_cast<std::size_t>(pair.first)], particles.body[static_cast<std::size_t>(pair.second)]};
+            bodies_.push_back(bodies);
+            effective_mass_.push_back(1 / (particles.inverse_mass[static_cast<std::size_t>(bodies.first)] +
+                                           particles.inverse_mass[static_cast<std::size_t>(bodies.second)]));
+        }
         incidence_.build(particles.spheres(), static_cast<Index>(pairs_.size()), [&](Index p) { return pairs_[static_cast<std::size_t>(p)]; });
     }
 
     std::vector<Pair> pairs_, bodies_;  ///< of spheres, and the bodies they belong to
     std::vector<Real> rest_length_;     ///< [m]
+    std::vector<Real> effective_mass_;  ///< [kg]
     std::vector<typename Law::Memory> memory_;
     std::vector<PairLoad> loads_;
     std::vector<Real> worn_;

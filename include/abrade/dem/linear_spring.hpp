@@ -68,6 +68,8 @@ public:
     explicit LinearSpring(Params params) : params_(params) {
         params_.validate();
         damping_ratio_ = damping_ratio_without_tension(params_.restitution);
+        dashpot_normal_ = 2 * damping_ratio_ * std::sqrt(stiffness());
+        dashpot_tangential_ = 2 * damping_ratio_ * std::sqrt(tangential_stiffness());
     }
     const Params& params() const noexcept { return params_; }
 
@@ -79,17 +81,17 @@ public:
         const Number approach = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
         const Number acting = acting_share(contact.overlap, approach, contact.time_step);
-        const Number root_mass = acting * Number(2 * damping_ratio_) * sqrt(contact.effective_mass);
+        const Number root_mass = acting * sqrt(contact.effective_mass);
         const Number dt(contact.time_step);
 
         const auto normal = NormalSpring<Number>::at(max(contact.overlap, Number(0)), approach, kn,
-                                                     root_mass * Number(std::sqrt(params_.stiffness)), contact.time_step);
+                                                     root_mass * Number(dashpot_normal_), contact.time_step);
         const Vec3Of<Number> ahead = turn_into_plane(memory.spring, contact.normal);
         const Vec3Of<Number> before = ahead - select(acting == Number(1), Number(0.5) * dt, Number(0)) * slip;
         const Vec3Of<Number> trial = ahead + (acting - Number(0.5)) * dt * slip;
         const auto tangential =
             SlidingSpring<Number>::at(before, trial, slip, Number(params_.friction) * normal.force, kt,
-                                      root_mass * Number(std::sqrt(tangential_stiffness())), contact.time_step);
+                                      root_mass * Number(dashpot_tangential_), contact.time_step);
 
         const Vec3Of<Number> none = Vec3Of<Number>::Zero();
         const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
@@ -116,6 +118,7 @@ public:
 private:
     Params params_;
     Real damping_ratio_ = 0;
+    Real dashpot_normal_ = 0, dashpot_tangential_ = 0;  ///< 2 zeta sqrt(k); times sqrt(m_eff) [N s/m]
 };
 
 static_assert(ContactLaw<LinearSpring>);
