@@ -20,7 +20,7 @@ namespace abrade::examples {
 
 /// An axis, or the colour bar.
 struct Axis {
-    std::string label;          ///< "distance along the channel"
+    std::string label{};        ///< "distance along the channel"
     std::string unit{};         ///< "m"; empty when dimensionless
     std::optional<Real> min{};  ///< from the data where it is not given
     std::optional<Real> max{};
@@ -31,9 +31,9 @@ enum class CurveStyle { line, dashed, points };
 
 /// A line or a set of points. Values that are not finite make a gap.
 struct Curve {
-    std::string title;
-    std::vector<Real> x;
-    std::vector<Real> y;
+    std::string title{};
+    std::vector<Real> x{};
+    std::vector<Real> y{};
     CurveStyle style = CurveStyle::line;
 };
 
@@ -73,10 +73,10 @@ inline std::string limits(const Axis& axis) {
 struct Layout {
     int width = 1200;
     int height = 700;
-    int left = 110;
+    int left = 125;
     int right = 30;
     int top = 60;
-    int bottom = 75;
+    int bottom = 92;
 
     std::string margins() const {
         const auto x = [&](int pixel) { return to_text(static_cast<Real>(pixel) / width); };
@@ -89,6 +89,7 @@ struct Layout {
 /// The distance between tics so that some `wanted` of them fit between low and high: 1, 2 or 5 times a power
 /// of ten.
 inline Real tic_step(Real low, Real high, int wanted) {
+    if (!(high > low)) return 1;
     const Real rough = (high - low) / std::max(wanted, 1);
     const Real power = std::pow(10.0, std::floor(std::log10(rough)));
     for (const Real factor : {1.0, 2.0, 5.0})
@@ -103,7 +104,7 @@ inline std::string tics(const std::string& axis, Real low, Real high, int pixels
 /// The look that all pictures share.
 inline std::string frame(const std::string& title, const Axis& x, const Axis& y) {
     std::string s = "set title " + gnuplot_text(title) + " font 'sans,17' textcolor '#222222'\n";
-    s += "set border 3 linecolor '#666666'\nset tics out nomirror textcolor '#333333'\n";
+    s += "set clip two\nset border 3 linecolor '#666666'\nset tics out nomirror textcolor '#333333'\n";
     s += "set grid back linecolor '#e2e2e2' linetype 1 linewidth 0.7\n";
     s += "set xlabel " + axis_title(x) + " textcolor '#222222'\nset ylabel " + axis_title(y) +
          " textcolor '#222222'\n";
@@ -199,9 +200,9 @@ public:
     }
 
 private:
-    std::string data_;
-    std::string command_;
-    std::vector<std::string> titles_;
+    std::string data_{};
+    std::string command_{};
+    std::vector<std::string> titles_{};
     std::size_t blocks_ = 0;
 };
 

@@ -19,18 +19,18 @@ namespace abrade::examples {
 
 /// The area between two curves.
 struct Band {
-    std::string title;
-    std::vector<Real> x;
-    std::vector<Real> low;
-    std::vector<Real> high;
+    std::string title{};
+    std::vector<Real> x{};
+    std::vector<Real> low{};
+    std::vector<Real> high{};
 };
 
 /// Lines and points over bands.
 struct LineChart {
-    std::string title;
-    Axis x;
-    Axis y;
-    std::vector<Curve> curves;
+    std::string title{};
+    Axis x{};
+    Axis y{};
+    std::vector<Curve> curves{};
     std::vector<Band> bands{};
     int width = 1200;  ///< [pixel]
     int height = 700;  ///< [pixel]
@@ -38,13 +38,13 @@ struct LineChart {
 
 /// A map of values on a regular grid. Cells that are not finite stay white.
 struct ColourMap {
-    std::string title;
-    Axis x;  ///< min and max must be given: the outer edges of the grid
-    Axis y;
-    Axis colour;
-    std::size_t columns = 0;    ///< cells along x
-    std::vector<Real> values;   ///< [row x column], rows from y.min up
-    bool equal_aspect = false;  ///< a metre across as long as a metre along; else the map fills the picture
+    std::string title{};
+    Axis x{};  ///< min and max must be given: the outer edges of the grid
+    Axis y{};
+    Axis colour{};
+    std::size_t columns = 0;     ///< cells along x
+    std::vector<Real> values{};  ///< [row x column], rows from y.min up
+    bool equal_aspect = false;   ///< a metre across as long as a metre along; else the map fills the picture
     Palette palette = Palette::wear;
     std::vector<Curve> lines{};
     int width = 1200;
@@ -61,19 +61,19 @@ struct Circle {
 
 /// Circles drawn in the order given: the last lies on top.
 struct CircleSet {
-    std::string title;
-    std::vector<Circle> circles;
+    std::string title{};
+    std::vector<Circle> circles{};
     std::string colour{};  ///< "#7a8b99"; empty: by value
     bool outline = false;
 };
 
 /// A side or plan view: circles to scale, and lines. Circles outside of the axes' limits are not written.
 struct CirclePicture {
-    std::string title;
-    Axis x;
-    Axis y;
-    Axis colour;
-    std::vector<CircleSet> sets;
+    std::string title{};
+    Axis x{};
+    Axis y{};
+    Axis colour{};
+    std::vector<CircleSet> sets{};
     std::vector<Curve> lines{};
     Palette palette = Palette::wear;
     int width = 1200;
@@ -175,12 +175,17 @@ inline void draw(const CirclePicture& view, const std::filesystem::path& picture
     for (const Curve& line : view.lines) plot.curve(line, index++);
 
     charts::Layout all{.width = view.width, .right = value.empty() ? 30 : 150};
-    const int plot_width = all.width - all.left - all.right;
+    int plot_width = all.width - all.left - all.right;
     const Real length = x.high - x.low, ratio = length > 0 ? (y.high - y.low) / length : 1;
     int rows = view.rows;
     if (rows <= 0)
         for (rows = 1; rows < 6 && plot_width * ratio * rows < 120;) ++rows;
-    const int strip = std::clamp(static_cast<int>(plot_width * ratio * rows), 20, 2 * view.width);
+    const Real tallest = 2.0 * view.width;  // a high and narrow view is drawn narrower
+    if (plot_width * ratio * rows > tallest) {
+        plot_width = std::max(static_cast<int>(tallest / (ratio * rows)), 20);
+        all.right = all.width - all.left - plot_width;
+    }
+    const int strip = std::max(static_cast<int>(plot_width * ratio * rows), 20);
     const int gap = 45;
     charts::legend(plot.titles(), all);  // sets the room at the top
     all.height = all.top + all.bottom + rows * strip + (rows - 1) * gap;

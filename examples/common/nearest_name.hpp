@@ -24,13 +24,13 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-/// The known name closest to `name`; empty where none shares more than half of its letters.
+/// The known name closest to `name`; empty where none has more than half of its letters in common.
 inline std::string nearest_name(std::string_view name, const auto& known) {
     std::string best;
-    std::size_t least = name.size() / 2 + 1;
-    for (const auto& candidate : known) {
+    std::size_t least = std::string_view::npos;
+    for (const std::string_view candidate : known) {
         const std::size_t distance = edit_distance(name, candidate);
-        if (distance < least) {
+        if (distance < least && distance <= std::max(name.size(), candidate.size()) / 2) {
             least = distance;
             best = candidate;
         }

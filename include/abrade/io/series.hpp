@@ -29,7 +29,10 @@ class SeriesWriter {
 public:
     explicit SeriesWriter(const std::filesystem::path& stem,
                           Hdf5Storage storage = {.number = StoredNumber::real32, .gzip = 1})
-        : stem_{stem}, storage_{storage}, data_{Hdf5File::create(with_suffix(".h5"))} {}
+        : stem_{stem}, storage_{storage}, data_{Hdf5File::create(with_suffix(".h5"))} {
+        if (storage.number == StoredNumber::int32)
+            fail({"SeriesWriter storage", "real32 or real64"}, "int32");
+    }
 
     /// Stores, once, what does not change: positions [m] (3 components) and fields of a cloud. Every later
     /// `write` to the cloud refers to them. Calling it again replaces them for the times that follow.

@@ -4,6 +4,7 @@
 #include <abrade/geometry/lattice.hpp>
 #include <abrade/geometry/surfaces.hpp>
 #include <abrade/sim/feed.hpp>
+#include <abrade/wear/concrete.hpp>
 
 #include <optional>
 #include <vector>
@@ -14,6 +15,7 @@ namespace abrade {
 struct ConcreteBlock {
     Lattice lattice;
     Real density = 2400;  ///< of the spheres [kg/m3]
+    FractureVolume fracture_volume = FractureVolume::cell;
 };
 
 /// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.

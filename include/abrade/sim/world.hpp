@@ -192,7 +192,7 @@ private:
             // Without bonds there is nothing to hold the spheres together: they stand as a rigid bed.
             for (Index b = 0; b < particles_.bodies(); ++b) hold(b);
         }
-        concrete_ = Concrete(std::move(block.lattice));
+        concrete_ = Concrete(std::move(block.lattice), block.fracture_volume);
     }
 
     void hold(Index b) {

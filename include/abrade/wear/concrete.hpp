@@ -9,26 +9,35 @@
 
 namespace abrade {
 
+/// The volume V_omega that is fully fractured at gamma_f = 1. The paper does not say which it means: with the
+/// lattice's cell the summed worn volume is the concrete removed; with the sphere the gaps wear for nothing.
+enum class FractureVolume { cell, sphere };
+
 /// One entry per lattice site, for as long as the simulation runs; the sphere may be long gone.
-/// Fracture rate gamma_f = fractured / cell volume, in [0, 1].
+/// Fracture rate gamma_f = fractured / V_omega, in [0, 1].
 class Concrete {
 public:
     Concrete() = default;
-    explicit Concrete(Lattice lattice)
-        : lattice_(std::move(lattice)), fractured_(lattice_.sites.size(), 0), overflow_(lattice_.sites.size(), 0),
+    explicit Concrete(Lattice lattice, FractureVolume kind = FractureVolume::cell)
+        : lattice_(std::move(lattice)), kind_(kind), fractured_(lattice_.sites.size(), 0), overflow_(lattice_.sites.size(), 0),
           gone_(lattice_.sites.size(), 0) {}
 
     /// Takes worn volume [m3] off a site. What a fully fractured site no longer has is booked as overflow.
     void wear(Index site, Real volume) noexcept {
         const auto s = static_cast<std::size_t>(site);
-        const Real taken = std::min(volume, lattice_.sites[s].cell_volume - fractured_[s]);
+        const Real taken = std::min(volume, capacity(site) - fractured_[s]);
         fractured_[s] += taken;
         overflow_[s] += volume - taken;
     }
     void set_gone(Index site) noexcept { gone_[static_cast<std::size_t>(site)] = 1; }
 
     Real fracture(Index site) const noexcept {
-        return fractured_[static_cast<std::size_t>(site)] / lattice_.sites[static_cast<std::size_t>(site)].cell_volume;
+        return fractured_[static_cast<std::size_t>(site)] / capacity(site);
+    }
+    /// V_omega [m3].
+    Real capacity(Index site) const noexcept {
+        return kind_ == FractureVolume::cell ? lattice_.sites[static_cast<std::size_t>(site)].cell_volume
+                                             : 4.0 / 3 * pi * cube(lattice_.radius);
     }
     bool gone(Index site) const noexcept { return gone_[static_cast<std::size_t>(site)] != 0; }
 
@@ -66,6 +75,7 @@ private:
     }
 
     Lattice lattice_;
+    FractureVolume kind_ = FractureVolume::cell;
     std::vector<Real> fractured_, overflow_;  ///< [site] [m3]
     std::vector<char> gone_;                  ///< [site]
 };

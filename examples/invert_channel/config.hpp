@@ -1,0 +1,49 @@
+#pragma once
+// What the TOML file of the invert channel says, checked and in the library's own terms.
+
+#include "../common/parameter.hpp"
+
+#include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/coupling/drag.hpp>
+#include <abrade/dem/linear_spring.hpp>
+#include <abrade/fluid/uniform_flow.hpp>
+#include <abrade/sim/feed.hpp>
+#include <abrade/wear/concrete.hpp>
+#include <abrade/wear/sub_particle.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace abrade::examples {
+
+/// Where the result is compared, and with what.
+struct Comparison {
+    Real gauge = 0;              ///< x where passing sediment is counted [m]
+    Real from = 0, to = 0;       ///< section of the centre line [m]
+    Real half_width = 0;         ///< of the strip that counts as the centre [m]
+    std::filesystem::path measured;  ///< CSV of the user's own points, or empty
+};
+
+struct ChannelConfig {
+    std::string title;
+    std::string source;  ///< the TOML file
+    Invert invert;
+    LatticeSize lattice;
+    Real concrete_density = 0;  ///< [kg/m3]
+    FractureVolume fracture_volume = FractureVolume::cell;
+    LinearSpring::Params contact;
+    MohrCoulomb::Params bond;
+    SubParticleAbrasion::Params wear;
+    UniformFlow::Params water;
+    CliftGauvin::Params drag;
+    FeedParams feed;
+    Comparison comparison;
+    Real end_time = 0, output_every = 0, time_step = 0, safety = 0, skin = 0;
+    std::vector<Parameter> parameters;  ///< all that was read, for the report
+};
+
+/// Reads and checks a file; `overrides` are "section.key=value". Throws InputError.
+ChannelConfig read_channel_config(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+}  // namespace abrade::examples

@@ -1,0 +1,141 @@
+// The main job: gravel and water down a concrete channel, and what they wear off it.
+//
+//   examples/run invert_channel [FILE.toml] [--set section.key=value]... [--out FOLDER] [--threads N]
+//
+// config    what the TOML file says, checked
+// channel   from the configuration to a simulation, and from a simulation to results
+// recorder  what is written while it runs
+// pictures  what is drawn when it is done
+
+#include "channel.hpp"
+#include "pictures.hpp"
+#include "recorder.hpp"
+
+#include "../common/gnuplot.hpp"
+#include "../common/interrupt.hpp"
+#include "../common/measured_points.hpp"
+#include "../common/progress.hpp"
+
+#include <abrade/io/checkpoint.hpp>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <iostream>
+
+using namespace abrade;
+using namespace abrade::examples;
+
+namespace {
+
+struct Options {
+    std::filesystem::path file = std::filesystem::path(ABRADE_EXAMPLE_DIR) / "quick.toml";
+    std::vector<std::string> overrides;
+    std::filesystem::path out = "out/invert_channel";
+    int threads = 0;
+};
+
+std::string to_short(Real value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
+void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::filesystem::path& path) {
+    const nlohmann::ordered_json summary{
+        {"title", c.title}, {"configuration", c.source}, {"version", ABRADE_VERSION}, {"compiler", ABRADE_COMPILER}, {"seed", c.feed.seed},
+        {"stopped_early", r.stopped}, {"threads", r.threads}, {"wall_s", r.wall_s}, {"simulated_s", r.simulated_s}, {"represented_h", r.represented_h},
+        {"steps", r.steps}, {"time_step_s", r.time_step_s}, {"stable_time_step_s", r.stable_time_step_s},
+        {"stones", r.stones}, {"stones_fed", r.stones_fed}, {"concrete_spheres", r.concrete_spheres}, {"bonds_broken", r.bonds_broken},
+        {"sediment_fed_m3", r.sediment_fed_m3}, {"sediment_passed_m3", r.sediment_passed_m3}, {"converted_sediment_m3", r.converted_sediment_m3},
+        {"worn_volume_m3", r.worn_volume_m3}, {"worn_volume_from_energy_m3", r.worn_volume_from_energy_m3},
+        {"overflow_volume_m3", r.overflow_volume_m3}, {"detached_volume_m3", r.detached_volume_m3},
+        {"centre_depth_mm_per_m3", r.centre_depth_mm_per_m3}, {"max_depth_mm", r.max_depth_mm}, {"mean_depth_mm", r.mean_depth_mm}, {"worn_band_width_m", r.worn_band_width_m},
+        {"energy_lost_normal_J", r.energy_lost_normal_J}, {"energy_lost_sliding_J", r.energy_lost_sliding_J},
+        {"ledger_residual_relative", r.ledger_residual_relative}, {"integration_residue_J", r.integration_residue_J},
+        {"mean_stone_speed_m_per_s", r.mean_stone_speed_m_per_s}, {"water_depth_m", r.water_depth_m}, {"water_speed_m_per_s", r.water_speed_m_per_s},
+        {"wall_share", {{"forces", r.share_forces}, {"motion", r.share_motion}, {"lists", r.share_lists}}},
+        {"policies", {{"fluid", r.fluid}, {"contact", r.contact}, {"bond", r.bond}, {"wear", r.wear}}}};
+    std::ofstream file(path);
+    file << summary.dump(2) << "\n";
+    if (!file.flush()) throw FileError("cannot write '" + path.string() + "'");
+}
+
+/// The last good state of a run that failed, beside where the results would have been.
+std::filesystem::path save_last_good(const Snapshot& shot, OutputFolder& folder) {
+    const auto bodies = shot.body_fields(), sites = shot.site_fields();
+    const std::vector<FieldGroup> groups{{"bodies", bodies}, {"concrete", sites}};
+    save_fields(folder.path("last_good.h5"), groups, {{"time_s", shot.time}, {"step", std::int64_t{shot.step}}});
+    return folder.publish_beside("failed") / "last_good.h5";
+}
+
+int run(const Options& options) {
+    if (options.threads > 0) set_thread_count(options.threads);
+    const ChannelConfig config = read_channel_config(options.file, options.overrides);
+    require_gnuplot();
+    if (!config.comparison.measured.empty()) read_measured_points(config.comparison.measured);
+    OutputFolder folder(options.out);
+
+    auto sim = make_simulation(config);
+    const Interrupt interrupt;
+    LedgerHistory history;
+    {
+        Recorder recorder(folder.path("series"));
+        Progress progress("invert channel", config.end_time);
+        const auto stop = [&] {
+            progress.update(sim.time(), std::to_string(sim.feed()->supplied_stones()) + " stones fed");
+            return interrupt.requested();
+        };
+        try {
+            sim.run({.end_time = config.end_time, .time_step = config.time_step, .safety = config.safety, .observe_every = config.output_every, .skin = config.skin, .stop = stop}, recorder);
+        } catch (const RunError& error) {
+            progress.clear();
+            std::cerr << "error: " << error.what() << "\n";
+            std::cerr << "saved as " << save_last_good(sim.last_good(), folder).string() << "\n";
+            return 3;
+        }
+        history = recorder.take_history();
+    }
+    const ChannelResults results = make_results(config, sim, std::move(history));
+    write_report(config, results, folder);
+    write_summary(config, results, folder.path("summary.json"));
+    const std::filesystem::path place = folder.publish();
+
+    std::cout << sim;
+    if (results.stopped) std::cout << "stopped early, at " << to_text(results.simulated_s) << " s of " << to_text(config.end_time) << " s\n";
+    std::cout << "worn " << to_short(1e6 * results.worn_volume_m3) << " cm3; at the centre " << to_short(results.centre_depth_mm_per_m3) << " mm per m3 of sediment\n"
+              << "results in " << place.string() << ", start with report.html\n";
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app("Gravel and water wear a concrete channel.");
+    app.add_option("file", options.file, "TOML file; quick.toml and paper.toml come with the program")->capture_default_str();
+    app.add_option("--set", options.overrides, "section.key=value, overrides the file")->allow_extra_args(false)->take_all();
+    app.add_option("--out", options.out, "folder of the results")->capture_default_str();
+    app.add_option("--threads", options.threads, "0: OMP_NUM_THREADS or all cores")->check(CLI::NonNegativeNumber);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        std::cerr << "error: " << error.what() << "; see --help\n";
+        return 2;
+    }
+    try {
+        // A bare name is one of the files that come with the program.
+        if (const auto beside = std::filesystem::path(ABRADE_EXAMPLE_DIR) / options.file; !std::filesystem::exists(options.file) && std::filesystem::exists(beside))
+            options.file = beside;
+        return run(options);
+    } catch (const InputError& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 2;
+    } catch (const std::exception& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 1;
+    }
+}

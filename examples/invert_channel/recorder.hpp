@@ -1,0 +1,73 @@
+#pragma once
+// Watches a running invert channel: the ledger over time, and a series for ParaView.
+
+#include "results.hpp"
+
+#include <abrade/abrade.hpp>
+#include <abrade/io/series.hpp>
+
+#include <filesystem>
+
+namespace abrade::examples {
+
+class Recorder {
+public:
+    explicit Recorder(const std::filesystem::path& stem) : series_(stem) {}
+
+    template <class Sim>
+    void operator()(const Sim& sim) {
+        if (!history_.time.empty() && sim.time() <= history_.time.back()) return;  // a stop on an output time
+        record_ledger(sim.ledger(), sim.time());
+        write_stones(sim.particles(), sim.time());
+        write_concrete(sim.particles(), sim.concrete(), sim.time());
+    }
+
+    LedgerHistory take_history() { return std::move(history_); }
+
+private:
+    void record_ledger(const Ledger& ledger, Real time) {
+        std::size_t column = 0;
+        ledger.visit([&](std::string_view name, Real value) {
+            if (column == history_.names.size()) history_.names.emplace_back(name), history_.values.emplace_back();
+            history_.values[column++].push_back(value);
+        });
+        history_.time.push_back(time);
+    }
+
+    static void append(std::vector<Real>& column, const Vec3& v) { column.insert(column.end(), v.data(), v.data() + 3); }
+
+    /// Member spheres of stones, so that a clump looks like what it is.
+    void write_stones(const Particles& p, Real time) {
+        std::vector<Real> centre, velocity, radius, id;
+        for (Index s = 0; s < p.spheres(); ++s) {
+            const auto i = static_cast<std::size_t>(s), b = static_cast<std::size_t>(p.body[i]);
+            if (p.kind[b] != Kind::stone) continue;
+            append(centre, p.centre[i]);
+            append(velocity, p.velocity[b]);
+            radius.push_back(p.radius[i]);
+            id.push_back(p.id[b]);
+        }
+        const std::vector<FieldView> fields{{"radius", "m", 1, radius}, {"stone", "-", 1, id}, {"velocity", "m/s", 3, velocity}};
+        series_.write("stones", time, {"position", "m", 3, centre}, fields);
+    }
+
+    /// Concrete still in the channel, standing or loose.
+    void write_concrete(const Particles& p, const Concrete& concrete, Real time) {
+        std::vector<Real> centre, velocity, fracture, kind;
+        for (Index b = 0; b < p.bodies(); ++b) {
+            const auto i = static_cast<std::size_t>(b);
+            if (p.site[i] < 0) continue;
+            append(centre, p.position[i]);
+            append(velocity, p.velocity[i]);
+            fracture.push_back(concrete.fracture(p.site[i]));
+            kind.push_back(p.kind[i] == Kind::grain ? 1 : 0);
+        }
+        const std::vector<FieldView> fields{{"fracture_rate", "-", 1, fracture}, {"loose", "-", 1, kind}, {"velocity", "m/s", 3, velocity}};
+        series_.write("concrete", time, {"position", "m", 3, centre}, fields);
+    }
+
+    SeriesWriter series_;
+    LedgerHistory history_;
+};
+
+}  // namespace abrade::examples

@@ -1,0 +1,56 @@
+#pragma once
+// What a run of the invert channel came to, as plain numbers: made by main, read by pictures and report.
+
+#include "config.hpp"
+
+#include <string>
+#include <vector>
+
+namespace abrade::examples {
+
+/// One sphere of a stone or of loose concrete, or of the standing surface, at the end.
+struct DrawnSphere {
+    Vec3 centre = Vec3::Zero();  ///< [m]
+    Real radius = 0;             ///< [m]
+    Real fracture = -1;          ///< gamma_f of concrete; -1 for a stone
+};
+
+/// A curve of the ledger over time.
+struct LedgerHistory {
+    std::vector<std::string> names;
+    std::vector<Real> time;                 ///< [s]
+    std::vector<std::vector<Real>> values;  ///< [name][time] [J]
+};
+
+struct ChannelResults {
+    bool stopped = false;  ///< by Ctrl-C
+    Real wall_s = 0, simulated_s = 0, represented_h = 0, time_step_s = 0, stable_time_step_s = 0;
+    Index steps = 0, stones = 0, stones_fed = 0, concrete_spheres = 0, bonds_broken = 0;
+    int threads = 1;
+    Real sediment_fed_m3 = 0, sediment_passed_m3 = 0, converted_sediment_m3 = 0;
+    Real worn_volume_m3 = 0, worn_volume_from_energy_m3 = 0, overflow_volume_m3 = 0, detached_volume_m3 = 0;
+    Real centre_depth_mm_per_m3 = 0, max_depth_mm = 0, mean_depth_mm = 0, worn_band_width_m = 0;
+    Real energy_lost_normal_J = 0, energy_lost_sliding_J = 0;  ///< in contacts with concrete
+    Real ledger_residual_relative = 0, integration_residue_J = 0;
+    Real mean_stone_speed_m_per_s = 0;
+    Real share_forces = 0, share_motion = 0, share_lists = 0;  ///< of wall time
+    Real water_depth_m = 0, water_speed_m_per_s = 0, froude = 0, bed_shear_Pa = 0;
+    std::string fluid, contact, bond, wear;  ///< names of the policies
+
+    std::vector<Real> depth_m;  ///< [along x across] abrasion depth
+    Index along = 0, across = 0;
+    std::vector<Real> x_m;                   ///< [along] of the columns
+    std::vector<Real> centre_depth_per_m3;   ///< [along] [mm/m3]
+    std::vector<DrawnSphere> spheres;
+    LedgerHistory ledger;
+};
+
+/// What physics allows for the centre line of a worn band: depth per converted sediment [mm/m3].
+/// Lower: only the normal impacts of saltating stones; upper: all stones sliding under their submerged weight
+/// at mu = 0.3, half the energy in the concrete. Both are for a strip 1 m wide.
+struct Bracket {
+    Real low = 0.01, high = 0.27;
+    Bracket per_width(Real width) const { return {low / width, high / width}; }
+};
+
+}  // namespace abrade::examples

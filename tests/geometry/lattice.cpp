@@ -1,0 +1,146 @@
+// Lattices of concrete: cells fill the body, spheres have room, neighbours are counted once.
+#include <abrade/geometry/lattice.hpp>
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <set>
+
+using namespace abrade;
+
+namespace {
+
+Real sum_of_cells(const Lattice& lattice) {
+    Real sum = 0;
+    for (const LatticeSite& site : lattice.sites) sum += site.cell_volume;
+    return sum;
+}
+Real sum_of_areas(const Lattice& lattice) {
+    Real sum = 0;
+    for (const Real a : lattice.column_area) sum += a;
+    return sum;
+}
+Real closest_pair(const Lattice& lattice) {
+    Real closest = 1e300;
+    for (const auto& [i, j] : lattice.neighbours())
+        closest = std::min(closest, (lattice.sites[static_cast<std::size_t>(i)].centre - lattice.sites[static_cast<std::size_t>(j)].centre).norm());
+    return closest;
+}
+
+constexpr Real round_off = 1e-12;
+
+}  // namespace
+
+TEST_CASE("flat: cells fill the slab, spheres lie inside it and do not overlap") {
+    struct Slab {
+        Real length, width, diameter;
+        Index layers;
+    };
+    for (const Slab& slab : {Slab{0.2, 0.1, 0.02, 3}, {0.25, 0.11, 0.02, 1}, {0.02, 0.02, 0.02, 5}, {1.0, 0.333, 0.017, 2}}) {
+        const Real length = slab.length, width = slab.width, d = slab.diameter;
+        const Index layers = slab.layers;
+        CAPTURE(length);
+        CAPTURE(width);
+        const Lattice lattice = flat_lattice(length, width, {.sphere_diameter = d, .layers = layers});
+        CHECK(sum_of_cells(lattice) == doctest::Approx(length * width * d * layers).epsilon(round_off));
+        CHECK(sum_of_areas(lattice) == doctest::Approx(length * width).epsilon(round_off));
+        if (lattice.sites.size() > 1) CHECK(closest_pair(lattice) >= d * (1 - round_off));
+        Real highest = -1, lowest = 1, left = 1, right = -1;
+        for (const LatticeSite& s : lattice.sites) {
+            highest = std::max(highest, s.centre.z()), lowest = std::min(lowest, s.centre.z());
+            left = std::min(left, s.centre.x()), right = std::max(right, s.centre.x());
+        }
+        CHECK(highest + lattice.radius == doctest::Approx(0).epsilon(1e-15));  // the surface stands at z = 0
+        CHECK(lowest - lattice.radius == doctest::Approx(-layers * d).epsilon(round_off));
+        CHECK(left == doctest::Approx(-right).epsilon(round_off));
+        CHECK(right + lattice.radius <= 0.5 * length * (1 + round_off));
+    }
+}
+
+TEST_CASE("flat: a slab meant to hold n spheres holds n") {
+    for (int n = 1; n < 200; ++n) {
+        CHECK(flat_lattice(n * 0.02, 0.02, {.layers = 1}).count_along == n);
+        CHECK(flat_lattice(0.1 * n, 0.1, {.sphere_diameter = 0.1, .layers = 1}).count_along == n);
+    }
+}
+
+TEST_CASE("sites stand where site() says, neighbours are counted once") {
+    const Lattice lattice = flat_lattice(0.1, 0.08, {.layers = 3});
+    REQUIRE(lattice.count_along == 5);
+    REQUIRE(lattice.count_across == 4);
+    REQUIRE(lattice.count_layers == 3);
+    REQUIRE(lattice.sites.size() == 60);
+    for (Index s = 0; s < 60; ++s) {
+        const LatticeSite& site = lattice.sites[static_cast<std::size_t>(s)];
+        CHECK(lattice.site(site.along, site.across, site.layer) == s);
+    }
+    const auto pairs = lattice.neighbours();
+    CHECK(pairs.size() == 4 * 4 * 3 + 5 * 3 * 3 + 5 * 4 * 2);
+    std::set<std::pair<Index, Index>> seen;
+    for (const auto& [i, j] : pairs) {
+        CHECK(i < j);
+        CHECK(seen.insert({i, j}).second);
+        CHECK((lattice.sites[static_cast<std::size_t>(i)].centre - lattice.sites[static_cast<std::size_t>(j)].centre).norm() < 0.02 * 1.001);
+    }
+}
+
+TEST_CASE("invert: cells fill the arch") {
+    struct Arch {
+        Real width, radius;
+        Index layers;
+    };
+    for (const Arch& arch : {Arch{1.0, 1.0, 3}, {0.5, 2.0, 1}, {0.6, 0.3, 4}, {1.0, 50.0, 2}}) {
+        const Real width = arch.width, radius = arch.radius;
+        const Index layers = arch.layers;
+        CAPTURE(width);
+        CAPTURE(radius);
+        const Invert invert{.length = 0.3, .width = width, .arc_radius = radius};
+        const Lattice lattice = invert_lattice(invert, {.layers = layers});
+        const Real outer = radius + layers * 0.02, exact = invert.half_angle() * (outer * outer - radius * radius) * 0.3;
+        CHECK(sum_of_cells(lattice) == doctest::Approx(exact).epsilon(round_off));
+        CHECK(sum_of_areas(lattice) == doctest::Approx(2 * invert.half_angle() * radius * 0.3).epsilon(round_off));
+        for (const LatticeSite& s : lattice.sites) {
+            // Under the surface by half a sphere and whole layers.
+            const Real depth = std::hypot(s.centre.y(), s.centre.z() - radius) - radius;
+            CHECK(depth == doctest::Approx((s.layer + 0.5) * 0.02).epsilon(1e-9));
+            CHECK(std::abs(s.centre.y()) < 0.5 * width + layers * 0.02);
+            CHECK(s.centre.x() > 0);
+            CHECK(s.centre.x() < 0.3);
+        }
+    }
+}
+
+TEST_CASE("invert: no two neighbours stand nearer than a diameter, at any width and radius") {
+    // Along the arc the spacing may be exactly a diameter; the straight line between two centres is shorter.
+    Real worst = 1;
+    for (const Real radius : {0.1, 0.3, 1.0})
+        for (int n = 2; n < 10; ++n) {
+            const Real span = n * 0.02 / (radius + 0.01);  // n spheres fit the surface layer exactly
+            if (span >= pi) continue;
+            const Invert invert{.length = 0.02, .width = 2 * radius * std::sin(0.5 * span), .arc_radius = radius};
+            const Lattice lattice = invert_lattice(invert, {.layers = 2});
+            worst = std::min(worst, closest_pair(lattice) / 0.02);
+        }
+    CHECK(worst >= 1 - round_off);
+}
+
+TEST_CASE("bodies and spheres that do not fit are refused, with the rule") {
+    const Real nan = std::numeric_limits<Real>::quiet_NaN(), infinite = std::numeric_limits<Real>::infinity();
+    for (const Real bad : {0.0, -0.02, nan, infinite}) CHECK_THROWS_AS(flat_lattice(1, 1, {.sphere_diameter = bad}), InputError);
+    CHECK_THROWS_WITH_AS(flat_lattice(1, 1, {.layers = 0}), "LatticeSize.layers must be at least 1, got 0", InputError);
+    CHECK_THROWS_AS(flat_lattice(1, 1, {.layers = -2}), InputError);
+    CHECK_THROWS_WITH_AS(flat_lattice(0.01, 1, {}),
+                         "flat_lattice.side must be at least one sphere diameter (0.02 m), got 0.01 m; take smaller spheres or a larger body", InputError);
+    CHECK_THROWS_AS(flat_lattice(1, 0.01, {}), InputError);
+    CHECK_THROWS_AS(flat_lattice(nan, 1, {}), InputError);
+    CHECK_THROWS_AS(invert_lattice({.length = 0.01}, {}), InputError);
+    CHECK_THROWS_AS(invert_lattice({.width = 0.01}, {}), InputError);
+    CHECK_THROWS_AS(invert_lattice({.arc_radius = 0.1}, {}), InputError);
+}
+
+TEST_CASE("a slab with a NaN or infinite width is refused") {
+    const Real nan = std::numeric_limits<Real>::quiet_NaN(), infinite = std::numeric_limits<Real>::infinity();
+    CHECK_THROWS_AS(flat_lattice(1, nan, {}), InputError);
+    CHECK_THROWS_AS(flat_lattice(1, infinite, {}), InputError);
+    CHECK_THROWS_AS(flat_lattice(infinite, 1, {}), InputError);
+}
