@@ -104,11 +104,15 @@ public:
     bool stopped() const noexcept { return stopped_; }           ///< by RunOptions::stop
     Real wall_seconds() const noexcept { return wall_seconds_; }
     const Ledger& ledger() const noexcept { return ledger_; }    ///< as of the last observation
-    const Particles& particles() const noexcept { return world_->particles(); }
-    const Concrete& concrete() const noexcept { return world_->concrete(); }
-    const auto& world() const noexcept { return *world_; }
-    Index bonds_broken() const noexcept { return world_->broken_tension() + world_->broken_shear(); }
-    Real sediment_passed() const noexcept { return world_->gauge_volume(); }  ///< the gauge, solid [m3]
+    // These throw std::logic_error before the first run: there is nothing to show yet.
+    const Particles& particles() const { return world().particles(); }
+    const Concrete& concrete() const { return world().concrete(); }
+    Index bonds_broken() const { return world().broken_tension() + world().broken_shear(); }
+    Real sediment_passed() const { return world().gauge_volume(); }  ///< the gauge, solid [m3]
+    const auto& world() const {
+        if (!world_) throw std::logic_error("Simulation: run it before asking for its state");
+        return *world_;
+    }
     const Feed* feed() const noexcept { return feed_ ? &*feed_ : nullptr; }
     const Snapshot& last_good() const noexcept { return last_good_; }
 

@@ -4,8 +4,8 @@
 #include <abrade/bond/network.hpp>
 #include <abrade/coupling/drag.hpp>
 #include <abrade/dem/contacts.hpp>
-#include <abrade/dem/rotation.hpp>
 #include <abrade/sim/ledger.hpp>
+#include <abrade/sim/motion.hpp>
 #include <abrade/sim/scene.hpp>
 #include <abrade/wear/concrete.hpp>
 #include <abrade/wear/wear_law.hpp>
@@ -49,9 +49,20 @@ public:
     /// v += dt F/m, L += dt tau; books the works of this half kick.
     friend void kick(World& w, Real dt) { w.kick(dt); }
     /// x += dt v, orientations likewise; predicts the velocities for the force pass.
-    friend void drift(World& w, Real dt) { w.drift(dt); }
+    friend void drift(World& w, Real dt) {
+        w.move([&](Index b) { return w.drift_one(b, dt); });
+    }
+    /// Both in one pass over the bodies.
+    friend void kick_and_drift(World& w, Real kick_dt, Real drift_dt) {
+        w.move([&](Index b) {
+            MoveSums sums{w.kick_one(b, kick_dt), {}};
+            sums += w.drift_one(b, drift_dt);
+            return sums;
+        });
+    }
 
-    /// The force pass at time t: every law once, memory committed, losses booked, concrete worn.
+    /// The force pass at time t: every law once, memory committed, losses booked. Bodies gather their loads,
+    /// and concrete wears, in the kick that follows: one pass over the bodies serves both.
     void evaluate(Real t, Real dt) {
         const ContactSums contacts = contacts_.respond(policies_.contact, policies_.wear, particles_, scene_.walls, dt);
         ledger_.lost_normal += contacts.lost_normal;
@@ -70,7 +81,8 @@ public:
             broken_shear_ += bonds.broken_shear;
             pattern_changed_ |= bonds.broken_tension + bonds.broken_shear > 0;
         }
-        gather(t);
+        loads_time_ = t;
+        loads_waiting_ = true;
     }
 
     // --- between steps -------------------------------------------------------------------------
@@ -142,21 +154,18 @@ private:
         Real kinetic = 0, potential = 0;
         Energies& operator+=(const Energies& o) noexcept { return kinetic += o.kinetic, potential += o.potential, *this; }
     };
-    struct KickSums {
-        Real interaction = 0, gravity = 0, drag = 0, drag_input = 0, buoyancy = 0;
-        Index bad = -1;
-        KickSums& operator+=(const KickSums& o) noexcept {
-            interaction += o.interaction, gravity += o.gravity, drag += o.drag, drag_input += o.drag_input, buoyancy += o.buoyancy;
-            if (bad < 0) bad = o.bad;
-            return *this;
-        }
-    };
     struct DriftSums {
         Real furthest2 = 0, gauge = 0;
         Index lost = -1;
-        DriftSums& operator+=(const DriftSums& o) noexcept {
-            furthest2 = std::max(furthest2, o.furthest2), gauge += o.gauge;
-            if (lost < 0) lost = o.lost;
+    };
+    struct MoveSums {
+        KickSums kick;
+        DriftSums drift;
+        MoveSums& operator+=(const MoveSums& other) noexcept {
+            kick += other.kick;
+            drift.furthest2 = std::max(drift.furthest2, other.drift.furthest2);
+            drift.gauge += other.drift.gauge;
+            if (drift.lost < 0) drift.lost = other.drift.lost;
             return *this;
         }
     };
@@ -209,45 +218,43 @@ private:
         if constexpr (P::has_fluid) fluid_.resize(at(particles_.bodies()));
     }
 
-    /// Sums the pair loads of each body's spheres, adds weight and water, and wears the concrete.
-    void gather(Real t) {
-        parallel_for(particles_.bodies(), [&](Index b) {
-            Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-            Real worn = 0;
-            const Index first = particles_.first_sphere[at(b)];
-            for (Index s = first; s < first + particles_.sphere_count[at(b)]; ++s) {
-                Vec3 sphere_force = Vec3::Zero();
-                const auto collect = [&](const auto& source) {
-                    for (const auto side : source.incidence().of(s)) {
-                        const PairLoad& load = source.loads()[at(side.pair)];
-                        // A contact that has just opened pushes no more but may still have lost something.
-                        if constexpr (P::has_wear) worn += source.worn(side.pair);
-                        if (!load.active) continue;
-                        sphere_force += side.first ? load.force : Vec3(-load.force);
-                        torque += (side.first ? load.arm_first : load.arm_second) * load.twist;
-                    }
-                };
-                collect(contacts_);
-                if constexpr (P::has_bonds) collect(network_);
-                torque += (particles_.centre[at(s)] - particles_.position[at(b)]).cross(sphere_force);
-                force += sphere_force;
-            }
-            if constexpr (P::has_wear)
-                if (worn > 0 && particles_.site[at(b)] >= 0) concrete_.wear(particles_.site[at(b)], worn);
-            interaction_[at(b)] = force;
-            particles_.torque[at(b)] = torque;
-            force += particles_.mass[at(b)] * scene_.gravity;
-            if constexpr (P::has_fluid) {
-                fluid_[at(b)] = {};
-                if (particles_.kind[at(b)] == Kind::stone || particles_.kind[at(b)] == Kind::grain) {
-                    const Vec3& x = particles_.position[at(b)];
-                    fluid_[at(b)] = fluid_load(policies_.drag, policies_.fluid.sample(x, t),
-                                               {x, predicted_velocity(b), particles_.volume[at(b)]}, scene_.gravity);
-                    force += fluid_[at(b)].drag + fluid_[at(b)].buoyancy;
+    /// Sums the pair loads of a body's spheres, adds weight and water, and wears the concrete.
+    void gather_one(Index b) noexcept {
+        Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+        Real worn = 0;
+        const Index first = particles_.first_sphere[at(b)];
+        for (Index s = first; s < first + particles_.sphere_count[at(b)]; ++s) {
+            Vec3 sphere_force = Vec3::Zero();
+            const auto collect = [&](const auto& source) {
+                for (const auto side : source.incidence().of(s)) {
+                    const PairLoad& load = source.loads()[at(side.pair)];
+                    // A contact that has just opened pushes no more but may still have lost something.
+                    if constexpr (P::has_wear) worn += source.worn(side.pair);
+                    if (!load.active) continue;
+                    sphere_force += side.first ? load.force : Vec3(-load.force);
+                    torque += (side.first ? load.arm_first : load.arm_second) * load.twist;
                 }
+            };
+            collect(contacts_);
+            if constexpr (P::has_bonds) collect(network_);
+            torque += (particles_.centre[at(s)] - particles_.position[at(b)]).cross(sphere_force);
+            force += sphere_force;
+        }
+        if constexpr (P::has_wear)
+            if (worn > 0 && particles_.site[at(b)] >= 0) concrete_.wear(particles_.site[at(b)], worn);
+        interaction_[at(b)] = force;
+        particles_.torque[at(b)] = torque;
+        force += particles_.mass[at(b)] * scene_.gravity;
+        if constexpr (P::has_fluid) {
+            fluid_[at(b)] = {};
+            if (particles_.kind[at(b)] == Kind::stone || particles_.kind[at(b)] == Kind::grain) {
+                const Vec3& x = particles_.position[at(b)];
+                fluid_[at(b)] = fluid_load(policies_.drag, policies_.fluid.sample(x, loads_time_),
+                                           {x, predicted_velocity(b), particles_.volume[at(b)]}, scene_.gravity);
+                force += fluid_[at(b)].drag + fluid_[at(b)].buoyancy;
             }
-            particles_.force[at(b)] = force;
-        });
+        }
+        particles_.force[at(b)] = force;
     }
 
     /// For a body of one sphere that of the sphere; clumps keep theirs beside it.
@@ -257,61 +264,49 @@ private:
         return particles_.centre_velocity[s] - particles_.spin[s].cross(arm);
     }
 
-    void kick(Real dt) {
-        constexpr Real fastest2 = 1e8;  // (10 km/s)^2: no speed of this field; catches infinities, and NaN by the sense of the test
-        const auto sums = parallel_sum<KickSums>(particles_.bodies(), [&](Index b) {
-            KickSums work;
-            if (particles_.inverse_mass[at(b)] == 0) return work;
-            Vec3& v = particles_.velocity[at(b)];
-            const Vec3 before = v;
-            v += dt * particles_.inverse_mass[at(b)] * particles_.force[at(b)];
-            const Vec3 path = 0.5 * dt * (before + v);
-            const Vec3 spin_before = particles_.angular_velocity(b);
-            particles_.angular_momentum[at(b)] += dt * particles_.torque[at(b)];
-            const Vec3 turn = 0.5 * dt * (spin_before + particles_.angular_velocity(b));
-            work.interaction = interaction_[at(b)].dot(path) + particles_.torque[at(b)].dot(turn);
-            work.gravity = particles_.mass[at(b)] * scene_.gravity.dot(path);
-            if constexpr (P::has_fluid) {
-                work.drag = fluid_[at(b)].drag.dot(path);
-                work.drag_input = dt * fluid_[at(b)].drag.dot(fluid_[at(b)].fluid_velocity);
-                work.buoyancy = fluid_[at(b)].buoyancy.dot(path);
-            }
-            if (!(v.squaredNorm() + particles_.angular_momentum[at(b)].squaredNorm() < fastest2)) work.bad = b;
-            return work;
-        });
-        ledger_.interaction_work += sums.interaction;
-        ledger_.gravity_work += sums.gravity;
-        ledger_.drag_work += sums.drag;
-        ledger_.drag_input += sums.drag_input;
-        ledger_.buoyancy_work += sums.buoyancy;
-        if (sums.bad >= 0 && trouble_.cause == Trouble::Cause::none) trouble_ = {Trouble::Cause::not_finite, sums.bad, -1, 0};
+    KickSums kick_one(Index b, Real dt) noexcept {
+        const FluidLoad* fluid = nullptr;
+        if constexpr (P::has_fluid) fluid = &fluid_[at(b)];
+        return kick_body(particles_, b, interaction_[at(b)], fluid, scene_.gravity, dt);
     }
 
-    void drift(Real dt) {
-        const Real gauge = scene_.gauge.value_or(std::numeric_limits<Real>::infinity());
-        const auto sums = parallel_sum<DriftSums>(particles_.bodies(), [&](Index b) {
-            DriftSums sum;
-            if (particles_.inverse_mass[at(b)] == 0) return sum;
-            Vec3& x = particles_.position[at(b)];
-            const Vec3 before = x;
-            x += dt * particles_.velocity[at(b)];
-            if (!particles_.isotropic(b))
-                particles_.orientation[at(b)] = turn_freely(particles_.orientation[at(b)], particles_.angular_momentum[at(b)],
-                                                            particles_.inverse_inertia[at(b)], dt);
-            const Vec3 velocity = particles_.velocity[at(b)] + 0.5 * dt * particles_.inverse_mass[at(b)] * particles_.force[at(b)];
-            const Vec3 momentum = particles_.angular_momentum[at(b)] + 0.5 * dt * particles_.torque[at(b)];
-            particles_.place_spheres(b, velocity, particles_.angular_velocity(b, momentum));
-            const Index first = particles_.first_sphere[at(b)];
-            for (Index s = first; s < first + particles_.sphere_count[at(b)]; ++s)
-                sum.furthest2 = std::max(sum.furthest2, (particles_.centre[at(s)] - built_at_[at(s)]).squaredNorm());
-            if (particles_.kind[at(b)] == Kind::stone)
-                sum.gauge = particles_.volume[at(b)] * ((x.x() >= gauge) - (before.x() >= gauge));
-            if (!scene_.bounds.contains(x)) sum.lost = b;
-            return sum;
+    MoveSums drift_one(Index b, Real dt) noexcept {
+        MoveSums sums;
+        if (particles_.inverse_mass[at(b)] == 0) return sums;
+        const Real x_before = particles_.position[at(b)].x();
+        drift_body(particles_, b, dt);
+        const Index first = particles_.first_sphere[at(b)];
+        for (Index s = first; s < first + particles_.sphere_count[at(b)]; ++s)
+            sums.drift.furthest2 = std::max(sums.drift.furthest2, (particles_.centre[at(s)] - built_at_[at(s)]).squaredNorm());
+        const Vec3& x = particles_.position[at(b)];
+        if (scene_.gauge && particles_.kind[at(b)] == Kind::stone)
+            sums.drift.gauge = particles_.volume[at(b)] * ((x.x() >= *scene_.gauge) - (x_before >= *scene_.gauge));
+        if (!scene_.bounds.contains(x)) sums.drift.lost = b;
+        return sums;
+    }
+
+    void kick(Real dt) {
+        const bool gather = std::exchange(loads_waiting_, false);
+        move([&](Index b) {
+            if (gather) gather_one(b);
+            return MoveSums{kick_one(b, dt), {}};
         });
-        furthest2_ = std::max(furthest2_, sums.furthest2);
-        gauge_volume_ += sums.gauge;
-        if (sums.lost >= 0 && trouble_.cause == Trouble::Cause::none) trouble_ = {Trouble::Cause::lost, sums.lost, -1, 0};
+    }
+
+    /// One pass over the bodies, and what it adds to the ledger.
+    template <class Each>
+    void move(Each&& each) {
+        const auto sums = parallel_sum<MoveSums>(particles_.bodies(), each);
+        ledger_.interaction_work += sums.kick.interaction;
+        ledger_.gravity_work += sums.kick.gravity;
+        ledger_.drag_work += sums.kick.drag;
+        ledger_.drag_input += sums.kick.drag_input;
+        ledger_.buoyancy_work += sums.kick.buoyancy;
+        furthest2_ = std::max(furthest2_, sums.drift.furthest2);
+        gauge_volume_ += sums.drift.gauge;
+        if (trouble_.cause != Trouble::Cause::none) return;
+        if (sums.kick.bad >= 0) trouble_ = {Trouble::Cause::not_finite, sums.kick.bad, -1, 0};
+        else if (sums.drift.lost >= 0) trouble_ = {Trouble::Cause::lost, sums.drift.lost, -1, 0};
     }
 
     void report_overlap(const ContactSums& contacts) {
@@ -385,6 +380,8 @@ private:
     std::vector<Vec3> built_at_;     ///< [sphere] where the list of pairs was made [m]
     Real skin_ = 0, furthest2_ = 0, gauge_volume_ = 0;
     Index broken_tension_ = 0, broken_shear_ = 0;
+    Real loads_time_ = 0;
+    bool loads_waiting_ = false;  ///< between the force pass and the kick that gathers its loads
     bool pattern_changed_ = false;
     Trouble trouble_;
 };
