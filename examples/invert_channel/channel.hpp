@@ -13,7 +13,8 @@ namespace abrade::examples {
 inline Scene make_scene(const ChannelConfig& c) {
     Scene scene;
     scene.gravity = c.invert.gravity();
-    scene.concrete = ConcreteBlock{invert_lattice(c.invert, c.lattice), c.concrete_density, c.fracture_volume};
+    scene.concrete =
+        ConcreteBlock{invert_lattice(c.invert, c.lattice), c.concrete_density, c.fracture_volume};
     const Real half = 0.5 * c.invert.width;
     scene.add_wall({0, -half, 0}, {0, 1, 0}).add_wall({0, half, 0}, {0, -1, 0});
     scene.feed = c.feed;
@@ -104,7 +105,8 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     r.share_forces = shares.forces, r.share_motion = shares.motion, r.share_lists = shares.renewal;
     r.water_depth_m = water.depth(), r.water_speed_m_per_s = water.mean_velocity();
     r.froude = water.froude(), r.bed_shear_Pa = water.bed_shear();
-    r.fluid = UniformFlow::name, r.contact = LinearSpring::name, r.bond = MohrCoulomb::name, r.wear = SubParticleAbrasion::name;
+    r.fluid = UniformFlow::name, r.contact = LinearSpring::name, r.bond = MohrCoulomb::name,
+    r.wear = SubParticleAbrasion::name;
 
     const Lattice& lattice = concrete.lattice();
     r.depth_m = concrete.depth();
@@ -122,9 +124,12 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     for (Index b = 0; b < p.bodies(); ++b) {
         const auto i = static_cast<std::size_t>(b);
         if (p.kind[i] == Kind::stone) ++r.stones, speed += p.velocity[i].norm();
-        if (p.site[i] >= 0 && lattice.sites[static_cast<std::size_t>(p.site[i])].layer > 0 && p.kind[i] != Kind::grain) continue;
+        if (p.site[i] >= 0 && lattice.sites[static_cast<std::size_t>(p.site[i])].layer > 0 &&
+            p.kind[i] != Kind::grain)
+            continue;
         for (Index s = p.first_sphere[i]; s < p.first_sphere[i] + p.sphere_count[i]; ++s)
-            r.spheres.push_back({p.centre[static_cast<std::size_t>(s)], p.radius[static_cast<std::size_t>(s)], p.site[i] >= 0 ? concrete.fracture(p.site[i]) : -1});
+            r.spheres.push_back({p.centre[static_cast<std::size_t>(s)], p.radius[static_cast<std::size_t>(s)],
+                                 p.site[i] >= 0 ? concrete.fracture(p.site[i]) : -1});
     }
     r.mean_stone_speed_m_per_s = r.stones > 0 ? speed / r.stones : 0;
     r.ledger = std::move(history);

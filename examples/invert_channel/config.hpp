@@ -19,9 +19,9 @@ namespace abrade::examples {
 
 /// Where the result is compared, and with what.
 struct Comparison {
-    Real gauge = 0;              ///< x where passing sediment is counted [m]
-    Real from = 0, to = 0;       ///< section of the centre line [m]
-    Real half_width = 0;         ///< of the strip that counts as the centre [m]
+    Real gauge = 0;                  ///< x where passing sediment is counted [m]
+    Real from = 0, to = 0;           ///< section of the centre line [m]
+    Real half_width = 0;             ///< of the strip that counts as the centre [m]
     std::filesystem::path measured;  ///< CSV of the user's own points, or empty
 };
 
@@ -44,6 +44,7 @@ struct ChannelConfig {
 };
 
 /// Reads and checks a file; `overrides` are "section.key=value". Throws InputError.
-ChannelConfig read_channel_config(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+ChannelConfig read_channel_config(const std::filesystem::path& file,
+                                  const std::vector<std::string>& overrides);
 
 }  // namespace abrade::examples

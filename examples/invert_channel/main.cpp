@@ -44,17 +44,41 @@ std::string to_short(Real value) {
 
 void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::filesystem::path& path) {
     const nlohmann::ordered_json summary{
-        {"title", c.title}, {"configuration", c.source}, {"version", ABRADE_VERSION}, {"compiler", ABRADE_COMPILER}, {"seed", c.feed.seed},
-        {"stopped_early", r.stopped}, {"threads", r.threads}, {"wall_s", r.wall_s}, {"simulated_s", r.simulated_s}, {"represented_h", r.represented_h},
-        {"steps", r.steps}, {"time_step_s", r.time_step_s}, {"stable_time_step_s", r.stable_time_step_s},
-        {"stones", r.stones}, {"stones_fed", r.stones_fed}, {"concrete_spheres", r.concrete_spheres}, {"bonds_broken", r.bonds_broken},
-        {"sediment_fed_m3", r.sediment_fed_m3}, {"sediment_passed_m3", r.sediment_passed_m3}, {"converted_sediment_m3", r.converted_sediment_m3},
-        {"worn_volume_m3", r.worn_volume_m3}, {"worn_volume_from_energy_m3", r.worn_volume_from_energy_m3},
-        {"overflow_volume_m3", r.overflow_volume_m3}, {"detached_volume_m3", r.detached_volume_m3},
-        {"centre_depth_mm_per_m3", r.centre_depth_mm_per_m3}, {"max_depth_mm", r.max_depth_mm}, {"mean_depth_mm", r.mean_depth_mm}, {"worn_band_width_m", r.worn_band_width_m},
-        {"energy_lost_normal_J", r.energy_lost_normal_J}, {"energy_lost_sliding_J", r.energy_lost_sliding_J},
-        {"ledger_residual_relative", r.ledger_residual_relative}, {"integration_residue_J", r.integration_residue_J},
-        {"mean_stone_speed_m_per_s", r.mean_stone_speed_m_per_s}, {"water_depth_m", r.water_depth_m}, {"water_speed_m_per_s", r.water_speed_m_per_s},
+        {"title", c.title},
+        {"configuration", c.source},
+        {"version", ABRADE_VERSION},
+        {"compiler", ABRADE_COMPILER},
+        {"seed", c.feed.seed},
+        {"stopped_early", r.stopped},
+        {"threads", r.threads},
+        {"wall_s", r.wall_s},
+        {"simulated_s", r.simulated_s},
+        {"represented_h", r.represented_h},
+        {"steps", r.steps},
+        {"time_step_s", r.time_step_s},
+        {"stable_time_step_s", r.stable_time_step_s},
+        {"stones", r.stones},
+        {"stones_fed", r.stones_fed},
+        {"concrete_spheres", r.concrete_spheres},
+        {"bonds_broken", r.bonds_broken},
+        {"sediment_fed_m3", r.sediment_fed_m3},
+        {"sediment_passed_m3", r.sediment_passed_m3},
+        {"converted_sediment_m3", r.converted_sediment_m3},
+        {"worn_volume_m3", r.worn_volume_m3},
+        {"worn_volume_from_energy_m3", r.worn_volume_from_energy_m3},
+        {"overflow_volume_m3", r.overflow_volume_m3},
+        {"detached_volume_m3", r.detached_volume_m3},
+        {"centre_depth_mm_per_m3", r.centre_depth_mm_per_m3},
+        {"max_depth_mm", r.max_depth_mm},
+        {"mean_depth_mm", r.mean_depth_mm},
+        {"worn_band_width_m", r.worn_band_width_m},
+        {"energy_lost_normal_J", r.energy_lost_normal_J},
+        {"energy_lost_sliding_J", r.energy_lost_sliding_J},
+        {"ledger_residual_relative", r.ledger_residual_relative},
+        {"integration_residue_J", r.integration_residue_J},
+        {"mean_stone_speed_m_per_s", r.mean_stone_speed_m_per_s},
+        {"water_depth_m", r.water_depth_m},
+        {"water_speed_m_per_s", r.water_speed_m_per_s},
         {"wall_share", {{"forces", r.share_forces}, {"motion", r.share_motion}, {"lists", r.share_lists}}},
         {"policies", {{"fluid", r.fluid}, {"contact", r.contact}, {"bond", r.bond}, {"wear", r.wear}}}};
     std::ofstream file(path);
@@ -66,7 +90,8 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
 std::filesystem::path save_last_good(const Snapshot& shot, OutputFolder& folder) {
     const auto bodies = shot.body_fields(), sites = shot.site_fields();
     const std::vector<FieldGroup> groups{{"bodies", bodies}, {"concrete", sites}};
-    save_fields(folder.path("last_good.h5"), groups, {{"time_s", shot.time}, {"step", std::int64_t{shot.step}}});
+    save_fields(folder.path("last_good.h5"), groups,
+                {{"time_s", shot.time}, {"step", std::int64_t{shot.step}}});
     return folder.publish_beside("failed") / "last_good.h5";
 }
 
@@ -88,7 +113,13 @@ int run(const Options& options) {
             return interrupt.requested();
         };
         try {
-            sim.run({.end_time = config.end_time, .time_step = config.time_step, .safety = config.safety, .observe_every = config.output_every, .skin = config.skin, .stop = stop}, recorder);
+            sim.run({.end_time = config.end_time,
+                     .time_step = config.time_step,
+                     .safety = config.safety,
+                     .observe_every = config.output_every,
+                     .skin = config.skin,
+                     .stop = stop},
+                    recorder);
         } catch (const RunError& error) {
             progress.clear();
             std::cerr << "error: " << error.what() << "\n";
@@ -103,8 +134,11 @@ int run(const Options& options) {
     const std::filesystem::path place = folder.publish();
 
     std::cout << sim;
-    if (results.stopped) std::cout << "stopped early, at " << to_text(results.simulated_s) << " s of " << to_text(config.end_time) << " s\n";
-    std::cout << "worn " << to_short(1e6 * results.worn_volume_m3) << " cm3; at the centre " << to_short(results.centre_depth_mm_per_m3) << " mm per m3 of sediment\n"
+    if (results.stopped)
+        std::cout << "stopped early, at " << to_text(results.simulated_s) << " s of "
+                  << to_text(config.end_time) << " s\n";
+    std::cout << "worn " << to_short(1e6 * results.worn_volume_m3) << " cm3; at the centre "
+              << to_short(results.centre_depth_mm_per_m3) << " mm per m3 of sediment\n"
               << "results in " << place.string() << ", start with report.html\n";
     return 0;
 }
@@ -114,10 +148,14 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
     Options options;
     CLI::App app("Gravel and water wear a concrete channel.");
-    app.add_option("file", options.file, "TOML file; quick.toml and paper.toml come with the program")->capture_default_str();
-    app.add_option("--set", options.overrides, "section.key=value, overrides the file")->allow_extra_args(false)->take_all();
+    app.add_option("file", options.file, "TOML file; quick.toml and paper.toml come with the program")
+        ->capture_default_str();
+    app.add_option("--set", options.overrides, "section.key=value, overrides the file")
+        ->allow_extra_args(false)
+        ->take_all();
     app.add_option("--out", options.out, "folder of the results")->capture_default_str();
-    app.add_option("--threads", options.threads, "0: OMP_NUM_THREADS or all cores")->check(CLI::NonNegativeNumber);
+    app.add_option("--threads", options.threads, "0: OMP_NUM_THREADS or all cores")
+        ->check(CLI::NonNegativeNumber);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp& help) {
@@ -128,7 +166,8 @@ int main(int argc, char** argv) {
     }
     try {
         // A bare name is one of the files that come with the program.
-        if (const auto beside = std::filesystem::path(ABRADE_EXAMPLE_DIR) / options.file; !std::filesystem::exists(options.file) && std::filesystem::exists(beside))
+        if (const auto beside = std::filesystem::path(ABRADE_EXAMPLE_DIR) / options.file;
+            !std::filesystem::exists(options.file) && std::filesystem::exists(beside))
             options.file = beside;
         return run(options);
     } catch (const InputError& error) {

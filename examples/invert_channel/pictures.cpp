@@ -16,36 +16,57 @@ namespace fs = std::filesystem;
 constexpr auto stone_colour = "#7a8b99";
 
 /// Stones and the centre line's concrete from the side, the surface layer and the stones from above.
-void draw_snapshot(const ChannelConfig& c, const ChannelResults& r, const fs::path& side, const fs::path& plan) {
+void draw_snapshot(const ChannelConfig& c, const ChannelResults& r, const fs::path& side,
+                   const fs::path& plan) {
     const Axis x{.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length};
     const Axis fracture{.label = "fracture rate", .min = 0.0, .max = 1.0};
-    CircleSet bed_side{.title = "", .circles = {}}, stones_side{.title = "stones", .circles = {}, .colour = stone_colour, .outline = true};
+    CircleSet bed_side{.title = "", .circles = {}},
+        stones_side{.title = "stones", .circles = {}, .colour = stone_colour, .outline = true};
     CircleSet bed_plan = bed_side, stones_plan = stones_side;
     for (const DrawnSphere& s : r.spheres) {
         const bool stone = s.fracture < 0;
-        (stone ? stones_plan : bed_plan).circles.push_back({s.centre.x(), s.centre.y(), s.radius, s.fracture});
+        (stone ? stones_plan : bed_plan)
+            .circles.push_back({s.centre.x(), s.centre.y(), s.radius, s.fracture});
         // A side view of the middle; the flanks of the concave bed would hide it.
         if (stone || std::abs(s.centre.y()) < c.lattice.sphere_diameter)
-            (stone ? stones_side : bed_side).circles.push_back({s.centre.x(), s.centre.z(), s.radius, s.fracture});
+            (stone ? stones_side : bed_side)
+                .circles.push_back({s.centre.x(), s.centre.z(), s.radius, s.fracture});
     }
     // Long channels: the compared section only, or stones would be specks.
     Axis shown = x;
-    if (c.invert.length > 4) shown.min = c.comparison.from, shown.max = std::min(c.comparison.from + 4, c.invert.length);
-    const std::vector<Curve> surface{{.title = "water surface", .x = {*shown.min, *shown.max}, .y = {r.water_depth_m, r.water_depth_m}}};
+    if (c.invert.length > 4)
+        shown.min = c.comparison.from, shown.max = std::min(c.comparison.from + 4, c.invert.length);
+    const std::vector<Curve> surface{
+        {.title = "water surface", .x = {*shown.min, *shown.max}, .y = {r.water_depth_m, r.water_depth_m}}};
     const Real top = r.water_depth_m + 0.12;
-    draw(CirclePicture{.title = "Side view at the end", .x = shown, .y = {.label = "height", .unit = "m", .min = -0.02, .max = top}, .colour = fracture, .sets = {bed_side, stones_side}, .lines = surface}, side);
-    draw(CirclePicture{.title = "Plan view at the end", .x = shown, .y = {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width}, .colour = fracture, .sets = {bed_plan, stones_plan}}, plan);
+    draw(CirclePicture{.title = "Side view at the end",
+                       .x = shown,
+                       .y = {.label = "height", .unit = "m", .min = -0.02, .max = top},
+                       .colour = fracture,
+                       .sets = {bed_side, stones_side},
+                       .lines = surface},
+         side);
+    draw(
+        CirclePicture{
+            .title = "Plan view at the end",
+            .x = shown,
+            .y = {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width},
+            .colour = fracture,
+            .sets = {bed_plan, stones_plan}},
+        plan);
 }
 
 void draw_depth_map(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
-    ColourMap map{.title = "Abrasion depth",
-                  .x = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length},
-                  .y = {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width},
-                  .colour = {.label = "abrasion depth", .unit = "mm", .min = 0.0},
-                  .columns = static_cast<std::size_t>(r.along),
-                  .values = {}};
+    ColourMap map{
+        .title = "Abrasion depth",
+        .x = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length},
+        .y = {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width},
+        .colour = {.label = "abrasion depth", .unit = "mm", .min = 0.0},
+        .columns = static_cast<std::size_t>(r.along),
+        .values = {}};
     for (Index j = 0; j < r.across; ++j)
-        for (Index i = 0; i < r.along; ++i) map.values.push_back(1e3 * r.depth_m[static_cast<std::size_t>(i * r.across + j)]);
+        for (Index i = 0; i < r.along; ++i)
+            map.values.push_back(1e3 * r.depth_m[static_cast<std::size_t>(i * r.across + j)]);
     if (*std::max_element(map.values.begin(), map.values.end()) <= 0) map.colour.max = 1.0;
     map.equal_aspect = c.invert.length < 4;
     draw(map, picture);
@@ -65,56 +86,96 @@ void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs:
     const Real width = r.worn_band_width_m > 0 ? r.worn_band_width_m : 1;
     const Bracket bracket = Bracket{}.per_width(width);
     const Real from = c.comparison.from, to = c.comparison.to, mean = r.centre_depth_mm_per_m3;
-    LineChart chart{.title = "Abrasion depth at the centre line per volume of sediment passed",
-                    .x = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length},
-                    .y = {.label = "depth per converted sediment", .unit = "mm/m3", .min = 0.0},
-                    .curves = {},
-                    .bands = {{.title = "physical bracket for a worn band of " + short_number(width, 2) + " m", .x = {from, to}, .low = {bracket.low, bracket.low}, .high = {bracket.high, bracket.high}}}};
+    LineChart chart{
+        .title = "Abrasion depth at the centre line per volume of sediment passed",
+        .x = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length},
+        .y = {.label = "depth per converted sediment", .unit = "mm/m3", .min = 0.0},
+        .curves = {},
+        .bands = {{.title = "physical bracket for a worn band of " + short_number(width, 2) + " m",
+                   .x = {from, to},
+                   .low = {bracket.low, bracket.low},
+                   .high = {bracket.high, bracket.high}}}};
     chart.curves.push_back({.title = "simulation", .x = r.x_m, .y = smoothed(r.centre_depth_per_m3, 2)});
-    chart.curves.push_back({.title = "mean of the compared section", .x = {from, to}, .y = {mean, mean}, .style = CurveStyle::dashed});
+    chart.curves.push_back({.title = "mean of the compared section",
+                            .x = {from, to},
+                            .y = {mean, mean},
+                            .style = CurveStyle::dashed});
     if (!c.comparison.measured.empty()) {
-        Curve points{.title = "measured (" + c.comparison.measured.filename().string() + ")", .x = {}, .y = {}, .style = CurveStyle::points};
-        for (const MeasuredPoint& p : read_measured_points(c.comparison.measured)) points.x.push_back(p.x), points.y.push_back(p.depth);
+        Curve points{.title = "measured (" + c.comparison.measured.filename().string() + ")",
+                     .x = {},
+                     .y = {},
+                     .style = CurveStyle::points};
+        for (const MeasuredPoint& p : read_measured_points(c.comparison.measured))
+            points.x.push_back(p.x), points.y.push_back(p.depth);
         chart.curves.push_back(std::move(points));
     }
     draw(chart, picture);
 }
 
 void draw_ledger(const ChannelResults& r, const fs::path& picture) {
-    LineChart chart{.title = "Energy over time", .x = {.label = "time", .unit = "s", .min = 0.0}, .y = {.label = "energy", .unit = "J"}, .curves = {}};
+    LineChart chart{.title = "Energy over time",
+                    .x = {.label = "time", .unit = "s", .min = 0.0},
+                    .y = {.label = "energy", .unit = "J"},
+                    .curves = {}};
     static const std::vector<std::pair<std::string, std::string>> shown{
-        {"kinetic", "kinetic energy of the stones"}, {"drag_input", "put in by the flow"}, {"lost_drag", "lost in drag"},
-        {"lost_sliding", "lost in sliding"}, {"lost_normal", "lost in impacts"}, {"lost_bond", "lost in bonds"}, {"integration_residue", "integration residue"}};
+        {"kinetic", "kinetic energy of the stones"},
+        {"drag_input", "put in by the flow"},
+        {"lost_drag", "lost in drag"},
+        {"lost_sliding", "lost in sliding"},
+        {"lost_normal", "lost in impacts"},
+        {"lost_bond", "lost in bonds"},
+        {"integration_residue", "integration residue"}};
     for (const auto& [name, title] : shown) {
         const auto found = std::find(r.ledger.names.begin(), r.ledger.names.end(), name);
         if (found == r.ledger.names.end()) continue;
-        chart.curves.push_back({.title = title, .x = r.ledger.time, .y = r.ledger.values[static_cast<std::size_t>(found - r.ledger.names.begin())]});
+        chart.curves.push_back(
+            {.title = title,
+             .x = r.ledger.time,
+             .y = r.ledger.values[static_cast<std::size_t>(found - r.ledger.names.begin())]});
     }
     draw(chart, picture);
 }
 
 std::vector<ReportRow> summary_rows(const ChannelResults& r) {
-    const auto row = [](const char* name, Real value, const char* unit) { return ReportRow{name, short_number(value), unit}; };
-    return {row("simulated time", r.simulated_s, "s"), row("represented time (times beta)", r.represented_h, "h"), row("wall time", r.wall_s, "s"),
-            row("time step", 1e6 * r.time_step_s, "us"), row("stable time step", 1e6 * r.stable_time_step_s, "us"),
-            row("stones fed", r.stones_fed, ""), row("stones in the channel at the end", r.stones, ""), row("their mean speed", r.mean_stone_speed_m_per_s, "m/s"),
-            row("concrete spheres", r.concrete_spheres, ""), row("bonds broken", r.bonds_broken, ""),
-            row("sediment past the gauge", r.sediment_passed_m3, "m3"), row("converted sediment (times beta)", r.converted_sediment_m3, "m3"),
-            row("worn volume", 1e6 * r.worn_volume_m3, "cm3"), row("worn volume from the energy lost", 1e6 * r.worn_volume_from_energy_m3, "cm3"),
+    const auto row = [](const char* name, Real value, const char* unit) {
+        return ReportRow{name, short_number(value), unit};
+    };
+    return {row("simulated time", r.simulated_s, "s"),
+            row("represented time (times beta)", r.represented_h, "h"),
+            row("wall time", r.wall_s, "s"),
+            row("time step", 1e6 * r.time_step_s, "us"),
+            row("stable time step", 1e6 * r.stable_time_step_s, "us"),
+            row("stones fed", r.stones_fed, ""),
+            row("stones in the channel at the end", r.stones, ""),
+            row("their mean speed", r.mean_stone_speed_m_per_s, "m/s"),
+            row("concrete spheres", r.concrete_spheres, ""),
+            row("bonds broken", r.bonds_broken, ""),
+            row("sediment past the gauge", r.sediment_passed_m3, "m3"),
+            row("converted sediment (times beta)", r.converted_sediment_m3, "m3"),
+            row("worn volume", 1e6 * r.worn_volume_m3, "cm3"),
+            row("worn volume from the energy lost", 1e6 * r.worn_volume_from_energy_m3, "cm3"),
             row("overflow: hit spheres already fully fractured", 1e6 * r.overflow_volume_m3, "cm3"),
             row("sound concrete that went with loosened spheres", 1e6 * r.detached_volume_m3, "cm3"),
-            row("depth at the centre per converted sediment", r.centre_depth_mm_per_m3, "mm/m3"), row("greatest depth", r.max_depth_mm, "mm"), row("mean depth", r.mean_depth_mm, "mm"),
+            row("depth at the centre per converted sediment", r.centre_depth_mm_per_m3, "mm/m3"),
+            row("greatest depth", r.max_depth_mm, "mm"),
+            row("mean depth", r.mean_depth_mm, "mm"),
             row("width of the worn band (90 % of the volume)", r.worn_band_width_m, "m"),
-            row("energy lost in impacts on concrete", r.energy_lost_normal_J, "J"), row("energy lost in sliding on concrete", r.energy_lost_sliding_J, "J"),
-            row("ledger residual, relative", r.ledger_residual_relative, ""), row("integration residue", r.integration_residue_J, "J"),
-            row("water depth at the centre", r.water_depth_m, "m"), row("mean water speed", r.water_speed_m_per_s, "m/s"), row("Froude number", r.froude, ""), row("bed shear", r.bed_shear_Pa, "Pa")};
+            row("energy lost in impacts on concrete", r.energy_lost_normal_J, "J"),
+            row("energy lost in sliding on concrete", r.energy_lost_sliding_J, "J"),
+            row("ledger residual, relative", r.ledger_residual_relative, ""),
+            row("integration residue", r.integration_residue_J, "J"),
+            row("water depth at the centre", r.water_depth_m, "m"),
+            row("mean water speed", r.water_speed_m_per_s, "m/s"),
+            row("Froude number", r.froude, ""),
+            row("bed shear", r.bed_shear_Pa, "Pa")};
 }
 
 }  // namespace
 
 void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputFolder& folder) {
-    const fs::path side = folder.path("side_view.png"), plan = folder.path("plan_view.png"), depth = folder.path("abrasion_depth.png"),
-                   centre = folder.path("centre_line.png"), ledger = folder.path("ledger.png");
+    const fs::path side = folder.path("side_view.png"), plan = folder.path("plan_view.png"),
+                   depth = folder.path("abrasion_depth.png"), centre = folder.path("centre_line.png"),
+                   ledger = folder.path("ledger.png");
     draw_snapshot(c, r, side, plan);
     draw_depth_map(c, r, depth);
     draw_centre_line(c, r, centre);
@@ -123,25 +184,44 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
     const Bracket bracket;
     Report report;
     report.title = c.title;
-    report.explanation = "Gravel is fed into steady uniform water at the upstream end of a channel whose invert is made of bonded concrete spheres. "
-                         "Half of the energy that stones lose in contact with a sphere wears it (sub-particle abrasion), and what is worn holds less. "
-                         "The ledger follows every joule; worn volume is the energy lost times a constant, to round-off.";
-    if (r.stopped) report.explanation += " The run was stopped by the user before its end: figures are of the part that was computed.";
+    report.explanation =
+        "Gravel is fed into steady uniform water at the upstream end of a channel whose invert is made of "
+        "bonded concrete spheres. "
+        "Half of the energy that stones lose in contact with a sphere wears it (sub-particle abrasion), and "
+        "what is worn holds less. "
+        "The ledger follows every joule; worn volume is the energy lost times a constant, to round-off.";
+    if (r.stopped)
+        report.explanation +=
+            " The run was stopped by the user before its end: figures are of the part that was computed.";
     report.summary = summary_rows(r);
-    report.figures = {{side, "Stones, water surface and the middle of the invert at the end, seen from the side. Concrete is coloured by its fracture rate."},
-                      {plan, "The same from above: the surface layer of the concrete, with the stones on it."},
-                      {depth, "Abrasion depth in plan: fracture inside standing spheres, and spheres gone."},
-                      {centre, "Depth along the centre line per m3 of converted sediment (running mean of five columns), with the bracket that physics sets: " + short_number(bracket.low) +
-                                   " mm/m3 (impacts of saltating stones only) to " + short_number(bracket.high) + " mm/m3 (all stones sliding at mu = 0.3) on a strip 1 m wide, divided by the width that wears here." +
-                                   (c.comparison.measured.empty() ? " No measured points were given (compare.measured)." : "")},
-                      {ledger, "Energy over time. The integration residue is the integrator's error in energy, shown and not hidden in a loss."}};
+    report.figures = {
+        {side,
+         "Stones, water surface and the middle of the invert at the end, seen from the side. Concrete is "
+         "coloured by its fracture rate."},
+        {plan, "The same from above: the surface layer of the concrete, with the stones on it."},
+        {depth, "Abrasion depth in plan: fracture inside standing spheres, and spheres gone."},
+        {centre,
+         "Depth along the centre line per m3 of converted sediment (running mean of five columns), with the "
+         "bracket that physics sets: " +
+             short_number(bracket.low) + " mm/m3 (impacts of saltating stones only) to " +
+             short_number(bracket.high) +
+             " mm/m3 (all stones sliding at mu = 0.3) on a strip 1 m wide, divided by the width that wears "
+             "here." +
+             (c.comparison.measured.empty() ? " No measured points were given (compare.measured)." : "")},
+        {ledger,
+         "Energy over time. The integration residue is the integrator's error in energy, shown and not "
+         "hidden in a loss."}};
     report.parameters = c.parameters;
-    report.notes = {"The measured curve of the original experiment is not available in the text that this model was built from. The result is judged by the bracket, by the closed ledger and by the hydraulics.",
-                    "The water is prescribed: it drives the stones and does not feel them. Stones drag like spheres of the same volume.",
-                    "Parameters marked as assumptions are open in the source; they are choices, not data."};
+    report.notes = {
+        "The measured curve of the original experiment is not available in the text that this model was "
+        "built from. The result is judged by the bracket, by the closed ledger and by the hydraulics.",
+        "The water is prescribed: it drives the stones and does not feel them. Stones drag like spheres of "
+        "the same volume.",
+        "Parameters marked as assumptions are open in the source; they are choices, not data."};
     report.versions = build_versions();
     report.versions.push_back({"configuration", c.source, ""});
-    report.versions.push_back({"policies", r.contact + " x " + r.bond + " x " + r.wear + " x " + r.fluid, ""});
+    report.versions.push_back(
+        {"policies", r.contact + " x " + r.bond + " x " + r.wear + " x " + r.fluid, ""});
     report.versions.push_back({"threads", std::to_string(r.threads), ""});
     write_report(report, folder.path("report.html"));
 }

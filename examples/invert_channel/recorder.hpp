@@ -28,13 +28,16 @@ private:
     void record_ledger(const Ledger& ledger, Real time) {
         std::size_t column = 0;
         ledger.visit([&](std::string_view name, Real value) {
-            if (column == history_.names.size()) history_.names.emplace_back(name), history_.values.emplace_back();
+            if (column == history_.names.size())
+                history_.names.emplace_back(name), history_.values.emplace_back();
             history_.values[column++].push_back(value);
         });
         history_.time.push_back(time);
     }
 
-    static void append(std::vector<Real>& column, const Vec3& v) { column.insert(column.end(), v.data(), v.data() + 3); }
+    static void append(std::vector<Real>& column, const Vec3& v) {
+        column.insert(column.end(), v.data(), v.data() + 3);
+    }
 
     /// Member spheres of stones, so that a clump looks like what it is.
     void write_stones(const Particles& p, Real time) {
@@ -47,7 +50,8 @@ private:
             radius.push_back(p.radius[i]);
             id.push_back(p.id[b]);
         }
-        const std::vector<FieldView> fields{{"radius", "m", 1, radius}, {"stone", "-", 1, id}, {"velocity", "m/s", 3, velocity}};
+        const std::vector<FieldView> fields{
+            {"radius", "m", 1, radius}, {"stone", "-", 1, id}, {"velocity", "m/s", 3, velocity}};
         series_.write("stones", time, {"position", "m", 3, centre}, fields);
     }
 
@@ -62,7 +66,8 @@ private:
             fracture.push_back(concrete.fracture(p.site[i]));
             kind.push_back(p.kind[i] == Kind::grain ? 1 : 0);
         }
-        const std::vector<FieldView> fields{{"fracture_rate", "-", 1, fracture}, {"loose", "-", 1, kind}, {"velocity", "m/s", 3, velocity}};
+        const std::vector<FieldView> fields{
+            {"fracture_rate", "-", 1, fracture}, {"loose", "-", 1, kind}, {"velocity", "m/s", 3, velocity}};
         series_.write("concrete", time, {"position", "m", 3, centre}, fields);
     }
 

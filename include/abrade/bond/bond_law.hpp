@@ -9,12 +9,12 @@ enum class Fate : std::uint8_t { intact, tension, shear };
 
 /// Two bonded spheres at time t_n. Signs as in contacts: the normal points from j to i.
 struct BondKinematics {
-    Vec3 normal = Vec3::UnitZ();     ///< unit, from j to i
-    Real compression = 0;            ///< rest length - length [m]; negative in tension
-    Vec3 velocity = Vec3::Zero();    ///< of i relative to j, halfway between the spheres [m/s]
-    Real radius = 0;                 ///< of the bonded spheres (the smaller) [m]
-    Real effective_mass = 0;         ///< [kg]
-    Real time_step = 0;              ///< [s]
+    Vec3 normal = Vec3::UnitZ();   ///< unit, from j to i
+    Real compression = 0;          ///< rest length - length [m]; negative in tension
+    Vec3 velocity = Vec3::Zero();  ///< of i relative to j, halfway between the spheres [m/s]
+    Real radius = 0;               ///< of the bonded spheres (the smaller) [m]
+    Real effective_mass = 0;       ///< [kg]
+    Real time_step = 0;            ///< [s]
 };
 
 /// The answer. Losses are energies over the step centred on t_n, never negative.
@@ -37,8 +37,10 @@ struct BondResponse {
 /// - `Memory` value-initialises to "sound, unloaded"; `memory.broken` tells what became of it;
 /// - `strength(left_i, left_j)` joins what is left of the strength of the two spheres;
 /// - stiffnesses [N/m] and damping let the engine find the stable step of the network.
+// clang-format off
 template <class B>
-concept BondLaw = Law<B> && requires(const B& law, const BondKinematics& bond, const typename B::Memory& memory) {
+concept BondLaw = Law<B> &&
+    requires(const B& law, const BondKinematics& bond, const typename B::Memory& memory) {
     requires std::default_initializable<typename B::Memory>;
     { memory.broken } -> std::convertible_to<bool>;
     { law.respond(bond, Real{}, memory) } noexcept -> std::same_as<BondResponse<typename B::Memory>>;
@@ -47,6 +49,7 @@ concept BondLaw = Law<B> && requires(const B& law, const BondKinematics& bond, c
     { law.tangential_stiffness() } -> std::same_as<Real>;
     { law.damping_ratio() } -> std::same_as<Real>;
 };
+// clang-format on
 
 /// Nothing is bonded: no memory, no work, no code.
 struct NoBond {

@@ -19,22 +19,22 @@ class MohrCoulomb {
 public:
     static constexpr std::string_view name = "MohrCoulomb";
 
-    enum class Join { mean, minimum };  ///< how [3] joins the two strengths; the paper does not say
-    enum class Area { circle, square }; ///< [4] pi r^2, or the lattice's (2 r)^2
+    enum class Join { mean, minimum };   ///< how [3] joins the two strengths; the paper does not say
+    enum class Area { circle, square };  ///< [4] pi r^2, or the lattice's (2 r)^2
 
     struct Params {
-        Real tensile = 0;             ///< sigma_t0 [Pa]
-        Real friction_angle = 35;     ///< phi [degrees]; assumed, the paper does not give it
-        Real stiffness = 0;           ///< k_n [N/m]; E A / d is about 4e8 N/m for concrete, softer is cheaper
-        Real stiffness_ratio = 0.2;   ///< k_s / k_n [-]
-        Real damping = 0.1;           ///< share of critical damping of one bond [-]; assumed
+        Real tensile = 0;            ///< sigma_t0 [Pa]
+        Real friction_angle = 35;    ///< phi [degrees]; assumed, the paper does not give it
+        Real stiffness = 0;          ///< k_n [N/m]; E A / d is about 4e8 N/m for concrete, softer is cheaper
+        Real stiffness_ratio = 0.2;  ///< k_s / k_n [-]
+        Real damping = 0.1;          ///< share of critical damping of one bond [-]; assumed
         Join join = Join::mean;
         Area area = Area::circle;
 
         void validate() const {
             require_positive(tensile, "MohrCoulomb.tensile", "Pa");
-            require(friction_angle >= 0 && friction_angle < 90, {"MohrCoulomb.friction_angle", "in [0, 90)", "degrees"},
-                    friction_angle);
+            require(friction_angle >= 0 && friction_angle < 90,
+                    {"MohrCoulomb.friction_angle", "in [0, 90)", "degrees"}, friction_angle);
             require_positive(stiffness, "MohrCoulomb.stiffness", "N/m");
             require_positive(stiffness_ratio, "MohrCoulomb.stiffness_ratio");
             require(damping >= 0 && damping <= 1, {"MohrCoulomb.damping", "in [0, 1]"}, damping);
@@ -63,7 +63,8 @@ public:
     }
     const Params& params() const noexcept { return params_; }
 
-    BondResponse<Memory> respond(const BondKinematics& bond, Real strength_left, const Memory& memory) const noexcept {
+    BondResponse<Memory> respond(const BondKinematics& bond, Real strength_left,
+                                 const Memory& memory) const noexcept {
         const Real kn = stiffness(), ks = tangential_stiffness(), dt = bond.time_step;
         const Real approach = -bond.velocity.dot(bond.normal);
         const Vec3 slip = bond.velocity + approach * bond.normal;
@@ -88,7 +89,9 @@ public:
             return broken;
         }
         if (bond.compression > 0) return slide(bond, approach, slip, shear, cn, cs);
-        return {{Vec3::Zero(), 0, 0, 0, 0.5 * ks * memory.spring.squaredNorm()}, {Vec3::Zero(), true}, Fate::intact};
+        return {{Vec3::Zero(), 0, 0, 0, 0.5 * ks * memory.spring.squaredNorm()},
+                {Vec3::Zero(), true},
+                Fate::intact};
     }
 
     Real strength(Real left_i, Real left_j) const noexcept {
@@ -106,12 +109,13 @@ public:
 
 private:
     /// A broken bond: spring, dashpot and slider without tension.
-    BondResponse<Memory> slide(const BondKinematics& bond, Real approach, const Vec3& slip, const Vec3& shear, Real cn,
-                               Real cs) const noexcept {
+    BondResponse<Memory> slide(const BondKinematics& bond, Real approach, const Vec3& slip, const Vec3& shear,
+                               Real cn, Real cs) const noexcept {
         const Real dt = bond.time_step;
-        const auto normal = NormalSpring<Real>::at(std::max(bond.compression, 0.0), approach, stiffness(), cn, dt);
-        const auto tangential =
-            SlidingSpring<Real>::at(shear - dt * slip, shear, slip, tan_phi_ * normal.force, tangential_stiffness(), cs, dt);
+        const auto normal =
+            NormalSpring<Real>::at(std::max(bond.compression, 0.0), approach, stiffness(), cn, dt);
+        const auto tangential = SlidingSpring<Real>::at(
+            shear - dt * slip, shear, slip, tan_phi_ * normal.force, tangential_stiffness(), cs, dt);
         const Vec3 force = normal.force * bond.normal + tangential.force;
         return {{force, normal.stored + tangential.stored, 0, normal.lost, tangential.lost},
                 {tangential.spring + 0.5 * dt * slip, true},

@@ -8,9 +8,10 @@ namespace abrade {
 
 /// Sums over the bonds of one step.
 struct BondSums {
-    Real lost_bond = 0, lost_normal = 0, lost_tangential = 0;     ///< [J]
-    Real concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< both sides of a broken bond are concrete [J]
-    Index broken_tension = 0, broken_shear = 0;                   ///< bonds that broke in this step
+    Real lost_bond = 0, lost_normal = 0, lost_tangential = 0;  ///< [J]
+    Real concrete_lost_normal = 0,
+         concrete_lost_tangential = 0;           ///< both sides of a broken bond are concrete [J]
+    Index broken_tension = 0, broken_shear = 0;  ///< bonds that broke in this step
 
     BondSums& operator+=(const BondSums& other) noexcept {
         lost_bond += other.lost_bond;
@@ -36,7 +37,8 @@ public:
         rest_length_.clear();
         for (const Pair& pair : pairs_)
             rest_length_.push_back((particles.position[static_cast<std::size_t>(pair.first)] -
-                                    particles.position[static_cast<std::size_t>(pair.second)]).norm());
+                                    particles.position[static_cast<std::size_t>(pair.second)])
+                                       .norm());
         memory_.assign(pairs_.size(), {});
         loads_.assign(pairs_.size(), {});
         worn_.assign(pairs_.size(), 0);
@@ -46,7 +48,8 @@ public:
     /// Evaluates the law once for each bond and commits its memory. `strength_left(body)` is what is left of
     /// that body's strength, `wear` is asked for the losses of broken bonds.
     template <class Wear, class StrengthLeft>
-    BondSums respond(const Law& law, const Wear& wear, const Particles& particles, StrengthLeft&& strength_left, Real dt) {
+    BondSums respond(const Law& law, const Wear& wear, const Particles& particles,
+                     StrengthLeft&& strength_left, Real dt) {
         return parallel_sum<BondSums>(static_cast<Index>(pairs_.size()), [&](Index b) {
             return respond_one(law, wear, particles, strength_left, dt, static_cast<std::size_t>(b));
         });
@@ -57,7 +60,8 @@ public:
         std::vector<char> tied(static_cast<std::size_t>(particles.bodies()), 0);
         std::vector<Index> front;
         for (Index b = 0; b < particles.bodies(); ++b)
-            if (particles.kind[static_cast<std::size_t>(b)] == Kind::fixed) tied[static_cast<std::size_t>(b)] = 1, front.push_back(b);
+            if (particles.kind[static_cast<std::size_t>(b)] == Kind::fixed)
+                tied[static_cast<std::size_t>(b)] = 1, front.push_back(b);
         while (!front.empty()) {
             const Index b = front.back();
             front.pop_back();
@@ -79,15 +83,18 @@ public:
         std::size_t to = 0;
         Real gone = 0;
         for (std::size_t from = 0; from < pairs_.size(); ++from) {
-            const Pair pair{moved[static_cast<std::size_t>(pairs_[from].first)], moved[static_cast<std::size_t>(pairs_[from].second)]};
+            const Pair pair{moved[static_cast<std::size_t>(pairs_[from].first)],
+                            moved[static_cast<std::size_t>(pairs_[from].second)]};
             if (pair.first < 0 || pair.second < 0) {
                 gone += loads_[from].stored;
                 continue;
             }
             const auto loose = [&](Index sphere) {
-                return particles.kind[static_cast<std::size_t>(particles.body[static_cast<std::size_t>(sphere)])] == Kind::grain;
+                return particles.kind[static_cast<std::size_t>(
+                           particles.body[static_cast<std::size_t>(sphere)])] == Kind::grain;
             };
-            if (memory_[from].broken && !loads_[from].active && (loose(pair.first) || loose(pair.second))) continue;
+            if (memory_[from].broken && !loads_[from].active && (loose(pair.first) || loose(pair.second)))
+                continue;
             pairs_[to] = pair;
             rest_length_[to] = rest_length_[from];
             memory_[to] = memory_[from];
@@ -101,7 +108,9 @@ public:
     }
 
     /// Whether two spheres are looked after here and must not be contacts as well.
-    bool holds(const Pair& pair) const noexcept { return std::binary_search(pairs_.begin(), pairs_.end(), pair); }
+    bool holds(const Pair& pair) const noexcept {
+        return std::binary_search(pairs_.begin(), pairs_.end(), pair);
+    }
 
     Real stored() const noexcept {
         Real sum = 0;
@@ -113,34 +122,42 @@ public:
     const std::vector<PairLoad>& loads() const noexcept { return loads_; }
     bool broken(Index bond) const noexcept { return memory_[static_cast<std::size_t>(bond)].broken; }
     Real rest_length(Index bond) const noexcept { return rest_length_[static_cast<std::size_t>(bond)]; }
-    Real worn(Index bond) const noexcept { return worn_[static_cast<std::size_t>(bond)]; }  ///< off each side, this step [m3]
+    Real worn(Index bond) const noexcept {
+        return worn_[static_cast<std::size_t>(bond)];
+    }  ///< off each side, this step [m3]
     const Incidence& incidence() const noexcept { return incidence_; }
 
 private:
     template <class Wear, class StrengthLeft>
-    BondSums respond_one(const Law& law, const Wear& wear, const Particles& a, const StrengthLeft& strength_left, Real dt,
-                         std::size_t p) noexcept {
-        const auto i = static_cast<std::size_t>(pairs_[p].first), j = static_cast<std::size_t>(pairs_[p].second);
+    BondSums respond_one(const Law& law, const Wear& wear, const Particles& a,
+                         const StrengthLeft& strength_left, Real dt, std::size_t p) noexcept {
+        const auto i = static_cast<std::size_t>(pairs_[p].first),
+                   j = static_cast<std::size_t>(pairs_[p].second);
         const Vec3 apart = a.centre[i] - a.centre[j];
         const Real length = apart.norm();
         BondKinematics bond;
         bond.normal = apart / length;
         bond.compression = rest_length_[p] - length;
         const Real arm = 0.5 * length;
-        bond.velocity = a.centre_velocity[i] - a.centre_velocity[j] - (arm * (a.spin[i] + a.spin[j])).cross(bond.normal);
+        bond.velocity =
+            a.centre_velocity[i] - a.centre_velocity[j] - (arm * (a.spin[i] + a.spin[j])).cross(bond.normal);
         bond.radius = std::min(a.radius[i], a.radius[j]);
         bond.effective_mass = effective_mass_[p];
         bond.time_step = dt;
 
         const auto [answer, memory, fate] =
-            law.respond(bond, law.strength(strength_left(bodies_[p].first), strength_left(bodies_[p].second)), memory_[p]);
+            law.respond(bond, law.strength(strength_left(bodies_[p].first), strength_left(bodies_[p].second)),
+                        memory_[p]);
         memory_[p] = memory;
-        loads_[p] = {answer.force, answer.force.cross(bond.normal), arm, arm, answer.stored,
-                     !memory.broken || bond.compression > 0};
-        BondSums sums{answer.lost_bond, answer.lost_normal, answer.lost_tangential, 0, 0, fate == Fate::tension, fate == Fate::shear};
+        loads_[p] = {answer.force,  answer.force.cross(bond.normal),       arm, arm,
+                     answer.stored, !memory.broken || bond.compression > 0};
+        BondSums sums{answer.lost_bond,      answer.lost_normal, answer.lost_tangential, 0, 0,
+                      fate == Fate::tension, fate == Fate::shear};
         if (memory.broken) {
-            const ContactKinematics<Real> contact{bond.normal, bond.compression, bond.velocity, bond.effective_mass, 0.5 * bond.radius, dt};
-            const auto worn = wear.increment(contact, {answer.force, answer.stored, answer.lost_normal, answer.lost_tangential});
+            const ContactKinematics<Real> contact{bond.normal,         bond.compression,  bond.velocity,
+                                                  bond.effective_mass, 0.5 * bond.radius, dt};
+            const auto worn = wear.increment(
+                contact, {answer.force, answer.stored, answer.lost_normal, answer.lost_tangential});
             worn_[p] = worn.normal + worn.tangential;
             sums.concrete_lost_normal = 2 * answer.lost_normal;
             sums.concrete_lost_tangential = 2 * answer.lost_tangential;
@@ -152,12 +169,14 @@ private:
         bodies_.clear();
         effective_mass_.clear();
         for (const Pair& pair : pairs_) {
-            const Pair bodies{particles.body[static_cast<std::size_t>(pair.first)], particles.body[static_cast<std::size_t>(pair.second)]};
+            const Pair bodies{particles.body[static_cast<std::size_t>(pair.first)],
+                              particles.body[static_cast<std::size_t>(pair.second)]};
             bodies_.push_back(bodies);
             effective_mass_.push_back(1 / (particles.inverse_mass[static_cast<std::size_t>(bodies.first)] +
                                            particles.inverse_mass[static_cast<std::size_t>(bodies.second)]));
         }
-        incidence_.build(particles.spheres(), static_cast<Index>(pairs_.size()), [&](Index p) { return pairs_[static_cast<std::size_t>(p)]; });
+        incidence_.build(particles.spheres(), static_cast<Index>(pairs_.size()),
+                         [&](Index p) { return pairs_[static_cast<std::size_t>(p)]; });
     }
 
     std::vector<Pair> pairs_, bodies_;  ///< of spheres, and the bodies they belong to

@@ -27,10 +27,10 @@ concept ParamSet = std::copyable<P> && requires(const P& p) {
 /// Its constructor validates, so a law that exists is a law that can be used.
 template <class L>
 concept Law = std::copyable<L> && ParamSet<typename L::Params> &&
-              std::constructible_from<L, typename L::Params> && requires(const L& law) {
-                  { law.params() } -> std::same_as<const typename L::Params&>;
-                  { L::name } -> std::convertible_to<std::string_view>;
-              };
+    std::constructible_from<L, typename L::Params> && requires(const L& law) {
+    { law.params() } -> std::same_as<const typename L::Params&>;
+    { L::name } -> std::convertible_to<std::string_view>;
+};
 
 /// For laws without parameters.
 struct NoParams {

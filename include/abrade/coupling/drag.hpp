@@ -9,10 +9,12 @@
 namespace abrade {
 
 /// A drag law gives the drag coefficient of a body at particle Reynolds number Re = rho |u| d / mu.
+// clang-format off
 template <class D>
 concept DragLaw = Law<D> && requires(const D& law) {
     { law.coefficient(Real{}) } noexcept -> std::same_as<Real>;
 };
+// clang-format on
 
 /// Drag of a sphere for Re < 3e5:
 ///   C_d = 24/Re (1 + 0.15 Re^0.687) + 0.42 / (1 + 42500 Re^-1.16)
@@ -66,10 +68,12 @@ struct Immersed {
 };
 
 /// Drag 1/2 rho C_d A |u - v| (u - v) and buoyancy -rho g V of the submerged share, `surroundings`
-/// sampled at the centroid. Uniform flow pushes with its whole stress, -grad p + div tau = -rho g, so buoyancy
-/// opposes gravity, also along the slope. C_d is that of the whole sphere; area and volume are those submerged.
+/// sampled at the centroid. Uniform flow pushes with its whole stress, -grad p + div tau = -rho g, so
+/// buoyancy opposes gravity, also along the slope. C_d is that of the whole sphere; area and volume are those
+/// submerged.
 template <DragLaw Drag>
-FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Immersed& body, const Vec3& gravity) noexcept {
+FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Immersed& body,
+                     const Vec3& gravity) noexcept {
     const Real radius = std::cbrt(0.75 / pi * body.volume);
     const Real share = submerged_share(surroundings.depth, radius);
     if (share <= 0) return {};

@@ -41,18 +41,18 @@ struct ContactResponse {
 /// - `stable_dt(mass, radius)` is a time step [s] that is safe for a sphere of that mass and radius in the
 ///   densest surroundings;
 /// - `stiffness()` and `tangential_stiffness()` [N/m] let the engine sum up what acts on one body.
+// clang-format off
 template <class L>
-concept ContactLaw =
-    Law<L> && requires(const L& law, const ContactKinematics<Real>& contact, const typename L::template Memory<Real>& memory) {
-        requires std::default_initializable<typename L::template Memory<Real>>;
-        {
-            law.respond(contact, memory)
-        } noexcept -> std::same_as<ContactResponse<Real, typename L::template Memory<Real>>>;
-        { law.stable_dt(Real{}, Real{}) } -> std::same_as<Real>;
-        { law.stiffness() } -> std::same_as<Real>;
-        { law.tangential_stiffness() } -> std::same_as<Real>;
-        { law.damping_ratio() } -> std::same_as<Real>;
-    };
+concept ContactLaw = Law<L> && requires(const L& law, const ContactKinematics<Real>& contact,
+                                        const typename L::template Memory<Real>& memory) {
+    requires std::default_initializable<typename L::template Memory<Real>>;
+    { law.respond(contact, memory) } noexcept -> std::same_as<ContactResponse<Real, typename L::template Memory<Real>>>;
+    { law.stable_dt(Real{}, Real{}) } -> std::same_as<Real>;
+    { law.stiffness() } -> std::same_as<Real>;
+    { law.tangential_stiffness() } -> std::same_as<Real>;
+    { law.damping_ratio() } -> std::same_as<Real>;
+};
+// clang-format on
 
 // --- pieces that contact and bond laws share -------------------------------------------------------
 
@@ -86,7 +86,8 @@ struct NormalSpring {
 
     /// f = max(k overlap + c v, 0), v the speed of approach; what the clamp holds back of the spring's
     /// push while it relaxes is lost, like what the dashpot takes.
-    static NormalSpring at(Number overlap, Number approach, Number stiffness, Number dashpot, Real dt) noexcept {
+    static NormalSpring at(Number overlap, Number approach, Number stiffness, Number dashpot,
+                           Real dt) noexcept {
         const Number push = stiffness * overlap;
         const Number force = max(push + dashpot * approach, Number(0));
         return {force, Number(0.5) * push * overlap, max((force - push) * approach, Number(0)) * Number(dt)};
@@ -106,8 +107,9 @@ struct SlidingSpring {
     /// release by a falling limit alike to second order. The dashpot acts only as far as the limit leaves it
     /// room. Unlike the usual form, which stretches the spring backwards to make room for the dashpot, this
     /// never books a negative loss.
-    static SlidingSpring at(const Vec3Of<Number>& before, const Vec3Of<Number>& trial, const Vec3Of<Number>& slip, Number limit,
-                            Number stiffness, Number dashpot, Real dt) noexcept {
+    static SlidingSpring at(const Vec3Of<Number>& before, const Vec3Of<Number>& trial,
+                            const Vec3Of<Number>& slip, Number limit, Number stiffness, Number dashpot,
+                            Real dt) noexcept {
         const Number tiny = Number(1e-300);
         const Number length = sqrt(trial.dot(trial)), kept = min(length, limit / stiffness);
         const Vec3Of<Number> spring = (kept / max(length, tiny)) * trial;
@@ -116,9 +118,11 @@ struct SlidingSpring {
         const Number a = dashpot * dashpot * slip.dot(slip);
         const Number b = stiffness * dashpot * spring.dot(slip);
         const Number room = max(limit * limit - stiffness * stiffness * kept * kept, Number(0));
-        const Number share = select(a > tiny, min(Number(1), (sqrt(b * b + a * room) - b) / max(a, tiny)), Number(0));
+        const Number share =
+            select(a > tiny, min(Number(1), (sqrt(b * b + a * room) - b) / max(a, tiny)), Number(0));
         return {-stiffness * spring - share * dashpot * slip, spring, Number(0.5) * stiffness * kept * kept,
-                Number(0.5) * stiffness * (start + kept) * (length - kept) + share * dashpot * slip.dot(slip) * Number(dt)};
+                Number(0.5) * stiffness * (start + kept) * (length - kept) +
+                    share * dashpot * slip.dot(slip) * Number(dt)};
     }
 };
 

@@ -14,8 +14,8 @@ namespace abrade {
 /// What one pair does to its two spheres. With the contact point on the line of centres at `arm` from
 /// each, both spheres feel the torque arm (f x n) about their centres.
 struct PairLoad {
-    Vec3 force = Vec3::Zero();  ///< on the first; the second feels the opposite [N]
-    Vec3 twist = Vec3::Zero();  ///< f x n [N]
+    Vec3 force = Vec3::Zero();           ///< on the first; the second feels the opposite [N]
+    Vec3 twist = Vec3::Zero();           ///< f x n [N]
     Real arm_first = 0, arm_second = 0;  ///< [m]
     Real stored = 0;                     ///< [J]
     bool active = false;
@@ -66,8 +66,8 @@ private:
 struct ContactSums {
     Real lost_normal = 0, lost_tangential = 0;                    ///< [J]
     Real concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< [J]
-    Real deepest = 0;         ///< overlap over the smaller radius [-]
-    Index deepest_pair = -1;  ///< into the list of pairs
+    Real deepest = 0;                                             ///< overlap over the smaller radius [-]
+    Index deepest_pair = -1;                                      ///< into the list of pairs
 
     ContactSums& operator+=(const ContactSums& other) noexcept {
         lost_normal += other.lost_normal;
@@ -89,7 +89,8 @@ public:
     using Memory = typename Law::template Memory<Real>;
 
     /// Takes a new sorted list of pairs. Memory of pairs that touch is carried over; `moved` says where the
-    /// spheres of the old list are now (-1: gone). Returns the elastic energy of pairs that went with them [J].
+    /// spheres of the old list are now (-1: gone). Returns the elastic energy of pairs that went with them
+    /// [J].
     Real rebuild(std::vector<Pair> pairs, Index spheres, std::span<const Index> moved) {
         struct Kept {
             Pair pair;
@@ -101,10 +102,13 @@ public:
         for (std::size_t p = 0; p < pairs_.size(); ++p) {
             if (!loads_[p].active) continue;
             const Index first = moved[static_cast<std::size_t>(pairs_[p].first)];
-            const Index second = pairs_[p].second < 0 ? pairs_[p].second : moved[static_cast<std::size_t>(pairs_[p].second)];
+            const Index second =
+                pairs_[p].second < 0 ? pairs_[p].second : moved[static_cast<std::size_t>(pairs_[p].second)];
             const bool second_gone = pairs_[p].second >= 0 && second < 0;
-            if (first < 0 || second_gone) gone += loads_[p].stored;
-            else kept.push_back({{first, second}, memory_[p], loads_[p]});
+            if (first < 0 || second_gone)
+                gone += loads_[p].stored;
+            else
+                kept.push_back({{first, second}, memory_[p], loads_[p]});
         }
         std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.pair < b.pair; });
         pairs_ = std::move(pairs);
@@ -118,14 +122,16 @@ public:
                 loads_[p] = next->load;
                 ++next;
             }
-        incidence_.build(spheres, static_cast<Index>(pairs_.size()), [&](Index p) { return pairs_[static_cast<std::size_t>(p)]; });
+        incidence_.build(spheres, static_cast<Index>(pairs_.size()),
+                         [&](Index p) { return pairs_[static_cast<std::size_t>(p)]; });
         return gone;
     }
 
     /// Evaluates the law once for each pair and commits its memory. `wear` is asked for each pair with
     /// concrete in it.
     template <class Wear>
-    ContactSums respond(const Law& law, const Wear& wear, const Particles& particles, std::span<const Plane> planes, Real dt) {
+    ContactSums respond(const Law& law, const Wear& wear, const Particles& particles,
+                        std::span<const Plane> planes, Real dt) {
         return parallel_sum<ContactSums>(static_cast<Index>(pairs_.size()), [&](Index p) {
             return respond_one(law, wear, particles, planes, dt, static_cast<std::size_t>(p));
         });
@@ -140,20 +146,23 @@ public:
 
     const std::vector<Pair>& pairs() const noexcept { return pairs_; }
     const std::vector<PairLoad>& loads() const noexcept { return loads_; }
-    Real worn(Index pair) const noexcept { return worn_[static_cast<std::size_t>(pair)]; }  ///< off each side, this step [m3]
+    Real worn(Index pair) const noexcept {
+        return worn_[static_cast<std::size_t>(pair)];
+    }  ///< off each side, this step [m3]
     const Incidence& incidence() const noexcept { return incidence_; }
 
 private:
     template <class Wear>
-    ContactSums respond_one(const Law& law, const Wear& wear, const Particles& a, std::span<const Plane> planes, Real dt,
-                            std::size_t p) noexcept {
+    ContactSums respond_one(const Law& law, const Wear& wear, const Particles& a,
+                            std::span<const Plane> planes, Real dt, std::size_t p) noexcept {
         PairLoad& load = loads_[p];
         worn_[p] = 0;
         const auto i = static_cast<std::size_t>(pairs_[p].first);
         const auto body_i = static_cast<std::size_t>(a.body[i]);
         ContactKinematics<Real> contact{};
         contact.time_step = dt;
-        Real reach = a.radius[i], arm_second = 0, smaller = a.radius[i], inverse_mass = a.inverse_mass[body_i];
+        Real reach = a.radius[i], arm_second = 0, smaller = a.radius[i],
+             inverse_mass = a.inverse_mass[body_i];
         int concrete_sides = a.site[body_i] >= 0 ? 1 : 0;
 
         if (pairs_[p].second < 0) {
@@ -193,7 +202,8 @@ private:
         load.arm_second = arm_second;
         load.stored = answer.stored;
         load.active = contact.overlap > 0;
-        ContactSums sums{answer.lost_normal, answer.lost_tangential, 0, 0, contact.overlap / smaller, static_cast<Index>(p)};
+        ContactSums sums{answer.lost_normal,        answer.lost_tangential, 0, 0,
+                         contact.overlap / smaller, static_cast<Index>(p)};
         if (concrete_sides > 0) {
             const auto worn = wear.increment(contact, answer);
             worn_[p] = worn.normal + worn.tangential;

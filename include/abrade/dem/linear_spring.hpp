@@ -39,14 +39,16 @@ public:
     static constexpr std::string_view name = "LinearSpring";
 
     struct Params {
-        Real stiffness = 0;                   ///< k_n [N/m]
-        Real restitution = 1;                 ///< of a normal impact, in (0, 1] [-]
-        Real friction = 0;                    ///< mu [-]
-        Real tangential_ratio = 2.0 / 7;      ///< k_t / k_n [-]; 2/7 gives both directions the same period
+        Real stiffness = 0;               ///< k_n [N/m]
+        Real restitution = 1;             ///< of a normal impact, in (0, 1] [-]
+        Real friction = 0;                ///< mu [-]
+        Real tangential_ratio = 2.0 / 7;  ///< k_t / k_n [-]; 2/7 gives both directions the same period
 
         void validate() const {
-            require_positive(stiffness, "LinearSpring.stiffness", "N/m", "stones on concrete use 1e6 to 1e8 N/m");
-            require(restitution > 0 && restitution <= 1, {"LinearSpring.restitution", "in (0, 1]"}, restitution);
+            require_positive(stiffness, "LinearSpring.stiffness", "N/m",
+                             "stones on concrete use 1e6 to 1e8 N/m");
+            require(restitution > 0 && restitution <= 1, {"LinearSpring.restitution", "in (0, 1]"},
+                    restitution);
             require_not_negative(friction, "LinearSpring.friction");
             require_positive(tangential_ratio, "LinearSpring.tangential_ratio");
         }
@@ -98,9 +100,10 @@ public:
         const Vec3Of<Number> next = tangential.spring + Number(0.5) * dt * slip;
         // A contact that opened gives back nothing: what its tangential spring held is lost to sliding.
         const Number left_over = Number(0.5) * kt * memory.spring.dot(memory.spring);
-        return {{select(touching, force, none), select(touching, normal.stored + tangential.stored, Number(0)),
-                 select(touching, normal.lost, Number(0)), select(touching, tangential.lost, left_over)},
-                {select(touching, next, none)}};
+        return {
+            {select(touching, force, none), select(touching, normal.stored + tangential.stored, Number(0)),
+             select(touching, normal.lost, Number(0)), select(touching, tangential.lost, left_over)},
+            {select(touching, next, none)}};
     }
 
     Real stiffness() const noexcept { return params_.stiffness; }

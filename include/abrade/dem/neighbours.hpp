@@ -57,9 +57,12 @@ public:
         const Real most_cells = 4.0 * static_cast<Real>(members.size()) + 1e5;
         const Vec3 size = high - low;
         while ((size / cell_ + Vec3::Ones()).prod() > most_cells) cell_ *= 1.5;
-        for (int a = 0; a < 3; ++a) count_[static_cast<std::size_t>(a)] = static_cast<Index>(size[a] / cell_) + 1;
+        for (int a = 0; a < 3; ++a)
+            count_[static_cast<std::size_t>(a)] = static_cast<Index>(size[a] / cell_) + 1;
         start_.assign(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
-                              static_cast<std::size_t>(count_[2]) + 1, 0);
+                              static_cast<std::size_t>(count_[2]) +
+                          1,
+                      0);
         std::vector<std::size_t> cell_of(members.size());
         for (std::size_t k = 0; k < members.size(); ++k) {
             const Vec3 at = (q.centre[static_cast<std::size_t>(members[k])] - low_) / cell_;
@@ -77,14 +80,17 @@ public:
     template <class Visit>
     void around(const Vec3& x, Real radius, Real skin, Visit&& visit) const {
         const Real reach = radius + largest_radius_ + skin;
-        const Vec3 from = ((x.array() - reach).matrix() - low_) / cell_, to = ((x.array() + reach).matrix() - low_) / cell_;
+        const Vec3 from = ((x.array() - reach).matrix() - low_) / cell_,
+                   to = ((x.array() + reach).matrix() - low_) / cell_;
         for (int a = 0; a < 3; ++a)
             if (to[a] < 0 || from[a] >= static_cast<Real>(count_[static_cast<std::size_t>(a)])) return;
         for (Index i = clamp(from.x(), 0); i <= clamp(to.x(), 0); ++i)
             for (Index j = clamp(from.y(), 1); j <= clamp(to.y(), 1); ++j) {
                 // Cells of one row along z are contiguous.
-                const Index first = start_[index(i, j, clamp(from.z(), 2))], last = start_[index(i, j, clamp(to.z(), 2)) + 1];
-                for (Index m = first; m < last; ++m) visit(static_cast<std::size_t>(members_[static_cast<std::size_t>(m)]));
+                const Index first = start_[index(i, j, clamp(from.z(), 2))],
+                            last = start_[index(i, j, clamp(to.z(), 2)) + 1];
+                for (Index m = first; m < last; ++m)
+                    visit(static_cast<std::size_t>(members_[static_cast<std::size_t>(m)]));
             }
     }
 
@@ -93,8 +99,10 @@ private:
         return static_cast<Index>(std::clamp(std::floor(at), 0.0, static_cast<Real>(count_[axis] - 1)));
     }
     std::size_t index(Index i, Index j, Index k) const noexcept {
-        return (static_cast<std::size_t>(i) * static_cast<std::size_t>(count_[1]) + static_cast<std::size_t>(j)) *
-                   static_cast<std::size_t>(count_[2]) + static_cast<std::size_t>(k);
+        return (static_cast<std::size_t>(i) * static_cast<std::size_t>(count_[1]) +
+                static_cast<std::size_t>(j)) *
+                   static_cast<std::size_t>(count_[2]) +
+               static_cast<std::size_t>(k);
     }
 
     Vec3 low_ = Vec3::Zero();
@@ -110,7 +118,8 @@ inline std::vector<Pair> near_pairs_brute_force(const NeighbourQuery& q) {
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < q.centre.size(); ++i)
         for (std::size_t j = i + 1; j < q.centre.size(); ++j)
-            if (detail::is_candidate(q, i, j) && detail::is_near(q, i, j)) pairs.push_back(detail::ordered(i, j));
+            if (detail::is_candidate(q, i, j) && detail::is_near(q, i, j))
+                pairs.push_back(detail::ordered(i, j));
     return pairs;
 }
 
@@ -133,7 +142,8 @@ inline std::vector<Pair> near_pairs(const NeighbourQuery& q) {
     std::vector<detail::CellGrid> grids;
     std::vector<std::size_t> grid_level;
     for (std::size_t level = 0; level < members.size(); ++level)
-        if (!members[level].empty()) grids.emplace_back(q, members[level], largest[level]), grid_level.push_back(level);
+        if (!members[level].empty())
+            grids.emplace_back(q, members[level], largest[level]), grid_level.push_back(level);
 
     for (std::size_t i = 0; i < q.centre.size(); ++i) {
         if (q.passive[i]) continue;
@@ -142,7 +152,8 @@ inline std::vector<Pair> near_pairs(const NeighbourQuery& q) {
             grids[g].around(q.centre[i], q.radius[i], q.skin, [&](std::size_t j) {
                 // Two searchers find each other twice: the larger level, then the larger index, reports.
                 const bool mine = q.passive[j] || grid_level[g] < own || (grid_level[g] == own && j < i);
-                if (mine && detail::is_candidate(q, i, j) && detail::is_near(q, i, j)) pairs.push_back(detail::ordered(i, j));
+                if (mine && detail::is_candidate(q, i, j) && detail::is_near(q, i, j))
+                    pairs.push_back(detail::ordered(i, j));
             });
     }
     std::sort(pairs.begin(), pairs.end());

@@ -12,10 +12,10 @@ enum class Kind : std::uint8_t { stone, concrete, grain, fixed };
 
 /// How a body enters the simulation.
 struct BodyState {
-    Vec3 position = Vec3::Zero();                        ///< of the centroid [m]
-    Vec3 velocity = Vec3::Zero();                        ///< [m/s]
-    Quaternion orientation = Quaternion::Identity();     ///< principal frame to world
-    Vec3 angular_velocity = Vec3::Zero();                ///< world frame [rad/s]
+    Vec3 position = Vec3::Zero();                     ///< of the centroid [m]
+    Vec3 velocity = Vec3::Zero();                     ///< [m/s]
+    Quaternion orientation = Quaternion::Identity();  ///< principal frame to world
+    Vec3 angular_velocity = Vec3::Zero();             ///< world frame [rad/s]
 };
 
 /// Columns over bodies and over their member spheres. Member spheres of a body stand next to each other.
@@ -38,11 +38,11 @@ struct Particles {
 
     // [sphere]
     std::vector<Index> body;
-    std::vector<Vec3> offset;       ///< from the body's centroid, principal frame [m]
-    std::vector<Real> radius;       ///< [m]
-    std::vector<Vec3> centre;       ///< world frame [m]
+    std::vector<Vec3> offset;           ///< from the body's centroid, principal frame [m]
+    std::vector<Real> radius;           ///< [m]
+    std::vector<Vec3> centre;           ///< world frame [m]
     std::vector<Vec3> centre_velocity;  ///< as predicted for the force pass [m/s]
-    std::vector<Vec3> spin;         ///< the body's angular velocity, as predicted [rad/s]
+    std::vector<Vec3> spin;             ///< the body's angular velocity, as predicted [rad/s]
 
     Index next_id = 0;
 
@@ -61,7 +61,9 @@ struct Particles {
         const Vec3 in_body = orientation[i].conjugate() * momentum;
         return orientation[i] * Vec3(inverse_inertia[i].cwiseProduct(in_body));
     }
-    Vec3 angular_velocity(Index b) const noexcept { return angular_velocity(b, angular_momentum[static_cast<std::size_t>(b)]); }
+    Vec3 angular_velocity(Index b) const noexcept {
+        return angular_velocity(b, angular_momentum[static_cast<std::size_t>(b)]);
+    }
 
     /// Translation and rotation [J].
     Real kinetic_energy(Index b) const noexcept {
@@ -74,8 +76,9 @@ struct Particles {
     /// finite, throws InputError.
     Index add(const Clump& clump, Real density, const BodyState& state, Kind body_kind) {
         require_positive(density, "density", "kg/m3");
-        require(state.position.allFinite() && state.velocity.allFinite() && state.angular_velocity.allFinite(),
-                {"BodyState", "finite", "", "look for a NaN in position or velocity"}, state.position.sum());
+        require(
+            state.position.allFinite() && state.velocity.allFinite() && state.angular_velocity.allFinite(),
+            {"BodyState", "finite", "", "look for a NaN in position or velocity"}, state.position.sum());
         const Index b = bodies();
         const Real m = density * clump.volume;
         const bool held = body_kind == Kind::fixed;
@@ -84,7 +87,8 @@ struct Particles {
         velocity.push_back(held ? Vec3(Vec3::Zero()) : state.velocity);
         orientation.push_back(state.orientation.normalized());
         const Vec3 spin_in_body = orientation.back().conjugate() * state.angular_velocity;
-        angular_momentum.push_back(held ? Vec3(Vec3::Zero()) : Vec3(orientation.back() * Vec3(inertia.cwiseProduct(spin_in_body))));
+        angular_momentum.push_back(
+            held ? Vec3(Vec3::Zero()) : Vec3(orientation.back() * Vec3(inertia.cwiseProduct(spin_in_body))));
         force.push_back(Vec3::Zero());
         torque.push_back(Vec3::Zero());
         mass.push_back(m);
@@ -137,7 +141,8 @@ struct Particles {
             const auto first = static_cast<std::size_t>(first_sphere[from]);
             for_each_body_column([&](auto& column) { column[to] = column[from]; });
             first_sphere[to] = static_cast<Index>(sphere_to);
-            for (std::size_t s = first; s < first + static_cast<std::size_t>(sphere_count[to]); ++s, ++sphere_to) {
+            for (std::size_t s = first; s < first + static_cast<std::size_t>(sphere_count[to]);
+                 ++s, ++sphere_to) {
                 for_each_sphere_column([&](auto& column) { column[sphere_to] = column[s]; });
                 body[sphere_to] = static_cast<Index>(to);
                 moved[s] = static_cast<Index>(sphere_to);
@@ -151,7 +156,8 @@ struct Particles {
 
 private:
     void for_each_body_column(auto&& f) {
-        f(position), f(velocity), f(orientation), f(angular_momentum), f(force), f(torque), f(mass), f(inverse_mass);
+        f(position), f(velocity), f(orientation), f(angular_momentum), f(force), f(torque), f(mass),
+            f(inverse_mass);
         f(inverse_inertia), f(volume), f(kind), f(id), f(site), f(first_sphere), f(sphere_count);
     }
     void for_each_sphere_column(auto&& f) {

@@ -12,8 +12,8 @@ namespace abrade {
 /// 1/2 Pi . I^-1 Pi is conserved to round-off, at any dt. So rotation adds nothing to the energy ledger.
 /// M. A. Austin, P. S. Krishnaprasad, L.-S. Wang, J. Comput. Phys. 107 (1993) 105,
 /// doi:10.1006/jcph.1993.1128. Second order; converges while |omega| dt < 1.
-inline Quaternion turn_freely(const Quaternion& orientation, const Vec3& angular_momentum, const Vec3& inverse_inertia,
-                              Real dt) noexcept {
+inline Quaternion turn_freely(const Quaternion& orientation, const Vec3& angular_momentum,
+                              const Vec3& inverse_inertia, Real dt) noexcept {
     const Vec3 start = orientation.conjugate() * angular_momentum;
     Vec3 end = start;
     Vec3 spin = inverse_inertia.cwiseProduct(start);

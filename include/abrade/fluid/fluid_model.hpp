@@ -15,10 +15,12 @@ struct FluidSample {
 
 /// A fluid that can be sampled: `sample(x, t)`, const, noexcept, callable from many threads.
 /// One-way fluids stop here. Fluids that feel the solids will refine this concept: solids in, loads out.
+// clang-format off
 template <class F>
 concept FluidModel = Law<F> && requires(const F& fluid, const Vec3& x) {
     { fluid.sample(x, Real{}) } noexcept -> std::same_as<FluidSample>;
 };
+// clang-format on
 
 /// A vacuum.
 struct NoFluid {

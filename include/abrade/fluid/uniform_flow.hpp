@@ -15,7 +15,8 @@ inline Real normal_depth(const Invert& section, Real discharge, Real manning) {
     require_positive(section.slope, "Invert.slope", "m/m", "uniform flow needs a slope");
     const auto carried = [&](Real depth) {
         const Real area = section.flow_area(depth);
-        return area * std::pow(area / section.wetted_perimeter(depth), 2.0 / 3) * std::sqrt(section.slope) / manning;
+        return area * std::pow(area / section.wetted_perimeter(depth), 2.0 / 3) * std::sqrt(section.slope) /
+               manning;
     };
     Real low = 0, high = 0.01;
     while (carried(high) < discharge) high *= 2;
@@ -36,10 +37,10 @@ public:
 
     struct Params {
         Invert section;
-        Real discharge = 0;         ///< Q [m3/s]
-        Real manning = 0.015;       ///< n [s/m^(1/3)]; assumed, for worn concrete
-        Real density = 1000;        ///< [kg/m3]
-        Real viscosity = 1.31e-3;   ///< dynamic [Pa s]
+        Real discharge = 0;        ///< Q [m3/s]
+        Real manning = 0.015;      ///< n [s/m^(1/3)]; assumed, for worn concrete
+        Real density = 1000;       ///< [kg/m3]
+        Real viscosity = 1.31e-3;  ///< dynamic [Pa s]
 
         void validate() const {
             section.validate();
@@ -66,11 +67,16 @@ public:
 
     FluidSample sample(const Vec3& x, Real /*t*/) const noexcept {
         const Real height = std::max(0.0, x.z() - params_.section.bed_height(x.y()));
-        return {{scale_ * std::log1p(height / roughness_length_), 0, 0}, depth_ - x.z(), params_.density, params_.viscosity};
+        return {{scale_ * std::log1p(height / roughness_length_), 0, 0},
+                depth_ - x.z(),
+                params_.density,
+                params_.viscosity};
     }
 
     Real depth() const noexcept { return depth_; }  ///< at the centre line [m]
-    Real mean_velocity() const noexcept { return params_.discharge / params_.section.flow_area(depth_); }  ///< [m/s]
+    Real mean_velocity() const noexcept {
+        return params_.discharge / params_.section.flow_area(depth_);
+    }                                         ///< [m/s]
     Real hydraulic_radius() const noexcept {  ///< [m]
         return params_.section.flow_area(depth_) / params_.section.wetted_perimeter(depth_);
     }
@@ -79,13 +85,15 @@ public:
     }
     Real froude() const noexcept {  ///< with the hydraulic depth A / surface width [-]
         const Invert& s = params_.section;
-        const Real half = depth_ > s.bed_height(0.5 * s.width) ? 0.5 * s.width
-                                                               : std::sqrt(square(s.arc_radius) - square(s.arc_radius - depth_));
+        const Real half = depth_ > s.bed_height(0.5 * s.width)
+                              ? 0.5 * s.width
+                              : std::sqrt(square(s.arc_radius) - square(s.arc_radius - depth_));
         return mean_velocity() / std::sqrt(standard_gravity * s.flow_area(depth_) / (2 * half));
     }
 
 private:
-    /// Integral over the flow area of ln(1 + height / z_0): in closed form along each vertical, midpoints across.
+    /// Integral over the flow area of ln(1 + height / z_0): in closed form along each vertical, midpoints
+    /// across.
     Real integral_of_unit_profile() const {
         constexpr int strips = 2000;
         const Real dy = params_.section.width / strips, z0 = roughness_length_;

@@ -50,9 +50,7 @@ struct Invert {
     }
 
     /// Gravity in channel coordinates [m/s2].
-    Vec3 gravity() const noexcept {
-        return standard_gravity * Vec3(slope, 0, -std::sqrt(1 - square(slope)));
-    }
+    Vec3 gravity() const noexcept { return standard_gravity * Vec3(slope, 0, -std::sqrt(1 - square(slope))); }
 };
 
 }  // namespace abrade

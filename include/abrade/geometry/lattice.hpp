@@ -10,8 +10,8 @@ namespace abrade {
 
 /// One sphere of a lattice and the piece of concrete that it stands for.
 struct LatticeSite {
-    Vec3 centre = Vec3::Zero();  ///< [m]
-    Real cell_volume = 0;        ///< [m3]; the cells fill the body without gaps
+    Vec3 centre = Vec3::Zero();              ///< [m]
+    Real cell_volume = 0;                    ///< [m3]; the cells fill the body without gaps
     Index along = 0, across = 0, layer = 0;  ///< layer 0 is the surface
 };
 
@@ -68,14 +68,20 @@ inline Index spheres_that_fit(Real length, Real diameter) {
 inline Lattice flat_lattice(Real length, Real width, const LatticeSize& size) {
     detail::validate(size, std::min(length, width), "flat_lattice.side");
     const Real d = size.sphere_diameter;
-    Lattice lattice{0.5 * d, detail::spheres_that_fit(length, d), detail::spheres_that_fit(width, d), size.layers, {}, {}};
+    Lattice lattice{
+        0.5 * d, detail::spheres_that_fit(length, d), detail::spheres_that_fit(width, d), size.layers, {},
+        {}};
     const Real dx = length / lattice.count_along, dy = width / lattice.count_across;
     for (Index i = 0; i < lattice.count_along; ++i)
         for (Index j = 0; j < lattice.count_across; ++j) {
             lattice.column_area.push_back(dx * dy);
             for (Index k = 0; k < size.layers; ++k)
                 lattice.sites.push_back(
-                    {{(i + 0.5) * dx - 0.5 * length, (j + 0.5) * dy - 0.5 * width, -(k + 0.5) * d}, dx * dy * d, i, j, k});
+                    {{(i + 0.5) * dx - 0.5 * length, (j + 0.5) * dy - 0.5 * width, -(k + 0.5) * d},
+                     dx * dy * d,
+                     i,
+                     j,
+                     k});
         }
     return lattice;
 }
@@ -86,8 +92,12 @@ inline Lattice invert_lattice(const Invert& invert, const LatticeSize& size) {
     invert.validate();
     detail::validate(size, std::min(invert.length, invert.width), "Invert.width or length");
     const Real d = size.sphere_diameter, radius = invert.arc_radius, span = 2 * invert.half_angle();
-    Lattice lattice{0.5 * d, detail::spheres_that_fit(invert.length, d),
-                    detail::spheres_that_fit(span * (radius + 0.5 * d), d), size.layers, {}, {}};
+    Lattice lattice{0.5 * d,
+                    detail::spheres_that_fit(invert.length, d),
+                    detail::spheres_that_fit(span * (radius + 0.5 * d), d),
+                    size.layers,
+                    {},
+                    {}};
     const Real dx = invert.length / lattice.count_along, dtheta = span / lattice.count_across;
     for (Index i = 0; i < lattice.count_along; ++i)
         for (Index j = 0; j < lattice.count_across; ++j) {
@@ -95,8 +105,11 @@ inline Lattice invert_lattice(const Invert& invert, const LatticeSize& size) {
             lattice.column_area.push_back(dx * dtheta * radius);
             for (Index k = 0; k < size.layers; ++k) {
                 const Real r = radius + (k + 0.5) * d;
-                lattice.sites.push_back(
-                    {{(i + 0.5) * dx, r * std::sin(theta), radius - r * std::cos(theta)}, dx * dtheta * r * d, i, j, k});
+                lattice.sites.push_back({{(i + 0.5) * dx, r * std::sin(theta), radius - r * std::cos(theta)},
+                                         dx * dtheta * r * d,
+                                         i,
+                                         j,
+                                         k});
             }
         }
     return lattice;

@@ -94,17 +94,20 @@ inline RawMoments ray_moments(std::span<const Sphere> spheres, int rays_across) 
             intervals.clear();
             for (const Sphere& s : spheres) {
                 const Real h2 = square(s.radius) - square(x - s.centre.x()) - square(y - s.centre.y());
-                if (h2 > 0) intervals.emplace_back(s.centre.z() - std::sqrt(h2), s.centre.z() + std::sqrt(h2));
+                if (h2 > 0)
+                    intervals.emplace_back(s.centre.z() - std::sqrt(h2), s.centre.z() + std::sqrt(h2));
             }
             std::sort(intervals.begin(), intervals.end());
             for (std::size_t k = 0; k < intervals.size();) {
                 Real from = intervals[k].first, to = intervals[k].second;
-                for (++k; k < intervals.size() && intervals[k].first <= to; ++k) to = std::max(to, intervals[k].second);
+                for (++k; k < intervals.size() && intervals[k].first <= to; ++k)
+                    to = std::max(to, intervals[k].second);
                 const Real m0 = (to - from) * dx * dy, m1 = 0.5 * (to * to - from * from) * dx * dy;
                 sum.volume += m0;
                 sum.first += Vec3(x * m0, y * m0, m1);
                 const Real zz = (cube(to) - cube(from)) / 3 * dx * dy;
-                sum.second += Mat3{{x * x * m0, x * y * m0, x * m1}, {x * y * m0, y * y * m0, y * m1}, {x * m1, y * m1, zz}};
+                sum.second += Mat3{
+                    {x * x * m0, x * y * m0, x * m1}, {x * y * m0, y * y * m0, y * m1}, {x * m1, y * m1, zz}};
             }
         }
     }
@@ -121,7 +124,8 @@ inline SolidMoments union_moments(std::span<const Sphere> spheres, int rays_acro
     require(!spheres.empty(), {"union_moments.spheres", "at least 1 sphere"}, 0);
     for (const Sphere& s : spheres) require_positive(s.radius, "Sphere.radius", "m");
     const bool exact = spheres.size() <= 2;
-    return (exact ? detail::exact_moments(spheres) : detail::ray_moments(spheres, rays_across)).about_centroid();
+    return (exact ? detail::exact_moments(spheres) : detail::ray_moments(spheres, rays_across))
+        .about_centroid();
 }
 
 /// A rigid body made of spheres, described in its principal frame: origin at the centroid, axes along

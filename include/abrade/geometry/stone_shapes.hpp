@@ -26,14 +26,16 @@ inline Clump make_stone(StoneShape shape, Real size) {
             members = {{Vec3::Zero(), 1.0}};
             break;
         case StoneShape::ellipsoid:
-            members = {{{0, 0, 0}, 0.75},    {{0.55, 0, 0}, 0.68},   {{-0.55, 0, 0}, 0.68}, {{0.95, 0, 0}, 0.45},
-                       {{-0.95, 0, 0}, 0.45}, {{0, 0.38, 0}, 0.62}, {{0, -0.38, 0}, 0.62}};
+            members = {{{0, 0, 0}, 0.75},    {{0.55, 0, 0}, 0.68},  {{-0.55, 0, 0}, 0.68},
+                       {{0.95, 0, 0}, 0.45}, {{-0.95, 0, 0}, 0.45}, {{0, 0.38, 0}, 0.62},
+                       {{0, -0.38, 0}, 0.62}};
             break;
         case StoneShape::angular:
             members = {{{0, 0, 0}, 0.80}};
             for (const Real x : {-1.0, 1.0})
                 for (const Real y : {-1.0, 1.0})
-                    for (const Real z : {-1.0, 1.0}) members.push_back({{0.60 * x, 0.48 * y, 0.36 * z}, 0.42});
+                    for (const Real z : {-1.0, 1.0})
+                        members.push_back({{0.60 * x, 0.48 * y, 0.36 * z}, 0.42});
             break;
     }
     const Real scale = size * std::cbrt(pi / 6 / union_moments(members).volume);

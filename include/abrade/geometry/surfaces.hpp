@@ -15,7 +15,8 @@ struct Plane {
     Real distance(const Vec3& x) const noexcept { return normal.dot(x - point); }
 
     void validate() const {
-        require(std::abs(normal.norm() - 1) < 1e-9, {"Plane.normal", "of length 1", "", "normalise it"}, normal.norm());
+        require(std::abs(normal.norm() - 1) < 1e-9, {"Plane.normal", "of length 1", "", "normalise it"},
+                normal.norm());
     }
 };
 
@@ -26,8 +27,8 @@ struct Box {
 
     /// False for a point outside, and for one with a NaN.
     bool contains(const Vec3& x) const noexcept {
-        return x.x() >= low.x() && x.x() <= high.x() && x.y() >= low.y() && x.y() <= high.y() && x.z() >= low.z() &&
-               x.z() <= high.z();
+        return x.x() >= low.x() && x.x() <= high.x() && x.y() >= low.y() && x.y() <= high.y() &&
+               x.z() >= low.z() && x.z() <= high.z();
     }
 };
 

@@ -20,13 +20,14 @@ struct StoneClass {
 
 /// Stones supplied at a solid volume rate, at random in a box, all from one seeded sequence.
 struct FeedParams {
-    Real volume_rate = 0;                ///< solid [m3/s]
+    Real volume_rate = 0;  ///< solid [m3/s]
     std::vector<StoneClass> classes;
-    Real density = 2650;                 ///< [kg/m3]
-    Box region;                          ///< stones are placed inside it, whole [m]
-    std::function<Real(Real, Real)> bed{};  ///< height of the ground at (x, y) that region.z counts from [m]; none: 0
-    Vec3 velocity = Vec3::Zero();        ///< [m/s]
-    Real start = 0;                      ///< [s]
+    Real density = 2650;  ///< [kg/m3]
+    Box region;           ///< stones are placed inside it, whole [m]
+    std::function<Real(Real, Real)>
+        bed{};                     ///< height of the ground at (x, y) that region.z counts from [m]; none: 0
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    Real start = 0;                ///< [s]
     std::uint32_t seed = 1;
 
     void validate() const {
@@ -39,13 +40,16 @@ struct FeedParams {
             require_not_negative(c.fraction, "Feed.classes.fraction");
             total += c.fraction;
         }
-        require(std::abs(total - 1) < 1e-6, {"Feed.classes.fraction (sum)", "1", "", "let the fractions add up to 1"}, total);
+        require(std::abs(total - 1) < 1e-6,
+                {"Feed.classes.fraction (sum)", "1", "", "let the fractions add up to 1"}, total);
         const Vec3 size = region.high - region.low;
-        require(size.minCoeff() > 0 && size.allFinite(), {"Feed.region", "a finite box with low < high", "m"}, size.minCoeff());
+        require(size.minCoeff() > 0 && size.allFinite(), {"Feed.region", "a finite box with low < high", "m"},
+                size.minCoeff());
         for (const StoneClass& c : classes) {
             const Real across = 2 * make_stone(c.shape, c.size).bounding_radius;
             require(across <= std::min(size.x(), size.y()),
-                    {"Feed.classes.size of " + to_text(c.size) + " m: the stone's length", "at most the feed region's " + to_text(std::min(size.x(), size.y())) + " m", "m",
+                    {"Feed.classes.size of " + to_text(c.size) + " m: the stone's length",
+                     "at most the feed region's " + to_text(std::min(size.x(), size.y())) + " m", "m",
                      "widen the region or feed smaller stones"},
                     across);
         }
@@ -101,7 +105,8 @@ private:
         for (int attempt = 0; attempt < tries; ++attempt) {
             BodyState state;
             for (int a = 0; a < 3; ++a) {
-                const Real low = params_.region.low[a] + reach, high = std::max(low, params_.region.high[a] - reach);
+                const Real low = params_.region.low[a] + reach,
+                           high = std::max(low, params_.region.high[a] - reach);
                 state.position[a] = low + uniform() * (high - low);
             }
             if (params_.bed) state.position.z() += params_.bed(state.position.x(), state.position.y());

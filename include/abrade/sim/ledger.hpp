@@ -41,7 +41,8 @@ struct Ledger {
 
     /// Kinetic energy against the work done: zero but for round-off.
     Real residual() const noexcept {
-        return kinetic - (kinetic_start + fed_kinetic - left_kinetic + gravity_work + buoyancy_work + drag_work + interaction_work);
+        return kinetic - (kinetic_start + fed_kinetic - left_kinetic + gravity_work + buoyancy_work +
+                          drag_work + interaction_work);
     }
 
     /// Energy that passed through: what `residual` is to be measured by.
@@ -53,7 +54,9 @@ struct Ledger {
 
     /// Works less what the state functions and the losses account for: the integrator's error in energy.
     Real integration_residue() const noexcept {
-        const Real elastic = -interaction_work - (stored_contacts + stored_bonds - stored_start + left_stored) - lost_normal - lost_sliding - lost_bond;
+        const Real elastic = -interaction_work -
+                             (stored_contacts + stored_bonds - stored_start + left_stored) - lost_normal -
+                             lost_sliding - lost_bond;
         const Real gravity = -gravity_work - (potential - potential_start - fed_potential + left_potential);
         return elastic + gravity;
     }
@@ -62,7 +65,8 @@ struct Ledger {
     void visit(auto&& f) const {
         f("kinetic", kinetic), f("potential", potential);
         f("stored_contacts", stored_contacts), f("stored_bonds", stored_bonds);
-        f("lost_normal", lost_normal), f("lost_sliding", lost_sliding), f("lost_bond", lost_bond), f("lost_drag", lost_drag());
+        f("lost_normal", lost_normal), f("lost_sliding", lost_sliding), f("lost_bond", lost_bond),
+            f("lost_drag", lost_drag());
         f("drag_input", drag_input), f("buoyancy_work", buoyancy_work), f("gravity_work", gravity_work);
         f("interaction_work", interaction_work);
         f("fed_kinetic", fed_kinetic), f("fed_potential", fed_potential);

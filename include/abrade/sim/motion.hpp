@@ -25,8 +25,8 @@ struct KickSums {
 /// v += dt F/m, L += dt tau for body b. Each force is paired with (v_before + v_after)/2 dt, so the works
 /// add up to the change in kinetic energy exactly. `interaction` is the force of contacts and bonds, which
 /// alone turn bodies; `fluid` is null where there is none.
-inline KickSums kick_body(Particles& p, Index body, const Vec3& interaction, const FluidLoad* fluid, const Vec3& gravity,
-                          Real dt) noexcept {
+inline KickSums kick_body(Particles& p, Index body, const Vec3& interaction, const FluidLoad* fluid,
+                          const Vec3& gravity, Real dt) noexcept {
     // (10 km/s)^2: no speed of this field. Infinities exceed it, and NaN fails the comparison.
     constexpr Real too_fast2 = 1e8;
     const auto b = static_cast<std::size_t>(body);

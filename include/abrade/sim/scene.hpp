@@ -55,12 +55,15 @@ struct Scene {
         for (const Plane& wall : walls) wall.validate();
         for (const Stone& stone : stones) {
             require_positive(stone.density, "Scene.stones.density", "kg/m3");
-            require(bounds.contains(stone.state.position),
-                    {"Scene.stones.position", "inside Scene.bounds", "m", "move the stone or widen the bounds"}, stone.state.position.norm());
+            require(
+                bounds.contains(stone.state.position),
+                {"Scene.stones.position", "inside Scene.bounds", "m", "move the stone or widen the bounds"},
+                stone.state.position.norm());
         }
         if (concrete) {
             require_positive(concrete->density, "Scene.concrete.density", "kg/m3");
-            require(!concrete->lattice.sites.empty(), {"Scene.concrete.lattice", "of at least one sphere"}, 0);
+            require(!concrete->lattice.sites.empty(), {"Scene.concrete.lattice", "of at least one sphere"},
+                    0);
         }
         if (feed) feed->validate();
     }

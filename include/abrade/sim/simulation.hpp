@@ -24,11 +24,11 @@ struct RunError : std::runtime_error {
 };
 
 struct RunOptions {
-    Real end_time = 0;       ///< [s]
-    Real time_step = 0;      ///< [s]; 0: `safety` times the stable step
-    Real safety = 0.5;       ///< share of the stable step that is taken [-]
-    Real observe_every = 0;  ///< [s]; 0: at the start and at the end only
-    Real skin = 0;           ///< of the neighbour list [m]; 0: a quarter of the smallest radius
+    Real end_time = 0;             ///< [s]
+    Real time_step = 0;            ///< [s]; 0: `safety` times the stable step
+    Real safety = 0.5;             ///< share of the stable step that is taken [-]
+    Real observe_every = 0;        ///< [s]; 0: at the start and at the end only
+    Real skin = 0;                 ///< of the neighbour list [m]; 0: a quarter of the smallest radius
     std::function<bool()> stop{};  ///< asked now and then; true ends the run cleanly
 };
 
@@ -37,30 +37,35 @@ struct ContactLawIsMissing {};
 
 /// Made by `simulate(scene)`, completed by `.contact()`, `.bond()`, `.wear()` and `.fluid()`, then run. The
 /// four policies are part of the type; an absent one costs nothing.
-template <class C = ContactLawIsMissing, BondLaw B = NoBond, WearLaw W = NoWear, FluidModel F = NoFluid, DragLaw D = CliftGauvin>
+template <class C = ContactLawIsMissing, BondLaw B = NoBond, WearLaw W = NoWear, FluidModel F = NoFluid,
+          DragLaw D = CliftGauvin>
 class Simulation {
 public:
     Simulation(Scene scene, C contact, B bond, W wear, F fluid, D drag)
-        : scene_(std::move(scene)), contact_(std::move(contact)), bond_(std::move(bond)), wear_(std::move(wear)),
-          fluid_(std::move(fluid)), drag_(std::move(drag)) {}
+        : scene_(std::move(scene)), contact_(std::move(contact)), bond_(std::move(bond)),
+          wear_(std::move(wear)), fluid_(std::move(fluid)), drag_(std::move(drag)) {}
 
     // --- the four slots --------------------------------------------------------------------------
 
     template <ContactLaw L>
     Simulation<L, B, W, F, D> contact(L law) && {
-        return {std::move(scene_), std::move(law), std::move(bond_), std::move(wear_), std::move(fluid_), std::move(drag_)};
+        return {std::move(scene_), std::move(law),    std::move(bond_),
+                std::move(wear_),  std::move(fluid_), std::move(drag_)};
     }
     template <BondLaw L>
     Simulation<C, L, W, F, D> bond(L law) && {
-        return {std::move(scene_), std::move(contact_), std::move(law), std::move(wear_), std::move(fluid_), std::move(drag_)};
+        return {std::move(scene_), std::move(contact_), std::move(law),
+                std::move(wear_),  std::move(fluid_),   std::move(drag_)};
     }
     template <WearLaw L>
     Simulation<C, B, L, F, D> wear(L law) && {
-        return {std::move(scene_), std::move(contact_), std::move(bond_), std::move(law), std::move(fluid_), std::move(drag_)};
+        return {std::move(scene_), std::move(contact_), std::move(bond_),
+                std::move(law),    std::move(fluid_),   std::move(drag_)};
     }
     template <FluidModel L, DragLaw Drag = CliftGauvin>
     Simulation<C, B, W, L, Drag> fluid(L law, Drag drag = Drag{}) && {
-        return {std::move(scene_), std::move(contact_), std::move(bond_), std::move(wear_), std::move(law), std::move(drag)};
+        return {std::move(scene_), std::move(contact_), std::move(bond_),
+                std::move(wear_),  std::move(law),      std::move(drag)};
     }
 
     // --- running -------------------------------------------------------------------------------
@@ -82,7 +87,8 @@ public:
             do_step(start + n * time_step_);
             const bool last = n + 1 == steps;
             if (step_ % steps_between_checks == 0 && options.stop && options.stop()) stopped_ = true;
-            if (last || stopped_ || (options.observe_every > 0 && time_ >= next_observation - 0.5 * time_step_)) {
+            if (last || stopped_ ||
+                (options.observe_every > 0 && time_ >= next_observation - 0.5 * time_step_)) {
                 next_observation += options.observe_every;
                 wall_seconds_ = seconds_since(clock_start);
                 balance();
@@ -97,13 +103,13 @@ public:
 
     // --- what came of it -----------------------------------------------------------------------
 
-    Real time() const noexcept { return time_; }            ///< [s]
+    Real time() const noexcept { return time_; }  ///< [s]
     Index steps() const noexcept { return step_; }
     Real time_step() const noexcept { return time_step_; }  ///< [s]
     const StableStep& stable_time_step() const noexcept { return stable_; }
-    bool stopped() const noexcept { return stopped_; }           ///< by RunOptions::stop
+    bool stopped() const noexcept { return stopped_; }  ///< by RunOptions::stop
     Real wall_seconds() const noexcept { return wall_seconds_; }
-    const Ledger& ledger() const noexcept { return ledger_; }    ///< as of the last observation
+    const Ledger& ledger() const noexcept { return ledger_; }  ///< as of the last observation
     // These throw std::logic_error before the first run: there is nothing to show yet.
     const Particles& particles() const { return world().particles(); }
     const Concrete& concrete() const { return world().concrete(); }
@@ -140,11 +146,16 @@ private:
     /// A list is renewed at least this often, so that supply and departures are not left waiting.
     static constexpr Index longest_list_life = 400;
 
-    static Real seconds_since(Clock::time_point start) { return std::chrono::duration<Real>(Clock::now() - start).count(); }
+    static Real seconds_since(Clock::time_point start) {
+        return std::chrono::duration<Real>(Clock::now() - start).count();
+    }
 
     void prepare(const RunOptions& options) {
-        require(std::isfinite(options.end_time) && options.end_time >= time_, {"RunOptions.end_time", "finite and not before now (" + to_text(time_) + " s)", "s"}, options.end_time);
-        require(options.safety > 0 && options.safety <= 1, {"RunOptions.safety", "in (0, 1]"}, options.safety);
+        require(std::isfinite(options.end_time) && options.end_time >= time_,
+                {"RunOptions.end_time", "finite and not before now (" + to_text(time_) + " s)", "s"},
+                options.end_time);
+        require(options.safety > 0 && options.safety <= 1, {"RunOptions.safety", "in (0, 1]"},
+                options.safety);
         require_not_negative(options.observe_every, "RunOptions.observe_every", "s");
         require_not_negative(options.time_step, "RunOptions.time_step", "s");
         require_not_negative(options.skin, "RunOptions.skin", "m");
@@ -154,7 +165,8 @@ private:
             const auto& radius = world_->particles().radius;
             Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
             world_->set_skin(options.skin > 0 ? options.skin : 0.25 * smallest);
-            stable_ = stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
+            stable_ =
+                stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
             world_->renew(time_, nullptr);
             world_->open_ledger();
             remember();
@@ -162,8 +174,10 @@ private:
         stopped_ = false;
         time_step_ = options.time_step > 0 ? options.time_step : options.safety * stable_.seconds;
         require(time_step_ <= stable_.seconds,
-                {"RunOptions.time_step", "at most the stable step of " + to_text(stable_.seconds) + " s (" + std::string(stable_.limit) + ")", "s",
-                 "take a smaller step, softer springs or heavier spheres"},
+                {"RunOptions.time_step",
+                 "at most the stable step of " + to_text(stable_.seconds) + " s (" +
+                     std::string(stable_.limit) + ")",
+                 "s", "take a smaller step, softer springs or heavier spheres"},
                 time_step_);
         if (!std::isfinite(time_step_)) time_step_ = std::max(options.end_time - time_, 1e-300);
         balance();
@@ -191,28 +205,40 @@ private:
         if (timed) step_seconds_ += steps_between_checks * seconds_since(begin);
         ++step_;
         time_ = t + time_step_;
-        if (const Trouble trouble = world_->take_trouble(); trouble.cause != Trouble::Cause::none) raise(trouble);
+        if (const Trouble trouble = world_->take_trouble(); trouble.cause != Trouble::Cause::none)
+            raise(trouble);
     }
 
     [[noreturn]] void raise(const Trouble& trouble) {
         const Particles& p = world_->particles();
         const auto b = static_cast<std::size_t>(trouble.body);
         const auto name = [&](std::size_t body) {
-            static constexpr std::string_view kinds[] = {"stone", "concrete sphere", "concrete grain", "fixed sphere"};
-            return std::string(kinds[static_cast<std::size_t>(p.kind[body])]) + " with id " + std::to_string(p.id[body]);
+            static constexpr std::string_view kinds[] = {"stone", "concrete sphere", "concrete grain",
+                                                         "fixed sphere"};
+            return std::string(kinds[static_cast<std::size_t>(p.kind[body])]) + " with id " +
+                   std::to_string(p.id[body]);
         };
         const auto place = [&] {
-            return "x = (" + to_text(p.position[b].x()) + ", " + to_text(p.position[b].y()) + ", " + to_text(p.position[b].z()) + ") m, speed " + to_text(p.velocity[b].norm()) + " m/s";
+            return "x = (" + to_text(p.position[b].x()) + ", " + to_text(p.position[b].y()) + ", " +
+                   to_text(p.position[b].z()) + ") m, speed " + to_text(p.velocity[b].norm()) + " m/s";
         };
-        std::string text = "step " + std::to_string(step_) + " (t = " + to_text(time_) + " s, dt = " + to_text(time_step_) + " s): ";
+        std::string text = "step " + std::to_string(step_) + " (t = " + to_text(time_) +
+                           " s, dt = " + to_text(time_step_) + " s): ";
         switch (trouble.cause) {
-            case Trouble::Cause::lost: text += name(b) + " left the world's bounds, " + place(); break;
-            case Trouble::Cause::overlap:
-                text += name(b) + " overlaps " + (trouble.other < 0 ? std::string("a boundary") : name(static_cast<std::size_t>(trouble.other))) + " by " +
-                        to_text(std::round(1000 * trouble.measure) / 10) + " % of the smaller radius (limit " + to_text(100 * World::overlap_limit) + " %), " + place() +
-                        "; stiffer springs or a smaller step are needed";
+            case Trouble::Cause::lost:
+                text += name(b) + " left the world's bounds, " + place();
                 break;
-            default: text += "velocity of " + name(b) + " is not finite, " + place(); break;
+            case Trouble::Cause::overlap:
+                text += name(b) + " overlaps " +
+                        (trouble.other < 0 ? std::string("a boundary")
+                                           : name(static_cast<std::size_t>(trouble.other))) +
+                        " by " + to_text(std::round(1000 * trouble.measure) / 10) +
+                        " % of the smaller radius (limit " + to_text(100 * World::overlap_limit) + " %), " +
+                        place() + "; stiffer springs or a smaller step are needed";
+                break;
+            default:
+                text += "velocity of " + name(b) + " is not finite, " + place();
+                break;
         }
         text += "; the last good state is that of t = " + to_text(last_good_.time) + " s";
         throw RunError(text, step_, time_, p.id[b]);
@@ -243,29 +269,35 @@ private:
 };
 
 /// Starts a simulation; fill the slots, then run.
-inline Simulation<> simulate(Scene scene) { return {std::move(scene), {}, NoBond{}, NoWear{}, NoFluid{}, CliftGauvin{}}; }
+inline Simulation<> simulate(Scene scene) {
+    return {std::move(scene), {}, NoBond{}, NoWear{}, NoFluid{}, CliftGauvin{}};
+}
 
 /// Laws with their parameters, the step and why, the ledger, the wear, the wall time and where it went.
 template <class C, class B, class W, class F, class D>
 std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim) {
-    out << "contact  " << describe(sim.contact_) << "\nbond     " << describe(sim.bond_) << "\nwear     " << describe(sim.wear_) << "\nfluid    "
-        << describe(sim.fluid_);
+    out << "contact  " << describe(sim.contact_) << "\nbond     " << describe(sim.bond_) << "\nwear     "
+        << describe(sim.wear_) << "\nfluid    " << describe(sim.fluid_);
     if constexpr (!std::same_as<F, NoFluid>) out << " with " << describe(sim.drag_);
     if (!sim.world_) return out << "\nnot run yet\n";
     const auto shares = sim.wall_shares();
-    const auto percent = [](Real share) { return std::to_string(static_cast<int>(std::lround(100 * share))) + " %"; };
-    out << "\ntime     " << to_text(sim.time_) << " s in " << sim.step_ << " steps of " << to_text(sim.time_step_) << " s (stable: " << to_text(sim.stable_.seconds) << " s, set by "
-        << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres " << sim.particles().spheres() << ", near pairs "
-        << sim.world_->contacts().pairs().size() << "\n";
+    const auto percent = [](Real share) {
+        return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
+    };
+    out << "\ntime     " << to_text(sim.time_) << " s in " << sim.step_ << " steps of "
+        << to_text(sim.time_step_) << " s (stable: " << to_text(sim.stable_.seconds) << " s, set by "
+        << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
+        << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().pairs().size() << "\n";
     if (sim.concrete().sites() > 0)
-        out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken() << " bonds broken, worn volume " << to_text(sim.concrete().worn_volume())
-            << " m3\n";
+        out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken()
+            << " bonds broken, worn volume " << to_text(sim.concrete().worn_volume()) << " m3\n";
     out << "ledger   [J]\n";
     sim.ledger_.visit([&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
     });
-    return out << "wall     " << to_text(std::round(1000 * sim.wall_seconds_) / 1000) << " s: forces " << percent(shares.forces) << ", motion " << percent(shares.motion)
-               << ", neighbour lists " << percent(shares.renewal) << "\n";
+    return out << "wall     " << to_text(std::round(1000 * sim.wall_seconds_) / 1000) << " s: forces "
+               << percent(shares.forces) << ", motion " << percent(shares.motion) << ", neighbour lists "
+               << percent(shares.renewal) << "\n";
 }
 
 }  // namespace abrade

@@ -20,8 +20,12 @@ struct Snapshot {
     std::vector<Real> fracture_rate;                         ///< [site] [-]
 
     std::vector<FieldView> body_fields() const {
-        return {{"id", "-", 1, id}, {"kind", "-", 1, kind}, {"site", "-", 1, site}, {"position", "m", 3, position},
-                {"velocity", "m/s", 3, velocity}, {"angular_momentum", "kg m2/s", 3, angular_momentum},
+        return {{"id", "-", 1, id},
+                {"kind", "-", 1, kind},
+                {"site", "-", 1, site},
+                {"position", "m", 3, position},
+                {"velocity", "m/s", 3, velocity},
+                {"angular_momentum", "kg m2/s", 3, angular_momentum},
                 {"orientation", "-", 4, orientation}};
     }
     std::vector<FieldView> site_fields() const { return {{"fracture_rate", "-", 1, fracture_rate}}; }
@@ -31,7 +35,9 @@ inline Snapshot take_snapshot(const Particles& particles, const Concrete& concre
     Snapshot shot;
     shot.time = time;
     shot.step = step;
-    const auto append = [](std::vector<Real>& column, const Vec3& v) { column.insert(column.end(), v.data(), v.data() + 3); };
+    const auto append = [](std::vector<Real>& column, const Vec3& v) {
+        column.insert(column.end(), v.data(), v.data() + 3);
+    };
     for (std::size_t b = 0; b < particles.position.size(); ++b) {
         shot.id.push_back(particles.id[b]);
         shot.kind.push_back(static_cast<Real>(particles.kind[b]));

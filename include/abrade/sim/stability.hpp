@@ -83,29 +83,39 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
         const auto bonds = network.incidence().of(particles.first_sphere[i]);
         if (bonds.empty()) {
             Real reach = 0;
-            for (Index s = particles.first_sphere[i]; s < particles.first_sphere[i] + particles.sphere_count[i]; ++s)
-                reach = std::max(reach, particles.offset[static_cast<std::size_t>(s)].norm() + particles.radius[static_cast<std::size_t>(s)]);
-            step.lower(contact.stable_dt(stability_mass(mass, 1 / particles.inverse_inertia[i].maxCoeff(), reach), reach),
+            for (Index s = particles.first_sphere[i];
+                 s < particles.first_sphere[i] + particles.sphere_count[i]; ++s)
+                reach = std::max(reach, particles.offset[static_cast<std::size_t>(s)].norm() +
+                                            particles.radius[static_cast<std::size_t>(s)]);
+            step.lower(contact.stable_dt(
+                           stability_mass(mass, 1 / particles.inverse_inertia[i].maxCoeff(), reach), reach),
                        "contacts of the lightest stone");
             continue;
         }
         detail::SphereStiffness k(mass), c(mass);
         for (const auto side : bonds) {
             const Pair& pair = network.pairs()[static_cast<std::size_t>(side.pair)];
-            const Vec3 n = (particles.centre[static_cast<std::size_t>(pair.first)] - particles.centre[static_cast<std::size_t>(pair.second)]).normalized();
-            const Real other = particles.inverse_mass[static_cast<std::size_t>(particles.body[static_cast<std::size_t>(side.first ? pair.second : pair.first)])];
+            const Vec3 n = (particles.centre[static_cast<std::size_t>(pair.first)] -
+                            particles.centre[static_cast<std::size_t>(pair.second)])
+                               .normalized();
+            const Real other = particles.inverse_mass[static_cast<std::size_t>(
+                particles.body[static_cast<std::size_t>(side.first ? pair.second : pair.first)])];
             const Real effective = 1 / (1 / mass + other);
             k.add(n, bond.stiffness(), bond.tangential_stiffness());
-            c.add(n, dashpot(bond.damping_ratio(), bond.stiffness(), effective), dashpot(bond.damping_ratio(), bond.tangential_stiffness(), effective));
+            c.add(n, dashpot(bond.damping_ratio(), bond.stiffness(), effective),
+                  dashpot(bond.damping_ratio(), bond.tangential_stiffness(), effective));
         }
         k.add_anywhere(2, contact.stiffness(), contact.tangential_stiffness());
-        c.add_anywhere(2, dashpot(contact.damping_ratio(), contact.stiffness(), mass), dashpot(contact.damping_ratio(), contact.tangential_stiffness(), mass));
+        c.add_anywhere(2, dashpot(contact.damping_ratio(), contact.stiffness(), mass),
+                       dashpot(contact.damping_ratio(), contact.tangential_stiffness(), mass));
         step.lower(detail::damped_step(k.bound(), c.bound()), "bonded concrete");
     }
     if (feed)
         for (const StoneClass& stones : feed->classes) {
             const Clump clump = make_stone(stones.shape, stones.size);
-            const Real mass = stability_mass(feed->density * clump.volume, feed->density * clump.principal_moments.minCoeff(), clump.bounding_radius);
+            const Real mass =
+                stability_mass(feed->density * clump.volume,
+                               feed->density * clump.principal_moments.minCoeff(), clump.bounding_radius);
             step.lower(contact.stable_dt(mass, clump.bounding_radius), "contacts of the smallest stone fed");
         }
     return step;

@@ -2,29 +2,14 @@
 // Everything that moves, and the two halves of a step that move it.
 
 #include <abrade/bond/network.hpp>
-#include <abrade/coupling/drag.hpp>
 #include <abrade/dem/contacts.hpp>
 #include <abrade/sim/ledger.hpp>
 #include <abrade/sim/motion.hpp>
+#include <abrade/sim/policies.hpp>
 #include <abrade/sim/scene.hpp>
 #include <abrade/wear/concrete.hpp>
-#include <abrade/wear/wear_law.hpp>
 
 namespace abrade {
-
-/// The four policies, and the drag law that goes with the fluid.
-template <ContactLaw C, BondLaw B, WearLaw W, FluidModel F, DragLaw D>
-struct Policies {
-    static constexpr bool has_bonds = !std::same_as<B, NoBond>;
-    static constexpr bool has_wear = !std::same_as<W, NoWear>;
-    static constexpr bool has_fluid = !std::same_as<F, NoFluid>;
-
-    C contact;
-    [[no_unique_address]] B bond;
-    [[no_unique_address]] W wear;
-    [[no_unique_address]] F fluid;
-    [[no_unique_address]] D drag;
-};
 
 /// What the engine finds wrong with a step.
 struct Trouble {
@@ -40,7 +25,8 @@ public:
     World(Scene scene, P policies) : policies_(std::move(policies)), scene_(std::move(scene)) {
         scene_.validate();
         if (scene_.concrete) add_concrete(*scene_.concrete);
-        for (const Scene::Stone& stone : scene_.stones) particles_.add(stone.clump, stone.density, stone.state, Kind::stone);
+        for (const Scene::Stone& stone : scene_.stones)
+            particles_.add(stone.clump, stone.density, stone.state, Kind::stone);
         admit_new_bodies();
     }
 
@@ -64,14 +50,16 @@ public:
     /// The force pass at time t: every law once, memory committed, losses booked. Bodies gather their loads,
     /// and concrete wears, in the kick that follows: one pass over the bodies serves both.
     void evaluate(Real t, Real dt) {
-        const ContactSums contacts = contacts_.respond(policies_.contact, policies_.wear, particles_, scene_.walls, dt);
+        const ContactSums contacts =
+            contacts_.respond(policies_.contact, policies_.wear, particles_, scene_.walls, dt);
         ledger_.lost_normal += contacts.lost_normal;
         ledger_.lost_sliding += contacts.lost_tangential;
         ledger_.concrete_lost_normal += contacts.concrete_lost_normal;
         ledger_.concrete_lost_sliding += contacts.concrete_lost_tangential;
         if (!(contacts.deepest <= overlap_limit)) report_overlap(contacts);
         if constexpr (P::has_bonds) {
-            const BondSums bonds = network_.respond(policies_.bond, policies_.wear, particles_, strength_left(), dt);
+            const BondSums bonds =
+                network_.respond(policies_.bond, policies_.wear, particles_, strength_left(), dt);
             ledger_.lost_bond += bonds.lost_bond;
             ledger_.lost_normal += bonds.lost_normal;
             ledger_.lost_sliding += bonds.lost_tangential;
@@ -97,7 +85,8 @@ public:
         const Index bodies_before = particles_.bodies();
         const std::vector<Index> moved = remove_departed();
         if constexpr (P::has_bonds)
-            if (pattern_changed_ || particles_.bodies() != bodies_before) ledger_.left_stored += network_.prune(particles_, moved);
+            if (pattern_changed_ || particles_.bodies() != bodies_before)
+                ledger_.left_stored += network_.prune(particles_, moved);
         if (feed)
             feed->supply(particles_, t, [&](Index body) {
                 ledger_.fed_kinetic += particles_.kinetic_energy(body);
@@ -152,7 +141,9 @@ public:
 private:
     struct Energies {
         Real kinetic = 0, potential = 0;
-        Energies& operator+=(const Energies& o) noexcept { return kinetic += o.kinetic, potential += o.potential, *this; }
+        Energies& operator+=(const Energies& o) noexcept {
+            return kinetic += o.kinetic, potential += o.potential, *this;
+        }
     };
     struct DriftSums {
         Real furthest2 = 0, gauge = 0;
@@ -173,12 +164,15 @@ private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
 
     Real potential_energy(Index b) const noexcept {
-        return particles_.inverse_mass[at(b)] == 0 ? 0 : -particles_.mass[at(b)] * scene_.gravity.dot(particles_.position[at(b)]);
+        return particles_.inverse_mass[at(b)] == 0
+                   ? 0
+                   : -particles_.mass[at(b)] * scene_.gravity.dot(particles_.position[at(b)]);
     }
 
     auto strength_left() const noexcept {
         return [this](Index body) {
-            if constexpr (P::has_wear) return policies_.wear.strength_left(concrete_.fracture(particles_.site[at(body)]));
+            if constexpr (P::has_wear)
+                return policies_.wear.strength_left(concrete_.fracture(particles_.site[at(body)]));
             return 1.0;
         };
     }
@@ -189,13 +183,15 @@ private:
         for (Index s = 0; s < static_cast<Index>(lattice.sites.size()); ++s) {
             const LatticeSite& site = lattice.sites[at(s)];
             const bool base = site.layer + 1 == lattice.count_layers;
-            const Index body = particles_.add(sphere, block.density, {.position = site.centre}, base ? Kind::fixed : Kind::concrete);
+            const Index body = particles_.add(sphere, block.density, {.position = site.centre},
+                                              base ? Kind::fixed : Kind::concrete);
             particles_.site[at(body)] = s;
         }
         if constexpr (P::has_bonds) {
             std::vector<Pair> bonded;
             for (const auto& [i, j] : lattice.neighbours())
-                if (particles_.inverse_mass[at(i)] + particles_.inverse_mass[at(j)] > 0) bonded.push_back({i, j});
+                if (particles_.inverse_mass[at(i)] + particles_.inverse_mass[at(j)] > 0)
+                    bonded.push_back({i, j});
             network_.build(particles_, std::move(bonded));
         } else {
             // Without bonds there is nothing to hold the spheres together: they stand as a rigid bed.
@@ -249,8 +245,9 @@ private:
             fluid_[at(b)] = {};
             if (particles_.kind[at(b)] == Kind::stone || particles_.kind[at(b)] == Kind::grain) {
                 const Vec3& x = particles_.position[at(b)];
-                fluid_[at(b)] = fluid_load(policies_.drag, policies_.fluid.sample(x, loads_time_),
-                                           {x, predicted_velocity(b), particles_.volume[at(b)]}, scene_.gravity);
+                fluid_[at(b)] =
+                    fluid_load(policies_.drag, policies_.fluid.sample(x, loads_time_),
+                               {x, predicted_velocity(b), particles_.volume[at(b)]}, scene_.gravity);
                 force += fluid_[at(b)].drag + fluid_[at(b)].buoyancy;
             }
         }
@@ -277,10 +274,12 @@ private:
         drift_body(particles_, b, dt);
         const Index first = particles_.first_sphere[at(b)];
         for (Index s = first; s < first + particles_.sphere_count[at(b)]; ++s)
-            sums.drift.furthest2 = std::max(sums.drift.furthest2, (particles_.centre[at(s)] - built_at_[at(s)]).squaredNorm());
+            sums.drift.furthest2 =
+                std::max(sums.drift.furthest2, (particles_.centre[at(s)] - built_at_[at(s)]).squaredNorm());
         const Vec3& x = particles_.position[at(b)];
         if (scene_.gauge && particles_.kind[at(b)] == Kind::stone)
-            sums.drift.gauge = particles_.volume[at(b)] * ((x.x() >= *scene_.gauge) - (x_before >= *scene_.gauge));
+            sums.drift.gauge =
+                particles_.volume[at(b)] * ((x.x() >= *scene_.gauge) - (x_before >= *scene_.gauge));
         if (!scene_.bounds.contains(x)) sums.drift.lost = b;
         return sums;
     }
@@ -305,13 +304,16 @@ private:
         furthest2_ = std::max(furthest2_, sums.drift.furthest2);
         gauge_volume_ += sums.drift.gauge;
         if (trouble_.cause != Trouble::Cause::none) return;
-        if (sums.kick.bad >= 0) trouble_ = {Trouble::Cause::not_finite, sums.kick.bad, -1, 0};
-        else if (sums.drift.lost >= 0) trouble_ = {Trouble::Cause::lost, sums.drift.lost, -1, 0};
+        if (sums.kick.bad >= 0)
+            trouble_ = {Trouble::Cause::not_finite, sums.kick.bad, -1, 0};
+        else if (sums.drift.lost >= 0)
+            trouble_ = {Trouble::Cause::lost, sums.drift.lost, -1, 0};
     }
 
     void report_overlap(const ContactSums& contacts) {
         const Pair& pair = contacts_.pairs()[at(contacts.deepest_pair)];
-        trouble_ = {Trouble::Cause::overlap, particles_.body[at(pair.first)], pair.second < 0 ? -1 : particles_.body[at(pair.second)], contacts.deepest};
+        trouble_ = {Trouble::Cause::overlap, particles_.body[at(pair.first)],
+                    pair.second < 0 ? -1 : particles_.body[at(pair.second)], contacts.deepest};
     }
 
     void set_loose_concrete_free() {
@@ -328,7 +330,8 @@ private:
         bool any = false;
         if (scene_.outlet)
             for (Index b = 0; b < particles_.bodies(); ++b) {
-                if (particles_.inverse_mass[at(b)] == 0 || particles_.position[at(b)].x() <= *scene_.outlet) continue;
+                if (particles_.inverse_mass[at(b)] == 0 || particles_.position[at(b)].x() <= *scene_.outlet)
+                    continue;
                 if (particles_.kind[at(b)] == Kind::concrete) continue;
                 gone[at(b)] = 1;
                 any = true;
@@ -358,11 +361,14 @@ private:
             const Kind kind = particles_.kind[at(particles_.body[at(s)])];
             passive[at(s)] = kind == Kind::concrete || kind == Kind::fixed;
         }
-        std::vector<Pair> pairs = near_pairs({particles_.centre, particles_.radius, particles_.body, passive, skin_});
-        if constexpr (P::has_bonds) std::erase_if(pairs, [&](const Pair& pair) { return network_.holds(pair); });
+        std::vector<Pair> pairs =
+            near_pairs({particles_.centre, particles_.radius, particles_.body, passive, skin_});
+        if constexpr (P::has_bonds)
+            std::erase_if(pairs, [&](const Pair& pair) { return network_.holds(pair); });
         for (Index s = 0; s < particles_.spheres(); ++s)
             for (Index w = 0; w < static_cast<Index>(scene_.walls.size()); ++w)
-                if (!passive[at(s)] && scene_.walls[at(w)].distance(particles_.centre[at(s)]) < particles_.radius[at(s)] + skin_)
+                if (!passive[at(s)] &&
+                    scene_.walls[at(w)].distance(particles_.centre[at(s)]) < particles_.radius[at(s)] + skin_)
                     pairs.push_back({s, -1 - w});
         std::sort(pairs.begin(), pairs.end());
         return pairs;

@@ -19,8 +19,8 @@ class Concrete {
 public:
     Concrete() = default;
     explicit Concrete(Lattice lattice, FractureVolume kind = FractureVolume::cell)
-        : lattice_(std::move(lattice)), kind_(kind), fractured_(lattice_.sites.size(), 0), overflow_(lattice_.sites.size(), 0),
-          gone_(lattice_.sites.size(), 0) {}
+        : lattice_(std::move(lattice)), kind_(kind), fractured_(lattice_.sites.size(), 0),
+          overflow_(lattice_.sites.size(), 0), gone_(lattice_.sites.size(), 0) {}
 
     /// Takes worn volume [m3] off a site. What a fully fractured site no longer has is booked as overflow.
     void wear(Index site, Real volume) noexcept {

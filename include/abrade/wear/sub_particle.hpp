@@ -49,7 +49,8 @@ public:
 
     WearIncrement increment(const ContactKinematics<Real>&, const ContactLoad<Real>& load) const noexcept {
         const Real per_joule = 0.5 * params_.coefficient * params_.acceleration;
-        return {per_joule * params_.normal_weight * load.lost_normal, per_joule * params_.tangential_weight * load.lost_tangential};
+        return {per_joule * params_.normal_weight * load.lost_normal,
+                per_joule * params_.tangential_weight * load.lost_tangential};
     }
     Real strength_left(Real fracture) const noexcept { return 1 - fracture; }
 

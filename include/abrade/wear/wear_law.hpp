@@ -14,11 +14,14 @@ struct WearIncrement {
 /// A wear law is a pure function of what the contact law lost in a step.
 /// - `increment` gives the volume worn off *one* of the two bodies; it is never negative;
 /// - `strength_left(fracture)` says what a sphere that is worn to `fracture` in [0, 1] still holds.
+// clang-format off
 template <class W>
-concept WearLaw = Law<W> && requires(const W& law, const ContactKinematics<Real>& contact, const ContactLoad<Real>& load) {
+concept WearLaw = Law<W> &&
+    requires(const W& law, const ContactKinematics<Real>& contact, const ContactLoad<Real>& load) {
     { law.increment(contact, load) } noexcept -> std::same_as<WearIncrement>;
     { law.strength_left(Real{}) } noexcept -> std::same_as<Real>;
 };
+// clang-format on
 
 /// Nothing wears.
 struct NoWear {
@@ -31,7 +34,9 @@ struct NoWear {
         static constexpr Params none{};
         return none;
     }
-    WearIncrement increment(const ContactKinematics<Real>&, const ContactLoad<Real>&) const noexcept { return {}; }
+    WearIncrement increment(const ContactKinematics<Real>&, const ContactLoad<Real>&) const noexcept {
+        return {};
+    }
     Real strength_left(Real) const noexcept { return 1; }
 };
 

@@ -1,0 +1,24 @@
+#pragma once
+// The four slots of a simulation as one type.
+
+#include <abrade/bond/bond_law.hpp>
+#include <abrade/coupling/drag.hpp>
+#include <abrade/wear/wear_law.hpp>
+
+namespace abrade {
+
+/// The four policies, and the drag law that goes with the fluid.
+template <ContactLaw C, BondLaw B, WearLaw W, FluidModel F, DragLaw D>
+struct Policies {
+    static constexpr bool has_bonds = !std::same_as<B, NoBond>;
+    static constexpr bool has_wear = !std::same_as<W, NoWear>;
+    static constexpr bool has_fluid = !std::same_as<F, NoFluid>;
+
+    C contact;
+    [[no_unique_address]] B bond;
+    [[no_unique_address]] W wear;
+    [[no_unique_address]] F fluid;
+    [[no_unique_address]] D drag;
+};
+
+}  // namespace abrade
