@@ -121,7 +121,7 @@ inline std::string legend(const std::vector<std::string>& titles, Layout& layout
         longest = std::max(longest, title.size());
     }
     if (named == 0) return "unset key\n";
-    const int each = 85 + 10 * static_cast<int>(longest);
+    const int each = 85 + 12 * static_cast<int>(longest);
     const int columns =
         std::clamp((layout.width - layout.left - layout.right) / each, 1, static_cast<int>(named));
     const int rows = (static_cast<int>(named) + columns - 1) / columns;

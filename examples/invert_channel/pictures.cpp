@@ -19,7 +19,7 @@ constexpr auto stone_colour = "#7a8b99";
 void draw_snapshot(const ChannelConfig& c, const ChannelResults& r, const fs::path& side,
                    const fs::path& plan) {
     const Axis x{.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length};
-    const Axis fracture{.label = "fracture rate", .min = 0.0, .max = 1.0};
+    const Axis fracture{.label = "fracture rate", .min = 0.0};
     CircleSet bed_side{.title = "", .circles = {}},
         stones_side{.title = "stones", .circles = {}, .colour = stone_colour, .outline = true};
     CircleSet bed_plan = bed_side, stones_plan = stones_side;

@@ -36,7 +36,7 @@ public:
     static constexpr std::string_view name = "UniformFlow";
 
     struct Params {
-        Invert section;
+        Invert section{};
         Real discharge = 0;        ///< Q [m3/s]
         Real manning = 0.015;      ///< n [s/m^(1/3)]; assumed, for worn concrete
         Real density = 1000;       ///< [kg/m3]

@@ -131,8 +131,8 @@ inline SolidMoments union_moments(std::span<const Sphere> spheres, int rays_acro
 /// A rigid body made of spheres, described in its principal frame: origin at the centroid, axes along
 /// the principal axes of inertia.
 struct Clump {
-    std::string name;
-    std::vector<Sphere> members;
+    std::string name{};
+    std::vector<Sphere> members{};
     Real volume = 0;                        ///< of the union [m3]
     Vec3 principal_moments = Vec3::Zero();  ///< for unit density [m5]
     Real bounding_radius = 0;               ///< about the centroid [m]

@@ -21,9 +21,9 @@ struct StoneClass {
 /// Stones supplied at a solid volume rate, at random in a box, all from one seeded sequence.
 struct FeedParams {
     Real volume_rate = 0;  ///< solid [m3/s]
-    std::vector<StoneClass> classes;
+    std::vector<StoneClass> classes{};
     Real density = 2650;  ///< [kg/m3]
-    Box region;           ///< stones are placed inside it, whole [m]
+    Box region{};           ///< stones are placed inside it, whole [m]
     std::function<Real(Real, Real)>
         bed{};                     ///< height of the ground at (x, y) that region.z counts from [m]; none: 0
     Vec3 velocity = Vec3::Zero();  ///< [m/s]

@@ -13,7 +13,7 @@ namespace abrade {
 
 /// A body of bonded spheres. Its deepest layer is held fixed, as if cast on rock.
 struct ConcreteBlock {
-    Lattice lattice;
+    Lattice lattice{};
     Real density = 2400;  ///< of the spheres [kg/m3]
     FractureVolume fracture_volume = FractureVolume::cell;
 };
@@ -21,9 +21,9 @@ struct ConcreteBlock {
 /// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.
 struct Scene {
     struct Stone {
-        Clump clump;
+        Clump clump{};
         Real density = 2650;  ///< [kg/m3]
-        BodyState state;
+        BodyState state{};
     };
 
     Vec3 gravity{0, 0, -standard_gravity};  ///< [m/s2]

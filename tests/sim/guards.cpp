@@ -1,0 +1,141 @@
+// Runs that go wrong are stopped in the step in which they do, with the id, the place and the last good state.
+#include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/sim/simulation.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace abrade;
+
+namespace {
+
+/// A spring that answers with a NaN once it is pressed beyond a limit.
+struct Faulty {
+    static constexpr std::string_view name = "Faulty";
+    using Params = NoParams;
+    template <class Number>
+    struct Memory {};
+    explicit Faulty(Params = {}) {}
+    const Params& params() const noexcept {
+        static constexpr Params none{};
+        return none;
+    }
+    ContactResponse<Real, Memory<Real>> respond(const ContactKinematics<Real>& c, const Memory<Real>&) const noexcept {
+        const Real force = c.overlap > 1e-5 ? std::nan("") : 1e6 * std::max(c.overlap, 0.0);
+        return {{force * c.normal, 0, 0, 0}, {}};
+    }
+    Real stable_dt(Real, Real) const noexcept { return 1e-3; }
+    Real stiffness() const noexcept { return 1e6; }
+    Real tangential_stiffness() const noexcept { return 0; }
+    Real damping_ratio() const noexcept { return 0; }
+};
+static_assert(ContactLaw<Faulty>);
+
+template <class Simulation>
+RunError error_of(Simulation& sim, const RunOptions& options) {
+    try {
+        sim.run(options);
+    } catch (const RunError& error) {
+        return error;
+    }
+    FAIL("no RunError");
+    throw 0;
+}
+
+bool says(const RunError& error, const std::string& what) { return std::string(error.what()).find(what) != std::string::npos; }
+
+template <class Simulation>
+void check_sound(const Simulation& sim, const RunError& error) {
+    const Snapshot& good = sim.last_good();
+    CHECK(good.step < error.step);
+    CHECK(good.time < error.time);
+    CHECK(good.id.size() * 3 == good.position.size());
+    REQUIRE(!good.id.empty());
+    for (const auto* column : {&good.position, &good.velocity, &good.angular_momentum, &good.orientation})
+        for (const Real value : *column) CHECK(std::isfinite(value));
+    CHECK(says(error, "step " + std::to_string(error.step)));
+    CHECK(says(error, "the last good state is that of t = " + to_text(good.time) + " s"));
+}
+
+}  // namespace
+
+TEST_CASE("a NaN from a law is caught in its own step, with the id of the body") {
+    Scene scene;
+    scene.gravity.setZero();
+    scene.add_sphere(0.01, {.position = {5, 0, 5}});
+    scene.add_sphere(0.01, {.position = {0, 0, 0.0105}, .velocity = {0, 0, -1}});
+    scene.add_wall({0, 0, 0}, {0, 0, 1});
+    auto sim = simulate(scene).contact(Faulty{});
+    // 0.5 mm of gap at 1e-5 m a step: touches in step 50, overlaps by 1e-5 in step 51, by more in step 52 at the latest.
+    const RunError error = error_of(sim, {.end_time = 0.1, .time_step = 1e-5});
+    CHECK(error.step >= 51);
+    CHECK(error.step <= 52);
+    CHECK(error.time == doctest::Approx(error.step * 1e-5));
+    CHECK(error.id == 1);
+    CHECK(says(error, "velocity of stone with id 1 is not finite"));
+    check_sound(sim, error);
+}
+
+TEST_CASE("a body that leaves the bounds is caught in the step in which it does") {
+    Scene scene;
+    scene.gravity.setZero();
+    scene.bounds = {{-1, -1, -1}, {1, 1, 1}};
+    scene.add_sphere(0.01, {.position = {0.5, 0, 0}, .velocity = {1, 0, 0}});
+    scene.add_sphere(0.01, {.position = {0, 0.9985, 0}, .velocity = {0, 1, 0}});
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e5}});
+    const RunError error = error_of(sim, {.end_time = 1, .time_step = 1e-4});
+    CHECK(error.step == 16);  // 0.9985 + 15 x 1e-4 is the bound itself; round-off decides about 15
+    CHECK(error.id == 1);
+    CHECK(says(error, "stone with id 1 left the world's bounds"));
+    CHECK(says(error, "speed 1 m/s"));
+    check_sound(sim, error);
+}
+
+TEST_CASE("a runaway overlap is caught: springs too soft for the impact") {
+    Scene scene;
+    scene.gravity.setZero();
+    scene.add_sphere(0.01, {.position = {0, 0, 0.0101}, .velocity = {0, 0, -20}});
+    scene.add_wall({0, 0, 0}, {0, 0, 1});
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e3}});
+    const RunError error = error_of(sim, {.end_time = 0.1, .time_step = 1e-6});
+    // 0.1 mm of gap and 20 % of the radius at 2e-5 m a step, slowed a little.
+    CHECK(error.step >= 105);
+    CHECK(error.step < 115);
+    CHECK(error.id == 0);
+    CHECK(says(error, "overlaps a boundary by 20"));
+    CHECK(says(error, "stiffer springs or a smaller step"));
+    check_sound(sim, error);
+}
+
+TEST_CASE("two stones: the message names both, and the limit is that of the smaller") {
+    Scene scene;
+    scene.gravity.setZero();
+    scene.add_sphere(0.05, {.position = {0, 0, 0}});
+    scene.add_sphere(0.01, {.position = {0.0601, 0, 0}, .velocity = {-20, 0, 0}});
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e3}});
+    const RunError error = error_of(sim, {.end_time = 0.1, .time_step = 1e-6});
+    CHECK(error.step < 115);
+    CHECK(says(error, "stone with id 0"));
+    CHECK(says(error, "stone with id 1"));
+}
+
+TEST_CASE("a runaway overlap between bonded spheres is caught too") {
+    // A stone that hits the slab far too fast for its bonds.
+    Scene scene;
+    scene.gravity.setZero();
+    scene.concrete = ConcreteBlock{flat_lattice(0.06, 0.06, {.layers = 3})};
+    scene.add_sphere(0.02, {.position = {0, 0, 0.021}, .velocity = {0, 0, -100}});
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e6}}).bond(MohrCoulomb{{.tensile = 1e9, .stiffness = 1e6}});
+    const RunError error = error_of(sim, {.end_time = 0.1});
+    check_sound(sim, error);
+}
+
+TEST_CASE("after an error the last good state can be read, and the run is not silently continued") {
+    Scene scene;
+    scene.gravity.setZero();
+    scene.bounds = {{-1, -1, -1}, {1, 1, 1}};
+    scene.add_sphere(0.01, {.position = {0.99, 0, 0}, .velocity = {1, 0, 0}});
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e5}});
+    const RunError first = error_of(sim, {.end_time = 1, .time_step = 1e-4});
+    const RunError second = error_of(sim, {.end_time = 1, .time_step = 1e-4});
+    CHECK(second.step == first.step + 1);  // still outside: still an error
+}

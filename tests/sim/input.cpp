@@ -1,0 +1,142 @@
+// What cannot be run is refused before the first step, with field, rule, value and remedy.
+#include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/sim/simulation.hpp>
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+using namespace abrade;
+
+namespace {
+
+constexpr Real nan_ = std::numeric_limits<Real>::quiet_NaN();
+const LinearSpring law{{.stiffness = 1e6, .restitution = 0.5}};
+
+Scene one_stone() {
+    Scene scene;
+    scene.add_sphere(0.02, {});
+    return scene;
+}
+
+template <class Call>
+std::string message_of(Call&& call) {
+    try {
+        call();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+std::string run(Scene scene, RunOptions options) {
+    return message_of([&] { simulate(std::move(scene)).contact(law).run(options); });
+}
+
+bool has(const std::string& text, const std::string& what) { return text.find(what) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("run options: each is checked") {
+    CHECK(run(one_stone(), {.end_time = 1e-3}) == "nothing was thrown");
+    CHECK(has(run(one_stone(), {.end_time = -1}), "RunOptions.end_time must be finite and not before now (0 s), got -1 s"));
+    CHECK(has(run(one_stone(), {.end_time = nan_}), "RunOptions.end_time"));
+    CHECK(has(run(one_stone(), {.end_time = std::numeric_limits<Real>::infinity()}), "RunOptions.end_time"));
+    for (const Real bad : {-1.0, nan_}) {
+        CHECK(has(run(one_stone(), {.end_time = 1, .time_step = bad}), "RunOptions.time_step"));
+        CHECK(has(run(one_stone(), {.end_time = 1, .observe_every = bad}), "RunOptions.observe_every"));
+        CHECK(has(run(one_stone(), {.end_time = 1, .skin = bad}), "RunOptions.skin"));
+    }
+    for (const Real bad : {0.0, -0.1, 1.1, nan_}) CHECK(has(run(one_stone(), {.end_time = 1, .safety = bad}), "RunOptions.safety must be in (0, 1]"));
+}
+
+TEST_CASE("a time step above the stable one: the message has the stable step, what sets it and the remedy") {
+    auto probe = simulate(one_stone()).contact(law);
+    probe.run({.end_time = 0});
+    const Real stable = probe.stable_time_step().seconds;
+    const std::string said = run(one_stone(), {.end_time = 1, .time_step = 1.01 * stable});
+    CHECK(has(said, "RunOptions.time_step must be at most the stable step of " + to_text(stable) + " s (contacts of the lightest stone), got " + to_text(1.01 * stable) + " s"));
+    CHECK(has(said, "take a smaller step"));
+    CHECK(run(one_stone(), {.end_time = 10 * stable, .time_step = 0.99 * stable}) == "nothing was thrown");
+}
+
+TEST_CASE("a time that has passed cannot be run to") {
+    auto sim = simulate(one_stone()).contact(law);
+    sim.run({.end_time = 1e-3});
+    CHECK_THROWS_AS(sim.run({.end_time = 0.5e-3}), InputError);
+    CHECK(sim.time() == doctest::Approx(1e-3));  // untouched by the error
+}
+
+TEST_CASE("stones: radius, density, position, velocity") {
+    for (const Real bad : {0.0, -0.02, nan_}) {
+        CHECK(has(message_of([&] { Scene().add_sphere(bad, {}); }), "Scene.add_sphere.radius must be finite and > 0"));
+        Scene scene;
+        CHECK(has(message_of([&] { simulate(scene.add_sphere(0.02, {}, bad)).contact(law).run({.end_time = 1e-3}); }), "density must be finite and > 0"));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        BodyState state;
+        state.position[axis] = nan_;
+        Scene scene;
+        scene.add_sphere(0.02, state);
+        const std::string said = run(scene, {.end_time = 1e-3});
+        CHECK(has(said, "position"));
+        CHECK(has(said, "nan"));
+        state = {};
+        state.velocity[axis] = nan_;
+        Scene moving;
+        moving.add_sphere(0.02, state);
+        CHECK(has(run(moving, {.end_time = 1e-3}), "finite"));
+    }
+    Scene outside;
+    outside.bounds = {{-1, -1, -1}, {1, 1, 1}};
+    outside.add_sphere(0.02, {.position = {3, 0, 0}});
+    CHECK(has(run(outside, {.end_time = 1e-3}), "Scene.stones.position must be inside Scene.bounds"));
+    Scene infinite;
+    infinite.add_sphere(0.02, {.position = {std::numeric_limits<Real>::infinity(), 0, 0}});
+    CHECK(has(run(infinite, {.end_time = 1e-3}), "finite"));
+}
+
+TEST_CASE("walls, gravity, concrete") {
+    CHECK_THROWS_AS(Scene().add_wall({0, 0, 0}, {0, 0, 0}), InputError);
+    CHECK_THROWS_AS(Scene().add_wall({0, 0, 0}, {0, 0, nan_}), InputError);
+    Scene scene = one_stone();
+    scene.gravity.x() = nan_;
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.gravity must be finite"));
+    scene = one_stone();
+    scene.concrete = ConcreteBlock{flat_lattice(0.1, 0.1, {}), -1};
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.concrete.density"));
+    scene.concrete = ConcreteBlock{};
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.concrete.lattice must be of at least one sphere"));
+}
+
+TEST_CASE("the feed") {
+    const FeedParams good{.volume_rate = 1e-3, .classes = {{0.04, 0.5, StoneShape::sphere}, {0.05, 0.5, StoneShape::angular}}, .region = {{0, 0, 0}, {1, 1, 1}}};
+    const auto said = [&](auto change) {
+        Scene scene;
+        scene.feed = good;
+        change(*scene.feed);
+        return run(scene, {.end_time = 1e-3});
+    };
+    CHECK(said([](FeedParams&) {}) == "nothing was thrown");
+    for (const Real bad : {0.0, -1.0, nan_}) {
+        CHECK(has(said([&](FeedParams& f) { f.volume_rate = bad; }), "Feed.volume_rate"));
+        CHECK(has(said([&](FeedParams& f) { f.density = bad; }), "Feed.density"));
+        CHECK(has(said([&](FeedParams& f) { f.classes[0].size = bad; }), "Feed.classes.size"));
+    }
+    CHECK(has(said([](FeedParams& f) { f.classes[1].fraction = 0.4; }), "Feed.classes.fraction (sum) must be 1, got 0.9; let the fractions add up to 1"));
+    CHECK(has(said([](FeedParams& f) { f.classes[1].fraction = nan_; }), "Feed.classes.fraction"));
+    CHECK(has(said([](FeedParams& f) { f.classes[0].fraction = 1.5, f.classes[1].fraction = -0.5; }), "Feed.classes.fraction must be finite and >= 0"));
+    CHECK(has(said([](FeedParams& f) { f.classes.clear(); }), "at least one stone class"));
+    CHECK(has(said([](FeedParams& f) { f.region = {}; }), "Feed.region"));
+    CHECK(has(said([](FeedParams& f) { f.region.high.x() = -1; }), "Feed.region"));
+    CHECK(has(said([](FeedParams& f) { f.velocity.x() = nan_; }), "velocity"));
+    CHECK(has(said([](FeedParams& f) { f.start = nan_; }), "Feed.start"));
+    CHECK(has(said([](FeedParams& f) { f.region.high.z() = nan_; }), "Feed.region"));
+}
+
+TEST_CASE("an empty scene runs, and nothing happens") {
+    auto sim = simulate(Scene{}).contact(law);
+    CHECK_NOTHROW(sim.run({.end_time = 1}));
+    CHECK(sim.time() == 1);
+    CHECK(sim.ledger().kinetic == 0);
+}
