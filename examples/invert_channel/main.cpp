@@ -36,12 +36,6 @@ struct Options {
     int threads = 0;
 };
 
-std::string to_short(Real value) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.4g", value);
-    return text;
-}
-
 void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::filesystem::path& path) {
     const nlohmann::ordered_json summary{
         {"title", c.title},
@@ -125,6 +119,8 @@ int run(const Options& options) {
             std::cerr << "error: " << error.what() << "\n";
             std::cerr << "saved as " << save_last_good(sim.last_good(), folder).string() << "\n";
             return 3;
+        } catch (const InputError& error) {
+            throw InputError(config.source + ": " + error.what());  // what only the whole scene could tell
         }
         history = recorder.take_history();
     }
@@ -135,10 +131,10 @@ int run(const Options& options) {
 
     std::cout << sim;
     if (results.stopped)
-        std::cout << "stopped early, at " << to_text(results.simulated_s) << " s of "
-                  << to_text(config.end_time) << " s\n";
-    std::cout << "worn " << to_short(1e6 * results.worn_volume_m3) << " cm3; at the centre "
-              << to_short(results.centre_depth_mm_per_m3) << " mm per m3 of sediment\n"
+        std::cout << "stopped early, at " << short_text(results.simulated_s) << " s of "
+                  << short_text(config.end_time) << " s\n";
+    std::cout << "worn " << short_text(1e6 * results.worn_volume_m3) << " cm3; at the centre "
+              << short_text(results.centre_depth_mm_per_m3) << " mm per m3 of sediment\n"
               << "results in " << place.string() << ", start with report.html\n";
     return 0;
 }

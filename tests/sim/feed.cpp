@@ -141,8 +141,8 @@ TEST_CASE("through the engine: what was fed is there, has passed the gauge, or h
     scene.gauge = 0.5;
     scene.outlet = 1.0;
     scene.add_wall({0, 0, 0}, {0, 0, 1});
-    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e5, .restitution = 0.5, .friction = 0.1}});
-    sim.run({.end_time = 2});
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e6, .restitution = 0.5, .friction = 0.1}});
+    sim.run({.end_time = 2, .time_step = 1.5e-5});
     const Particles& p = sim.particles();
     Real inside = 0, beyond_gauge = 0;
     for (std::size_t b = 0; b < p.volume.size(); ++b) {
@@ -155,7 +155,7 @@ TEST_CASE("through the engine: what was fed is there, has passed the gauge, or h
     CHECK(left > 0.001);
     CHECK(sim.sediment_passed() == doctest::Approx(left + beyond_gauge).epsilon(1e-12));
     const Ledger& e = sim.ledger();
-    CHECK(e.residual_relative() < 1e-12);
+    CHECK(e.residual_relative() < 1e-11);  // 1e5 steps of a hundred stones, summed up plainly
     CHECK(e.fed_kinetic > 0);
     CHECK(e.left_kinetic > 0);
     CHECK(std::abs(e.integration_residue()) < 5e-3 * e.throughput());

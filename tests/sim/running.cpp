@@ -78,6 +78,22 @@ TEST_CASE("the skin of the neighbour list changes no bit of the motion") {
     CHECK(same_bits(wide, run(0.0002)));  // 1.6 steps of the fastest
 }
 
+TEST_CASE("two that race towards each other from just beyond the skin are found in time") {
+    // They leave their places by more than half a skin in the very step in which they touch.
+    const auto run = [](Real skin) {
+        Scene scene;
+        scene.gravity.setZero();
+        scene.add_sphere(0.01, {.position = {-0.0101 - 1e-7, 0, 0}, .velocity = {7, 0, 0}});
+        scene.add_sphere(0.01, {.position = {0.0101 + 1e-7, 0, 0}, .velocity = {-7, 0, 0}});
+        auto sim = simulate(std::move(scene)).contact(law);
+        sim.run({.end_time = 0.0009765625, .time_step = step, .skin = skin});  // 64 steps of 0.1 mm
+        return state(sim.particles());
+    };
+    const auto wide = run(0.01);
+    CHECK(same_bits(wide, run(0.0002)));
+    CHECK(same_bits(wide, run(0.0001)));
+}
+
 TEST_CASE("the run ends on time, and the observer sees start, intervals and end") {
     auto sim = simulate(box_of_stones(2)).contact(law);
     std::vector<Real> seen;

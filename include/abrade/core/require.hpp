@@ -26,6 +26,13 @@ inline std::string to_text(Real value) {
     return buffer;
 }
 
+/// Four digits, for the eye: "0.06085", "1.234e-05".
+inline std::string short_text(Real value) {
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%.4g", value);
+    return buffer;
+}
+
 /// What a requirement says when it is broken. `field` is `Type.member`; `rule` continues "must be ...".
 struct Requirement {
     std::string_view field;

@@ -219,11 +219,11 @@ private:
                    std::to_string(p.id[body]);
         };
         const auto place = [&] {
-            return "x = (" + to_text(p.position[b].x()) + ", " + to_text(p.position[b].y()) + ", " +
-                   to_text(p.position[b].z()) + ") m, speed " + to_text(p.velocity[b].norm()) + " m/s";
+            return "x = (" + short_text(p.position[b].x()) + ", " + short_text(p.position[b].y()) + ", " +
+                   short_text(p.position[b].z()) + ") m, speed " + short_text(p.velocity[b].norm()) + " m/s";
         };
-        std::string text = "step " + std::to_string(step_) + " (t = " + to_text(time_) +
-                           " s, dt = " + to_text(time_step_) + " s): ";
+        std::string text = "step " + std::to_string(step_) + " (t = " + short_text(time_) +
+                           " s, dt = " + short_text(time_step_) + " s): ";
         switch (trouble.cause) {
             case Trouble::Cause::lost:
                 text += name(b) + " left the world's bounds, " + place();
@@ -232,15 +232,15 @@ private:
                 text += name(b) + " overlaps " +
                         (trouble.other < 0 ? std::string("a boundary")
                                            : name(static_cast<std::size_t>(trouble.other))) +
-                        " by " + to_text(std::round(1000 * trouble.measure) / 10) +
-                        " % of the smaller radius (limit " + to_text(100 * World::overlap_limit) + " %), " +
-                        place() + "; stiffer springs or a smaller step are needed";
+                        " by " + short_text(100 * trouble.measure) + " % of the smaller radius (limit " +
+                        short_text(100 * World::overlap_limit) + " %), " + place() +
+                        "; stiffer springs or a smaller step are needed";
                 break;
             default:
                 text += "velocity of " + name(b) + " is not finite, " + place();
                 break;
         }
-        text += "; the last good state is that of t = " + to_text(last_good_.time) + " s";
+        text += "; the last good state is that of t = " + short_text(last_good_.time) + " s";
         throw RunError(text, step_, time_, p.id[b]);
     }
 
@@ -284,20 +284,20 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
     const auto percent = [](Real share) {
         return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
     };
-    out << "\ntime     " << to_text(sim.time_) << " s in " << sim.step_ << " steps of "
-        << to_text(sim.time_step_) << " s (stable: " << to_text(sim.stable_.seconds) << " s, set by "
+    out << "\ntime     " << short_text(sim.time_) << " s in " << sim.step_ << " steps of "
+        << short_text(sim.time_step_) << " s (stable: " << short_text(sim.stable_.seconds) << " s, set by "
         << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
         << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().pairs().size() << "\n";
     if (sim.concrete().sites() > 0)
         out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken()
-            << " bonds broken, worn volume " << to_text(sim.concrete().worn_volume()) << " m3\n";
+            << " bonds broken, worn volume " << short_text(sim.concrete().worn_volume()) << " m3\n";
     out << "ledger   [J]\n";
     sim.ledger_.visit([&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
     });
-    return out << "wall     " << to_text(std::round(1000 * sim.wall_seconds_) / 1000) << " s: forces "
-               << percent(shares.forces) << ", motion " << percent(shares.motion) << ", neighbour lists "
-               << percent(shares.renewal) << "\n";
+    return out << "wall     " << short_text(sim.wall_seconds_) << " s: forces " << percent(shares.forces)
+               << ", motion " << percent(shares.motion) << ", neighbour lists " << percent(shares.renewal)
+               << "\n";
 }
 
 }  // namespace abrade

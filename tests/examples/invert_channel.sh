@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# The invert channel as a user meets it: a short run, a stopped run, a run that goes wrong, and bad input.
+set -euo pipefail
+program="$1"
+failures=0
+
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+value() { grep -oE "\"$2\": *[^,}]*" "$1" | head -1 | sed 's/.*: *//'; }
+# Compares numbers: holds NAME EXPRESSION, with awk's syntax.
+holds() { awk "BEGIN { exit !($2) }" || fail "$1: $2"; }
+
+short=(--set channel.length=0.5 --set run.end_time=0.06 --set compare.gauge=0.2 --set compare.from=0.2 --set compare.to=0.5)
+
+# --- a short run gives everything that is promised
+"$program" "${short[@]}" --out short > short.log || fail "the short run fails: $(cat short.log)"
+for file in report.html summary.json series.h5 series_stones.xdmf series_concrete.xdmf abrasion_depth.png centre_line.png ledger.png side_view.png plan_view.png; do
+    [ -s "short/$file" ] || fail "short/$file is missing or empty"
+done
+for key in wall_s simulated_s represented_h stones concrete_spheres sediment_passed_m3 converted_sediment_m3 worn_volume_m3 \
+    worn_volume_from_energy_m3 overflow_volume_m3 centre_depth_mm_per_m3 max_depth_mm mean_depth_mm energy_lost_normal_J \
+    energy_lost_sliding_J ledger_residual_relative bonds_broken time_step_s fluid contact bond wear; do
+    grep -q "\"$key\":" short/summary.json || fail "summary.json has no $key"
+done
+holds "ledger closes" "$(value short/summary.json ledger_residual_relative) < 1e-6"
+holds "something wore" "$(value short/summary.json worn_volume_m3) > 0"
+worn=$(value short/summary.json worn_volume_m3) energy=$(value short/summary.json worn_volume_from_energy_m3)
+holds "worn volume is the energy lost" "($worn - $energy)^2 <= (1e-9 * $worn)^2"
+holds "the run is as long as asked" "($(value short/summary.json simulated_s) - 0.06)^2 < 1e-18"
+grep -q "assum" short/report.html || fail "the report marks no assumptions"
+grep -qE 'src="http|href="http' short/report.html && fail "the report loads something from outside"
+
+# --- measured points are drawn; a bad row is named
+printf 'x,depth\n0.3,0.1\n' > points.csv
+"$program" "${short[@]}" --set run.end_time=0.01 --set "compare.measured=\"points.csv\"" --out measured > /dev/null || fail "measured points"
+grep -q 'points.csv' measured/centre_line.gp || fail "measured points are not in the chart"
+
+# --- Ctrl-C ends cleanly with what there is so far
+"$program" --out stopped > stopped.log 2>&1 &
+pid=$!
+sleep 2
+kill -INT $pid
+wait $pid || fail "Ctrl-C: exit code $?"
+[ "$(value stopped/summary.json stopped_early)" = true ] || fail "a stopped run does not say so"
+
+# --- a run that goes wrong: exit 3, nothing under the final name, the last good state saved
+status=0
+"$program" "${short[@]}" --set run.end_time=0.3 --set contact.stiffness=30 --out soft > soft.log 2>&1 || status=$?
+[ $status -eq 3 ] || fail "runaway overlap: exit code $status"
+grep -qE 'step [0-9]+ .*with id [0-9]+ .*overlaps' soft.log || fail "runaway overlap is not explained: $(cat soft.log)"
+[ ! -e soft ] && [ -s soft.failed/last_good.h5 ] || fail "runaway overlap: wrong files"
+
+# --- bad input: exit 2, one clear message, nothing written
+refused() { # refused WHAT REGEX OPTION...
+    local what="$1" regex="$2" code=0
+    shift 2
+    "$program" --out refused "$@" > refused.log 2>&1 || code=$?
+    [ $code -eq 2 ] || fail "$what: exit code $code"
+    grep -qE "$regex" refused.log || fail "$what: message is '$(cat refused.log)'"
+    [ "$(wc -l < refused.log)" -le 3 ] || fail "$what: message of $(wc -l < refused.log) lines"
+    [ -z "$(ls -A | grep refused | grep -v refused.log)" ] || fail "$what: left something behind"
+}
+printf '[run]\nend_time = 1\noutput_every = 0.1\n[chanel]\nlength = 1\n' > typo.toml
+refused "unknown table" 'typo.toml|channel.length' typo.toml
+printf '[run\n' > broken.toml
+refused "syntax" 'broken.toml:1' broken.toml
+refused "unknown key" 'contact.frictoin.*contact.friction' --set contact.frictoin=0.3
+refused "missing file" 'nowhere.toml' nowhere.toml
+refused "wrong type" 'contact.friction.*number' --set 'contact.friction="high"'
+refused "negative size" 'concrete.sphere_diameter.*> 0.*-0.02 m' --set concrete.sphere_diameter=-0.02
+refused "unstable step" 'time_step.*at most the stable step.*1 s.*smaller step' --set run.time_step=1
+refused "stones too large" 'sediment.sizes.*width.*1.5 m' --set 'sediment.sizes=[0.04,0.05,0.075,0.1,1.5]'
+refused "fractions" 'fraction.*1' --set 'sediment.fractions=[0.2,0.2,0.2,0.2,0.3]'
+refused "restitution" 'restitution.*\(0, 1\].*1.5' --set contact.restitution=1.5
+printf 'x,depth\n0.3,high\n' > points_bad.csv
+refused "bad measured points" 'points_bad.csv.*(row|line|:) *2' --set 'compare.measured="points_bad.csv"'
+refused "unknown option" 'help' --frobnicate
+mkdir -p readonly_is_a_file && touch readonly_is_a_file/inside
+code=0; "$program" --out readonly_is_a_file/inside > refused.log 2>&1 || code=$?
+[ $code -eq 2 ] || fail "an output folder that is a file: exit code $code, $(cat refused.log)"
+
+[ $failures -eq 0 ] && echo "invert channel: all as promised"
+exit $((failures > 0))

@@ -1,0 +1,254 @@
+// The stable step that is predicted never exceeds the one that is measured, and is not absurdly cautious.
+#include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/sim/simulation.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace abrade;
+
+namespace {
+
+/// A system of spheres stepped without the guard on the step: kick, drift, respond, as the engine does.
+template <ContactLaw C, BondLaw B>
+struct Free {
+    C contact;
+    B bond;
+    Particles p;
+    Contacts<C> contacts;
+    Network<B> network;
+    Real dt = 0;
+
+    void forces() {
+        contacts.respond(contact, NoWear{}, p, {}, dt);
+        if constexpr (!std::same_as<B, NoBond>) network.respond(bond, NoWear{}, p, [](Index) { return 1.0; }, dt);
+        for (std::size_t b = 0; b < p.position.size(); ++b) p.force[b].setZero(), p.torque[b].setZero();
+        const auto add = [&](const auto& source) {
+            for (std::size_t n = 0; n < source.pairs().size(); ++n) {
+                const PairLoad& load = source.loads()[n];
+                if (!load.active) continue;
+                const auto i = static_cast<std::size_t>(source.pairs()[n].first), j = static_cast<std::size_t>(source.pairs()[n].second);
+                p.force[i] += load.force, p.force[j] -= load.force;
+                p.torque[i] += load.arm_first * load.twist, p.torque[j] += load.arm_second * load.twist;
+            }
+        };
+        add(contacts);
+        if constexpr (!std::same_as<B, NoBond>) add(network);
+    }
+    void kick(Real by) {
+        for (std::size_t b = 0; b < p.position.size(); ++b) {
+            if (p.inverse_mass[b] == 0) continue;
+            p.velocity[b] += by * p.inverse_mass[b] * p.force[b];
+            p.angular_momentum[b] += by * p.torque[b];
+        }
+    }
+    Real kinetic() const {
+        Real sum = 0;
+        for (Index b = 0; b < p.bodies(); ++b) sum += p.kinetic_energy(b);
+        return sum;
+    }
+    /// Whether the kinetic energy grows a hundred times over what it was shaken with.
+    bool grows(int steps) {
+        const Real start = kinetic();
+        for (int n = 0; n < steps; ++n) {
+            kick(0.5 * dt);
+            for (std::size_t b = 0; b < p.position.size(); ++b) {
+                p.position[b] += dt * p.velocity[b];
+                const Vec3 v = p.velocity[b] + 0.5 * dt * p.inverse_mass[b] * p.force[b];
+                const Vec3 momentum = p.angular_momentum[b] + 0.5 * dt * p.torque[b];
+                p.place_spheres(static_cast<Index>(b), v, p.angular_velocity(static_cast<Index>(b), momentum));
+            }
+            forces();
+            kick(0.5 * dt);
+            if (!(kinetic() < 100 * start)) return true;
+        }
+        return false;
+    }
+};
+
+// Contacts are pressed together only just: a row under pressure buckles, which no time step can help. The shaking
+// moves them by a hundredth of the overlap, so that they stay closed until energy has grown ten thousandfold.
+constexpr Real d = 0.02, overlap = 1e-9;
+constexpr int steps = 5000;
+
+/// Shakes every free body by a little, each another way: all modes are in it.
+void shake(Particles& p) {
+    Real phase = 0;
+    for (std::size_t b = 0; b < p.position.size(); ++b) {
+        if (p.inverse_mass[b] == 0) continue;
+        phase += 1.7;
+        p.velocity[b] = 1e-7 * Vec3(std::sin(phase), std::cos(2.1 * phase), std::sin(3.3 * phase));
+        p.angular_momentum[b] = 1e-7 * p.mass[b] * d * Vec3(std::cos(1.3 * phase), std::sin(0.7 * phase), std::cos(phase));
+    }
+}
+
+/// The largest step that is stable, by bisection; 0 when even a quarter of the predicted one is not.
+template <class Make>
+Real measured_limit(const Make& make, Real predicted) {
+    Real low = 0.25 * predicted, high = 20 * predicted;
+    REQUIRE(make(high).grows(steps));
+    if (make(low).grows(steps)) return 0;
+    for (int n = 0; n < 12; ++n) {
+        const Real middle = std::sqrt(low * high);
+        (make(middle).grows(steps) ? high : low) = middle;
+    }
+    return low;
+}
+
+/// Spheres in contact: a row or a block, pressed together by their neighbours and by fixed ends.
+auto row(int count, Real restitution, Real friction) {
+    return [=](Real dt) {
+        Free<LinearSpring, NoBond> free{LinearSpring{{.stiffness = 1e6, .restitution = restitution, .friction = friction}}, NoBond{}, {}, {}, {}, dt};
+        const Clump ball = make_clump("ball", {{Vec3::Zero(), 0.5 * d}});
+        std::vector<Pair> pairs;
+        for (int n = 0; n < count; ++n) {
+            const bool end = count > 2 && (n == 0 || n + 1 == count);
+            free.p.add(ball, 2650, {.position = {n * (d - overlap), 0, 0}}, end ? Kind::fixed : Kind::stone);
+            if (n > 0) pairs.push_back({n - 1, n});
+        }
+        if (count == 2) {  // a pair needs something to press it: hold one, press by a third on the other side
+            free.p.add(ball, 2650, {.position = {2 * (d - overlap), 0, 0}}, Kind::fixed);
+            free.p.add(ball, 2650, {.position = {-(d - overlap), 0, 0}}, Kind::fixed);
+            pairs = {{0, 1}, {0, 3}, {1, 2}};
+        }
+        std::sort(pairs.begin(), pairs.end());
+        free.contacts.rebuild(pairs, free.p.spheres(), {});
+        shake(free.p);
+        return free;
+    };
+}
+
+auto block(Index side, Real damping, Real ratio) {
+    return [=](Real dt) {
+        Free<LinearSpring, MohrCoulomb> free{LinearSpring{{.stiffness = 1e5}}, MohrCoulomb{{.tensile = 1e30, .stiffness = 4.2e8, .stiffness_ratio = ratio, .damping = damping}}, {}, {}, {}, dt};
+        const Lattice lattice = flat_lattice(side * d, side * d, {.sphere_diameter = d, .layers = side});
+        const Clump ball = make_clump("ball", {{Vec3::Zero(), 0.5 * d}});
+        for (const LatticeSite& site : lattice.sites)
+            free.p.add(ball, 2400, {.position = site.centre}, site.layer + 1 == side ? Kind::fixed : Kind::concrete);
+        std::vector<Pair> bonded;
+        for (const auto& [i, j] : lattice.neighbours())
+            if (lattice.sites[static_cast<std::size_t>(i)].layer + 1 < side) bonded.push_back({i, j});  // not within the fixed base
+        free.network.build(free.p, bonded);
+        free.contacts.rebuild({}, free.p.spheres(), {});
+        shake(free.p);
+        return free;
+    };
+}
+
+template <class System>
+Real predicted_step(const System& s) {
+    return stable_step(s.contact, s.bond, s.p, s.network, std::nullopt).seconds;
+}
+
+}  // namespace
+
+TEST_CASE("contacts: pair and chain, with and without damping and friction") {
+    for (const int count : {2, 20})
+        for (const Real restitution : {1.0, 0.5, 0.1})
+            for (const Real friction : {0.0, 1e6}) {
+                const auto make = row(count, restitution, friction);
+                const Real predicted = predicted_step(make(1e-6)), measured = measured_limit(make, predicted);
+                MESSAGE(count << " spheres, restitution " << restitution << std::string(friction > 0 ? ", sticking" : ", smooth") << ": measured/predicted " << measured / predicted);
+                CHECK(predicted <= measured);
+                CHECK(measured < 8 * predicted);  // cautious for a chain: it reckons with twelve neighbours
+            }
+}
+
+TEST_CASE("bonded block, with and without damping") {
+    for (const Real damping : {0.0, 0.1, 0.5})
+        for (const Real ratio : {0.2, 1.0}) {
+            const auto make = block(6, damping, ratio);
+            const Real predicted = predicted_step(make(1e-7)), measured = measured_limit(make, predicted);
+            MESSAGE("6 x 6 x 6, damping " << damping << ", ks/kn " << ratio << ": predicted " << predicted * 1e6 << " us, measured " << measured * 1e6 << " us, ratio "
+                                          << measured / predicted);
+            CHECK(predicted <= measured);
+            CHECK(measured < 2.5 * predicted);
+            // The model's table, undamped, six bonds at kn = 4.2e8 N/m and d = 0.02 m.
+            if (damping == 0) CHECK(measured * 1e6 == doctest::Approx(ratio < 0.5 ? 4.0 : 2.8).epsilon(0.15));
+        }
+}
+
+TEST_CASE("what is predicted scales as sqrt(m/k), and says what sets it") {
+    const auto soft = predicted_step(row(2, 1, 0)(1e-6));
+    Scene scene;
+    scene.add_sphere(0.5 * d, {});
+    scene.concrete = ConcreteBlock{flat_lattice(0.1, 0.1, {.layers = 2})};
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e6}}).bond(MohrCoulomb{{.tensile = 1e6, .stiffness = 4e8}});
+    sim.run({.end_time = 0});
+    CHECK(sim.stable_time_step().limit == "bonded concrete");
+    CHECK(sim.stable_time_step().seconds < soft);
+    Scene light;
+    light.add_sphere(0.5 * d, {}).add_sphere(0.1 * d, {.position = {1, 0, 0}});
+    auto stones = simulate(light).contact(LinearSpring{{.stiffness = 1e6}});
+    stones.run({.end_time = 0});
+    CHECK(stones.stable_time_step().limit == "contacts of the lightest stone");
+    CHECK(stones.stable_time_step().seconds == doctest::Approx(soft * std::pow(0.2, 1.5)).epsilon(1e-9));
+}
+
+TEST_CASE("an elastic contact that sticks, or a sound bond, rings without gaining energy, far below the stable step") {
+    // 1e4 steps at a quarter of the limit: a growth of 1e-4 a step would show as e.
+    const auto swing = [](auto system) {
+        const Real start = system.kinetic();
+        Real most = 0;
+        for (int n = 0; n < 10; ++n) {
+            if (system.grows(1000)) return 1e300;
+            most = std::max(most, system.kinetic() / start);
+        }
+        return most;
+    };
+    const auto stuck = row(2, 1, 1e6);
+    CHECK(swing(stuck(0.25 * predicted_step(stuck(1e-6)))) < 2);
+    const auto smooth = row(2, 1, 0);
+    CHECK(swing(smooth(0.25 * predicted_step(smooth(1e-6)))) < 2);
+    const auto bonded = block(3, 0, 0.2);
+    CHECK(swing(bonded(0.25 * predicted_step(bonded(1e-7)))) < 2);
+}
+
+TEST_CASE("damping lowers the stable step of a velocity that is predicted from the step before: 2/omega (sqrt(1 + 4 zeta^2) - 2 zeta)") {
+    // One sphere between two fixed ones, along their line only: omega^2 = 2 k/m, each contact with the whole mass.
+    for (const Real restitution : {0.9, 0.5, 0.2}) {
+        const LinearSpring law{{.stiffness = 1e6, .restitution = restitution}};
+        const auto make = [&](Real dt) {
+            Free<LinearSpring, NoBond> free{law, NoBond{}, {}, {}, {}, dt};
+            const Clump ball = make_clump("ball", {{Vec3::Zero(), 0.5 * d}});
+            for (int n = 0; n < 3; ++n) free.p.add(ball, 2650, {.position = {n * (d - overlap), 0, 0}}, n == 1 ? Kind::stone : Kind::fixed);
+            free.contacts.rebuild({{0, 1}, {1, 2}}, 3, {});
+            free.p.velocity[1].x() = 1e-8;
+            return free;
+        };
+        const auto system = make(1e-6);
+        const Real omega = std::sqrt(2 * 1e6 / system.p.mass[1]);
+        const Real zeta = law.damping_ratio() * std::sqrt(2.0);  // two dashpots c = 2 z sqrt(k m) against 2 sqrt(2 k m)
+        const Real exact = 2 / omega * (std::sqrt(1 + 4 * zeta * zeta) - 2 * zeta);
+        const Real predicted = predicted_step(system), measured = measured_limit(make, 0.5 * exact);
+        MESSAGE("restitution " << restitution << ": measured/closed form " << measured / exact << ", measured/predicted " << measured / predicted);
+        CHECK(measured == doctest::Approx(exact).epsilon(0.05));  // near the limit growth is slow
+        CHECK(predicted <= measured);
+    }
+}
+
+TEST_CASE("clumps: a stone pressed between walls is stable at the predicted step") {
+    // Many member spheres in contact at once, levers longer than their radii.
+    for (const StoneShape shape : {StoneShape::ellipsoid, StoneShape::angular})
+        for (const Real friction : {0.0, 1e6}) {
+            const Clump stone = make_stone(shape, 0.05);
+            CAPTURE(stone.name);
+            CAPTURE(friction);
+            Scene scene;
+            scene.gravity.setZero();
+            scene.add_stone(stone, {.angular_velocity = {1e-3, 2e-3, 1e-3}});
+            for (int axis = 0; axis < 3; ++axis)
+                for (const Real side : {-1.0, 1.0}) {
+                    Real reach = 0;
+                    for (const Sphere& s : stone.members) reach = std::max(reach, side * s.centre[axis] + s.radius);
+                    scene.add_wall((reach - 1e-5) * side * Vec3::Unit(axis), -side * Vec3::Unit(axis));
+                }
+            auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e6, .friction = friction}});
+            sim.run({.end_time = 0});
+            const Real dt = 0.999 * sim.stable_time_step().seconds;
+            Real most = 0;
+            CHECK_NOTHROW(sim.run({.end_time = 20'000 * dt, .time_step = dt, .observe_every = 100 * dt},
+                                  [&](const auto& s) { most = std::max(most, s.ledger().kinetic); }));
+            // Elastic: at most what 24 pressed contacts stored at first, and the spin.
+            CHECK(most < 2 * (24 * 0.5 * 1e6 * square(1e-5) + sim.ledger().kinetic_start));
+        }
+}
