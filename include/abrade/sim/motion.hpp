@@ -22,6 +22,35 @@ struct KickSums {
     }
 };
 
+/// What a drift notices: displacement since the list of pairs was made, speed, volume past the gauge, and the
+/// first body outside the bounds.
+struct DriftSums {
+    Real furthest2 = 0, fastest2 = 0;  ///< [m2], [m2/s2]
+    Real gauge = 0;                    ///< [m3]
+    Index lost = -1;
+};
+
+/// Both, for a pass that kicks and drifts.
+struct MoveSums {
+    KickSums kick;
+    DriftSums drift;
+    MoveSums& operator+=(const MoveSums& other) noexcept {
+        kick += other.kick;
+        drift.furthest2 = std::max(drift.furthest2, other.drift.furthest2);
+        drift.fastest2 = std::max(drift.fastest2, other.drift.fastest2);
+        drift.gauge += other.drift.gauge;
+        if (drift.lost < 0) drift.lost = other.drift.lost;
+        return *this;
+    }
+};
+
+/// What the engine finds wrong with a step.
+struct Trouble {
+    enum class Cause : std::uint8_t { none, not_finite, lost, overlap } cause = Cause::none;
+    Index body = -1, other = -1;  ///< bodies; `other` is negative for a boundary
+    Real measure = 0;             ///< overlap over the smaller radius [-]
+};
+
 /// v += dt F/m, L += dt tau for body b. Each force is paired with (v_before + v_after)/2 dt, so the works
 /// add up to the change in kinetic energy exactly. `interaction` is the force of contacts and bonds, which
 /// alone turn bodies; `fluid` is null where there is none.

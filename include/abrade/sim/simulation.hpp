@@ -184,7 +184,7 @@ private:
     }
 
     void do_step(Real t) {
-        if (world_->list_is_stale() || step_ - list_made_ >= longest_list_life) {
+        if (world_->list_is_stale(time_step_) || step_ - list_made_ >= longest_list_life) {
             const auto start = Clock::now();
             world_->renew(t, feed_ ? &*feed_ : nullptr);
             list_made_ = step_;

@@ -11,13 +11,6 @@
 
 namespace abrade {
 
-/// What the engine finds wrong with a step.
-struct Trouble {
-    enum class Cause : std::uint8_t { none, not_finite, lost, overlap } cause = Cause::none;
-    Index body = -1, other = -1;  ///< bodies; `other` is negative for a boundary
-    Real measure = 0;             ///< overlap over the smaller radius [-]
-};
-
 /// State and forces: a MechanicalState for the steppers of dem/stepper.hpp.
 template <class P>
 class World {
@@ -75,8 +68,11 @@ public:
 
     // --- between steps -------------------------------------------------------------------------
 
-    /// Whether the list of near pairs may miss a contact, or the set of bodies should change.
-    bool list_is_stale() const noexcept { return furthest2_ > square(0.5 * skin_) || pattern_changed_; }
+    /// Whether the list of near pairs may miss a contact in the step to come, or the set of bodies should
+    /// change.
+    bool list_is_stale(Real dt) const noexcept {
+        return std::sqrt(furthest2_) + dt * std::sqrt(fastest2_) > 0.5 * skin_ || pattern_changed_;
+    }
 
     /// Renews what changes seldom: loose concrete, bodies that left, supply, near pairs.
     void renew(Real t, Feed* feed) {
@@ -95,7 +91,8 @@ public:
         admit_new_bodies();
         ledger_.left_stored += contacts_.rebuild(find_pairs(), particles_.spheres(), moved);
         built_at_ = particles_.centre;
-        furthest2_ = 0;
+        furthest2_ = fastest2_ = 0;
+        for (const Vec3& v : particles_.centre_velocity) fastest2_ = std::max(fastest2_, v.squaredNorm());
         pattern_changed_ = false;
     }
 
@@ -145,22 +142,6 @@ private:
             return kinetic += o.kinetic, potential += o.potential, *this;
         }
     };
-    struct DriftSums {
-        Real furthest2 = 0, gauge = 0;
-        Index lost = -1;
-    };
-    struct MoveSums {
-        KickSums kick;
-        DriftSums drift;
-        MoveSums& operator+=(const MoveSums& other) noexcept {
-            kick += other.kick;
-            drift.furthest2 = std::max(drift.furthest2, other.drift.furthest2);
-            drift.gauge += other.drift.gauge;
-            if (drift.lost < 0) drift.lost = other.drift.lost;
-            return *this;
-        }
-    };
-
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
 
     Real potential_energy(Index b) const noexcept {
@@ -273,9 +254,12 @@ private:
         const Real x_before = particles_.position[at(b)].x();
         drift_body(particles_, b, dt);
         const Index first = particles_.first_sphere[at(b)];
-        for (Index s = first; s < first + particles_.sphere_count[at(b)]; ++s)
+        for (Index s = first; s < first + particles_.sphere_count[at(b)]; ++s) {
             sums.drift.furthest2 =
                 std::max(sums.drift.furthest2, (particles_.centre[at(s)] - built_at_[at(s)]).squaredNorm());
+            sums.drift.fastest2 =
+                std::max(sums.drift.fastest2, particles_.centre_velocity[at(s)].squaredNorm());
+        }
         const Vec3& x = particles_.position[at(b)];
         if (scene_.gauge && particles_.kind[at(b)] == Kind::stone)
             sums.drift.gauge =
@@ -302,6 +286,7 @@ private:
         ledger_.drag_input += sums.kick.drag_input;
         ledger_.buoyancy_work += sums.kick.buoyancy;
         furthest2_ = std::max(furthest2_, sums.drift.furthest2);
+        fastest2_ = std::max(fastest2_, sums.drift.fastest2);
         gauge_volume_ += sums.drift.gauge;
         if (trouble_.cause != Trouble::Cause::none) return;
         if (sums.kick.bad >= 0)
@@ -384,7 +369,7 @@ private:
     std::vector<Vec3> interaction_;  ///< [body] force of contacts and bonds [N]
     std::vector<FluidLoad> fluid_;   ///< [body]; empty without a fluid
     std::vector<Vec3> built_at_;     ///< [sphere] where the list of pairs was made [m]
-    Real skin_ = 0, furthest2_ = 0, gauge_volume_ = 0;
+    Real skin_ = 0, furthest2_ = 0, fastest2_ = 0, gauge_volume_ = 0;
     Index broken_tension_ = 0, broken_shear_ = 0;
     Real loads_time_ = 0;
     bool loads_waiting_ = false;  ///< between the force pass and the kick that gathers its loads

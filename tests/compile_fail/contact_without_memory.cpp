@@ -1,0 +1,16 @@
+// expect: Memory
+// A contact law that does not say what it remembers.
+#include <abrade/sim/simulation.hpp>
+
+struct Forgetful {
+    static constexpr std::string_view name = "Forgetful";
+    using Params = abrade::NoParams;
+    explicit Forgetful(Params) {}
+    const Params& params() const noexcept;
+    abrade::Real stable_dt(abrade::Real, abrade::Real) const noexcept;
+    abrade::Real stiffness() const noexcept;
+    abrade::Real tangential_stiffness() const noexcept;
+    abrade::Real damping_ratio() const noexcept;
+};
+
+int main() { abrade::simulate({}).contact(Forgetful{{}}).run({.end_time = 1}); }

@@ -1,0 +1,23 @@
+// expect: validate
+// A contact law whose parameters do not check themselves.
+#include <abrade/sim/simulation.hpp>
+
+struct Trusting {
+    static constexpr std::string_view name = "Trusting";
+    struct Params {
+        double stiffness;
+        void visit(auto&&) const {}
+    };
+    template <class Number>
+    struct Memory {};
+    explicit Trusting(Params) {}
+    const Params& params() const noexcept;
+    abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(const abrade::ContactKinematics<abrade::Real>&,
+                                                                        const Memory<abrade::Real>&) const noexcept;
+    abrade::Real stable_dt(abrade::Real, abrade::Real) const noexcept;
+    abrade::Real stiffness() const noexcept;
+    abrade::Real tangential_stiffness() const noexcept;
+    abrade::Real damping_ratio() const noexcept;
+};
+
+int main() { abrade::simulate({}).contact(Trusting{{1}}).run({.end_time = 1}); }
