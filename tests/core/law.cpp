@@ -61,23 +61,23 @@ struct NoName {
     const Params& params() const;
 };
 struct NoParamsMember {
-    static constexpr std::string_view name = "x";
+    [[maybe_unused]] static constexpr std::string_view name = "x";
     explicit NoParamsMember(NoParams) {}
     const NoParams& params() const;
 };
 struct NotFromParams {
-    static constexpr std::string_view name = "x";
+    [[maybe_unused]] static constexpr std::string_view name = "x";
     using Params = NoParams;
     const Params& params() const;
 };
 struct ParamsByValue {
-    static constexpr std::string_view name = "x";
+    [[maybe_unused]] static constexpr std::string_view name = "x";
     using Params = NoParams;
     explicit ParamsByValue(Params) {}
     Params params() const;
 };
 struct NameIsNumber {
-    static constexpr int name = 3;
+    [[maybe_unused]] static constexpr int name = 3;
     using Params = NoParams;
     explicit NameIsNumber(Params) {}
     const Params& params() const;

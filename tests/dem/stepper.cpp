@@ -25,7 +25,7 @@ struct Spring {
 };
 
 struct OnlyKicks {
-    friend void kick(OnlyKicks&, Real) {}
+    [[maybe_unused]] friend void kick(OnlyKicks&, Real) {}
 };
 
 static_assert(MechanicalState<Oscillator>);

@@ -118,9 +118,9 @@ TEST_CASE("the integration residue falls with the step; its order is measured") 
                           {"damped head-on", LinearSpring{{.stiffness = 1e6, .restitution = 0.5}}, false},
                           {"elastic, sticking", LinearSpring{{.stiffness = 1e6, .friction = 5}}, true},
                           {"damped, sliding", LinearSpring{{.stiffness = 1e6, .restitution = 0.5, .friction = 0.1}}, true}}) {
-        const Real coarse = mean_residue(c.law, c.is_oblique, 1e-5), fine = mean_residue(c.law, c.is_oblique, 1.25e-6);
+        const Real coarse = mean_residue(c.law, c.is_oblique, 4e-6), fine = mean_residue(c.law, c.is_oblique, 5e-7);
         const Real order = std::log2(coarse / fine) / 3;
-        MESSAGE(c.name << ": residue " << coarse << " at " << pi * std::sqrt(0.065 / 1e6) / 1e-5 << " steps a contact, " << fine << " at eight times as many; order " << order);
+        MESSAGE(c.name << ": residue " << coarse << " at " << pi * std::sqrt(0.065 / 1e6) / 4e-6 << " steps a contact, " << fine << " at eight times as many; order " << order);
         CHECK(order > 1.8);
         CHECK(fine < 1e-4);
     }

@@ -53,7 +53,10 @@ void check_sound(const Simulation& sim, const RunError& error) {
     for (const auto* column : {&good.position, &good.velocity, &good.angular_momentum, &good.orientation})
         for (const Real value : *column) CHECK(std::isfinite(value));
     CHECK(says(error, "step " + std::to_string(error.step)));
-    CHECK(says(error, "the last good state is that of t = " + to_text(good.time) + " s"));
+    const std::string what = error.what(), before = "the last good state is that of t = ";
+    REQUIRE(what.find(before) != std::string::npos);
+    // Rounded, to be read.
+    CHECK(std::abs(std::stod(what.substr(what.find(before) + before.size())) - good.time) <= 1e-3 * good.time);
 }
 
 }  // namespace

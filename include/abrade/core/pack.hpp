@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <limits>
 
 namespace abrade {
 
@@ -14,7 +16,14 @@ using std::min;
 using std::sqrt;
 
 /// `condition ? yes : no`, lane by lane for packs.
-constexpr Real select(bool condition, Real yes, Real no) noexcept { return condition ? yes : no; }
+template <std::floating_point Number>
+constexpr Number select(bool condition, Number yes, Number no) noexcept {
+    return condition ? yes : no;
+}
+
+/// The smallest positive normal number: what a divisor is kept above.
+template <class Number>
+inline constexpr Number tiny = std::numeric_limits<Number>::min();
 
 /// The same, for vectors; both sides are evaluated.
 template <class Mask, class Number>

@@ -63,8 +63,7 @@ Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number
     const Number length2 = spring.dot(spring);
     const Vec3Of<Number> flat = spring - spring.dot(normal) * normal;
     const Number flat2 = flat.dot(flat);
-    const Number tiny = Number(1e-300);
-    const Number scale = select(flat2 > tiny, sqrt(length2 / max(flat2, tiny)), Number(0));
+    const Number scale = select(flat2 > tiny<Number>, sqrt(length2 / max(flat2, tiny<Number>)), Number(0));
     return scale * flat;
 }
 
@@ -74,7 +73,7 @@ Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number
 template <class Number>
 Number acting_share(Number overlap, Number approach, Real dt) noexcept {
     const Number travel = approach * Number(dt);
-    return select(overlap < travel, Number(0.5) + overlap / max(travel, Number(1e-300)), Number(1));
+    return select(overlap < travel, Number(0.5) + overlap / max(travel, tiny<Number>), Number(1));
 }
 
 /// Spring and dashpot along the normal, without tension.
@@ -110,16 +109,15 @@ struct SlidingSpring {
     static SlidingSpring at(const Vec3Of<Number>& before, const Vec3Of<Number>& trial,
                             const Vec3Of<Number>& slip, Number limit, Number stiffness, Number dashpot,
                             Real dt) noexcept {
-        const Number tiny = Number(1e-300);
         const Number length = sqrt(trial.dot(trial)), kept = min(length, limit / stiffness);
-        const Vec3Of<Number> spring = (kept / max(length, tiny)) * trial;
+        const Vec3Of<Number> spring = (kept / max(length, tiny<Number>)) * trial;
         const Number start = min(sqrt(before.dot(before)), length);
         // Largest share c <= 1 of the dashpot with |k s + c g v| <= limit: a quadratic in c.
         const Number a = dashpot * dashpot * slip.dot(slip);
         const Number b = stiffness * dashpot * spring.dot(slip);
         const Number room = max(limit * limit - stiffness * stiffness * kept * kept, Number(0));
-        const Number share =
-            select(a > tiny, min(Number(1), (sqrt(b * b + a * room) - b) / max(a, tiny)), Number(0));
+        const Number share = select(
+            a > tiny<Number>, min(Number(1), (sqrt(b * b + a * room) - b) / max(a, tiny<Number>)), Number(0));
         return {-stiffness * spring - share * dashpot * slip, spring, Number(0.5) * stiffness * kept * kept,
                 Number(0.5) * stiffness * (start + kept) * (length - kept) +
                     share * dashpot * slip.dot(slip) * Number(dt)};

@@ -78,13 +78,13 @@ public:
     template <class Number>
     ContactResponse<Number, Memory<Number>> respond(const ContactKinematics<Number>& contact,
                                                     const Memory<Number>& memory) const noexcept {
-        const Number kn(params_.stiffness), kt(tangential_stiffness());
+        const auto kn = Number(params_.stiffness), kt = Number(tangential_stiffness());
         const auto touching = contact.overlap > Number(0);
         const Number approach = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
         const Number acting = acting_share(contact.overlap, approach, contact.time_step);
         const Number root_mass = acting * sqrt(contact.effective_mass);
-        const Number dt(contact.time_step);
+        const auto dt = Number(contact.time_step);
 
         const auto normal = NormalSpring<Number>::at(max(contact.overlap, Number(0)), approach, kn,
                                                      root_mass * Number(dashpot_normal_), contact.time_step);
