@@ -15,6 +15,7 @@ struct BondKinematics {
     Real radius = 0;               ///< of the bonded spheres (the smaller) [m]
     Real effective_mass = 0;       ///< [kg]
     Real time_step = 0;            ///< [s]
+    Vec3 travel = Vec3::Zero();    ///< of i relative to j, over the step that led here [m]
 };
 
 /// The answer. Losses are energies over the step centred on t_n, never negative.

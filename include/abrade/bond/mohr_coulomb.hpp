@@ -51,7 +51,7 @@ public:
     };
 
     struct Memory {
-        Vec3 spring = Vec3::Zero();  ///< shear spring, half a step ahead like a contact's [m]
+        Vec3 spring = Vec3::Zero();  ///< shear spring [m]
         bool broken = false;
     };
 
@@ -68,7 +68,8 @@ public:
         const Real kn = stiffness(), ks = tangential_stiffness(), dt = bond.time_step;
         const Real approach = -bond.velocity.dot(bond.normal);
         const Vec3 slip = bond.velocity + approach * bond.normal;
-        const Vec3 shear = turn_into_plane(memory.spring, bond.normal) + 0.5 * dt * slip;
+        const Vec3 way = bond.travel - bond.travel.dot(bond.normal) * bond.normal;
+        const Vec3 before = turn_into_plane(memory.spring, bond.normal), shear = before + way;
         const Real root_mass = std::sqrt(bond.effective_mass);
         const Real cn = root_mass * dashpot_normal_, cs = root_mass * dashpot_shear_;
 
@@ -80,15 +81,15 @@ public:
             if (square(ks) * shear2 <= square((fn + limit) * tan_phi_)) {
                 const Vec3 force = (fn + cn * approach) * bond.normal - ks * shear - cs * slip;
                 const Real damped = (cn * square(approach) + cs * slip.squaredNorm()) * dt;
-                return {{force, elastic, damped, 0, 0}, {shear + 0.5 * dt * slip, false}, Fate::intact};
+                return {{force, elastic, damped, 0, 0}, {shear, false}, Fate::intact};
             }
-            BondResponse<Memory> broken = slide(bond, approach, slip, shear, cn, cs);
-            broken.load.lost_bond = std::max(0.0, elastic - broken.load.stored);
+            BondResponse<Memory> broken = slide(bond, before, shear, cn, cs);
+            broken.load.lost_bond = std::max(0.0, elastic - broken.load.stored) + broken.load.lost_normal;
             broken.load.lost_normal = broken.load.lost_tangential = 0;
             broken.fate = Fate::shear;
             return broken;
         }
-        if (bond.compression > 0) return slide(bond, approach, slip, shear, cn, cs);
+        if (bond.compression > 0) return slide(bond, before, shear, cn, cs);
         return {{Vec3::Zero(), 0, 0, 0, 0.5 * ks * memory.spring.squaredNorm()},
                 {Vec3::Zero(), true},
                 Fate::intact};
@@ -109,16 +110,17 @@ public:
 
 private:
     /// A broken bond: spring, dashpot and slider without tension.
-    BondResponse<Memory> slide(const BondKinematics& bond, Real approach, const Vec3& slip, const Vec3& shear,
-                               Real cn, Real cs) const noexcept {
-        const Real dt = bond.time_step;
+    BondResponse<Memory> slide(const BondKinematics& bond, const Vec3& before, const Vec3& shear, Real cn,
+                               Real cs) const noexcept {
+        const Real dt = bond.time_step, approach = -bond.velocity.dot(bond.normal);
+        const Vec3 slip = bond.velocity + approach * bond.normal;
         const auto normal =
             NormalSpring<Real>::at(std::max(bond.compression, 0.0), approach, stiffness(), cn, dt);
-        const auto tangential = SlidingSpring<Real>::at(
-            shear - dt * slip, shear, slip, tan_phi_ * normal.force, tangential_stiffness(), cs, dt);
+        const auto tangential = SlidingSpring<Real>::at(before, shear, slip, tan_phi_ * normal.force,
+                                                        tangential_stiffness(), cs, dt);
         const Vec3 force = normal.force * bond.normal + tangential.force;
         return {{force, normal.stored + tangential.stored, 0, normal.lost, tangential.lost},
-                {tangential.spring + 0.5 * dt * slip, true},
+                {tangential.spring, true},
                 Fate::intact};
     }
 

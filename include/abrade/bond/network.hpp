@@ -141,6 +141,8 @@ private:
         const Real arm = 0.5 * length;
         bond.velocity =
             a.centre_velocity[i] - a.centre_velocity[j] - (arm * (a.spin[i] + a.spin[j])).cross(bond.normal);
+        bond.travel = dt * (a.centre_drift[i] - a.centre_drift[j] -
+                            (arm * (a.spin_drift[i] + a.spin_drift[j])).cross(bond.normal));
         bond.radius = std::min(a.radius[i], a.radius[j]);
         bond.effective_mass = effective_mass_[p];
         bond.time_step = dt;

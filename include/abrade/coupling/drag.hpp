@@ -44,7 +44,23 @@ private:
     Params params_;
 };
 
+/// For no fluid, or one that does not push.
+class NoDrag {
+public:
+    static constexpr std::string_view name = "NoDrag";
+    using Params = NoParams;
+
+    NoDrag() = default;
+    explicit NoDrag(Params) {}
+    const Params& params() const noexcept {
+        static constexpr Params none{};
+        return none;
+    }
+    Real coefficient(Real) const noexcept { return 0; }
+};
+
 static_assert(DragLaw<CliftGauvin>);
+static_assert(DragLaw<NoDrag>);
 static_assert(!DragLaw<NoParams>);
 
 /// What the fluid does to one body.

@@ -18,6 +18,10 @@ struct ContactKinematics {
     Number effective_mass;    ///< m_i m_j / (m_i + m_j) [kg]
     Number effective_radius;  ///< r_i r_j / (r_i + r_j) [m]
     Real time_step;           ///< [s]
+    /// Of i relative to j at the contact point, over the step that led here [m]: dt times the velocity
+    /// halfway, which is what the positions really did. A spring fed with anything else gains or loses
+    /// energy.
+    Vec3Of<Number> travel = Vec3Of<Number>::Zero();
 };
 
 /// The answer. Losses are energies over the step that is centred on t_n, and are never negative.
@@ -43,9 +47,12 @@ struct ContactResponse {
 /// - `stiffness()` and `tangential_stiffness()` [N/m] let the engine sum up what acts on one body.
 // clang-format off
 template <class L>
-concept ContactLaw = Law<L> && requires(const L& law, const ContactKinematics<Real>& contact,
+concept RemembersContacts = requires { typename L::template Memory<Real>; } &&
+    std::default_initializable<typename L::template Memory<Real>>;
+
+template <class L>
+concept ContactLaw = Law<L> && RemembersContacts<L> && requires(const L& law, const ContactKinematics<Real>& contact,
                                         const typename L::template Memory<Real>& memory) {
-    requires std::default_initializable<typename L::template Memory<Real>>;
     { law.respond(contact, memory) } noexcept -> std::same_as<ContactResponse<Real, typename L::template Memory<Real>>>;
     { law.stable_dt(Real{}, Real{}) } -> std::same_as<Real>;
     { law.stiffness() } -> std::same_as<Real>;
@@ -111,7 +118,7 @@ struct SlidingSpring {
                             Real dt) noexcept {
         const Number length = sqrt(trial.dot(trial)), kept = min(length, limit / stiffness);
         const Vec3Of<Number> spring = (kept / max(length, tiny<Number>)) * trial;
-        const Number start = min(sqrt(before.dot(before)), length);
+        const Number start = sqrt(before.dot(before));
         // Largest share c <= 1 of the dashpot with |k s + c g v| <= limit: a quadratic in c.
         const Number a = dashpot * dashpot * slip.dot(slip);
         const Number b = stiffness * dashpot * spring.dot(slip);

@@ -174,6 +174,8 @@ private:
             contact.effective_radius = a.radius[i];
             load.arm_first = a.radius[i] - 0.5 * contact.overlap;
             contact.velocity = a.centre_velocity[i] - load.arm_first * a.spin[i].cross(contact.normal);
+            contact.travel =
+                dt * (a.centre_drift[i] - load.arm_first * a.spin_drift[i].cross(contact.normal));
         } else {
             const auto j = static_cast<std::size_t>(pairs_[p].second);
             const auto body_j = static_cast<std::size_t>(a.body[j]);
@@ -190,6 +192,10 @@ private:
             arm_second = a.radius[j] - 0.5 * contact.overlap;
             contact.velocity = a.centre_velocity[i] - a.centre_velocity[j] -
                                (load.arm_first * a.spin[i] + arm_second * a.spin[j]).cross(contact.normal);
+            contact.travel =
+                dt *
+                (a.centre_drift[i] - a.centre_drift[j] -
+                 (load.arm_first * a.spin_drift[i] + arm_second * a.spin_drift[j]).cross(contact.normal));
             inverse_mass += a.inverse_mass[body_j];
             concrete_sides += a.site[body_j] >= 0 ? 1 : 0;
         }

@@ -60,8 +60,6 @@ public:
         }
     };
 
-    /// The tangential spring, half a step ahead: s_n + v_n dt/2, so that the next step adds its own half
-    /// and the spring follows the trapezoidal rule with velocities that belong to the same time as it.
     template <class Number>
     struct Memory {
         Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< [m]
@@ -84,38 +82,42 @@ public:
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
         const Number acting = acting_share(contact.overlap, approach, contact.time_step);
         const Number root_mass = acting * sqrt(contact.effective_mass);
-        const auto dt = Number(contact.time_step);
 
         const auto normal = NormalSpring<Number>::at(max(contact.overlap, Number(0)), approach, kn,
                                                      root_mass * Number(dashpot_normal_), contact.time_step);
-        const Vec3Of<Number> ahead = turn_into_plane(memory.spring, contact.normal);
-        const Vec3Of<Number> before = ahead - select(acting == Number(1), Number(0.5) * dt, Number(0)) * slip;
-        const Vec3Of<Number> trial = ahead + (acting - Number(0.5)) * dt * slip;
+        const Vec3Of<Number> before = turn_into_plane(memory.spring, contact.normal);
+        // In the step in which the contact begins only the way since then counts.
+        const Number share = select(acting == Number(1), Number(1), acting - Number(0.5));
+        const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
+        const Vec3Of<Number> trial = before + share * way;
         const auto tangential =
             SlidingSpring<Number>::at(before, trial, slip, Number(params_.friction) * normal.force, kt,
                                       root_mass * Number(dashpot_tangential_), contact.time_step);
 
         const Vec3Of<Number> none = Vec3Of<Number>::Zero();
         const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
-        const Vec3Of<Number> next = tangential.spring + Number(0.5) * dt * slip;
         // A contact that opened gives back nothing: what its tangential spring held is lost to sliding.
         const Number left_over = Number(0.5) * kt * memory.spring.dot(memory.spring);
         return {
             {select(touching, force, none), select(touching, normal.stored + tangential.stored, Number(0)),
              select(touching, normal.lost, Number(0)), select(touching, tangential.lost, left_over)},
-            {select(touching, next, none)}};
+            {select(touching, tangential.spring, none)}};
     }
 
     Real stiffness() const noexcept { return params_.stiffness; }
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
     Real damping_ratio() const noexcept { return damping_ratio_; }
 
-    /// 2 / omega of a sphere in the midst of twelve others, the most that can touch it:
-    /// omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m, less what the dashpots take off.
+    /// For a sphere in the midst of twelve others, the most that can touch it, six of them damping at a time:
+    ///   dt = 2 / (sqrt(omega^2 + c^2) + c),
+    ///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(4 (c_n + 2 c_t), 20 c_t) / m.
+    /// c counts in full, not by half: dashpots see a velocity predicted from the last acceleration.
     Real stable_dt(Real mass, Real /*radius*/) const noexcept {
-        const Real kn = stiffness(), kt = tangential_stiffness();
-        const Real omega = std::sqrt(std::max(8 * (kn + 2 * kt), 40 * kt) / mass);
-        return 2 / omega * (std::sqrt(1 + square(damping_ratio_)) - damping_ratio_);
+        const Real kn = stiffness(), kt = tangential_stiffness(), root = std::sqrt(0.5 * mass);
+        const Real cn = root * dashpot_normal_, ct = root * dashpot_tangential_;
+        const Real omega2 = std::max(8 * (kn + 2 * kt), 40 * kt) / mass;
+        const Real c = std::max(4 * (cn + 2 * ct), 20 * ct) / mass;
+        return 2 / (std::sqrt(omega2 + c * c) + c);
     }
 
 private:

@@ -38,11 +38,12 @@ struct Particles {
 
     // [sphere]
     std::vector<Index> body;
-    std::vector<Vec3> offset;           ///< from the body's centroid, principal frame [m]
-    std::vector<Real> radius;           ///< [m]
-    std::vector<Vec3> centre;           ///< world frame [m]
-    std::vector<Vec3> centre_velocity;  ///< as predicted for the force pass [m/s]
-    std::vector<Vec3> spin;             ///< the body's angular velocity, as predicted [rad/s]
+    std::vector<Vec3> offset;                    ///< from the body's centroid, principal frame [m]
+    std::vector<Real> radius;                    ///< [m]
+    std::vector<Vec3> centre;                    ///< world frame [m]
+    std::vector<Vec3> centre_velocity;           ///< as predicted for the force pass [m/s]
+    std::vector<Vec3> spin;                      ///< the body's angular velocity, as predicted [rad/s]
+    std::vector<Vec3> centre_drift, spin_drift;  ///< the same halfway through the step that led here
 
     Index next_id = 0;
 
@@ -76,6 +77,8 @@ struct Particles {
     /// finite, throws InputError.
     Index add(const Clump& clump, Real density, const BodyState& state, Kind body_kind) {
         require_positive(density, "density", "kg/m3");
+        require(std::abs(state.orientation.norm() - 1) < 1e-6,
+                {"BodyState.orientation", "a unit quaternion", "", "normalise it"}, state.orientation.norm());
         require(
             state.position.allFinite() && state.velocity.allFinite() && state.angular_velocity.allFinite(),
             {"BodyState", "finite", "", "look for a NaN in position or velocity"}, state.position.sum());
@@ -107,6 +110,8 @@ struct Particles {
             centre.push_back(Vec3::Zero());
             centre_velocity.push_back(Vec3::Zero());
             spin.push_back(Vec3::Zero());
+            centre_drift.push_back(Vec3::Zero());
+            spin_drift.push_back(Vec3::Zero());
         }
         place_spheres(b, velocity.back(), angular_velocity(b));
         return b;
@@ -114,12 +119,18 @@ struct Particles {
 
     /// Puts the member spheres of body b where its position and orientation say.
     void place_spheres(Index b, const Vec3& body_velocity, const Vec3& body_spin) noexcept {
+        place_spheres(b, body_velocity, body_spin, body_velocity, body_spin);
+    }
+    void place_spheres(Index b, const Vec3& body_velocity, const Vec3& body_spin, const Vec3& drift_velocity,
+                       const Vec3& drift_spin) noexcept {
         const auto i = static_cast<std::size_t>(b);
         const auto first = static_cast<std::size_t>(first_sphere[i]);
         if (sphere_count[i] == 1) {
             centre[first] = position[i];
             centre_velocity[first] = body_velocity;
             spin[first] = body_spin;
+            centre_drift[first] = drift_velocity;
+            spin_drift[first] = drift_spin;
             return;
         }
         const Mat3 rotation = orientation[i].toRotationMatrix();
@@ -128,6 +139,8 @@ struct Particles {
             centre[s] = position[i] + arm;
             centre_velocity[s] = body_velocity + body_spin.cross(arm);
             spin[s] = body_spin;
+            centre_drift[s] = drift_velocity + drift_spin.cross(arm);
+            spin_drift[s] = drift_spin;
         }
     }
 
@@ -161,7 +174,7 @@ private:
         f(inverse_inertia), f(volume), f(kind), f(id), f(site), f(first_sphere), f(sphere_count);
     }
     void for_each_sphere_column(auto&& f) {
-        f(body), f(offset), f(radius), f(centre), f(centre_velocity), f(spin);
+        f(body), f(offset), f(radius), f(centre), f(centre_velocity), f(spin), f(centre_drift), f(spin_drift);
     }
 };
 

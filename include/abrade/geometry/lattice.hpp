@@ -48,7 +48,9 @@ struct LatticeSize {
 };
 
 namespace detail {
-inline void validate(const LatticeSize& size, Real shortest_side, const char* side) {
+inline void validate(const LatticeSize& size, Real length, Real width, const char* side) {
+    for (const Real each : {length, width}) require_positive(each, side, "m");
+    const Real shortest_side = std::min(length, width);
     require_positive(size.sphere_diameter, "LatticeSize.sphere_diameter", "m");
     require(size.layers >= 1, {"LatticeSize.layers", "at least 1"}, size.layers);
     require(shortest_side >= size.sphere_diameter,
@@ -66,7 +68,7 @@ inline Index spheres_that_fit(Real length, Real diameter) {
 /// A slab with its surface at z = 0, its centre at x = y = 0. Spacing is stretched a little, never
 /// squeezed, so that the cells fill `length` x `width`.
 inline Lattice flat_lattice(Real length, Real width, const LatticeSize& size) {
-    detail::validate(size, std::min(length, width), "flat_lattice.side");
+    detail::validate(size, length, width, "flat_lattice.side");
     const Real d = size.sphere_diameter;
     Lattice lattice{
         0.5 * d, detail::spheres_that_fit(length, d), detail::spheres_that_fit(width, d), size.layers, {},
@@ -90,11 +92,11 @@ inline Lattice flat_lattice(Real length, Real width, const LatticeSize& size) {
 /// spaced wider; the surface layer is the tightest and its spheres just touch at most.
 inline Lattice invert_lattice(const Invert& invert, const LatticeSize& size) {
     invert.validate();
-    detail::validate(size, std::min(invert.length, invert.width), "Invert.width or length");
+    detail::validate(size, invert.length, invert.width, "Invert.width or length");
     const Real d = size.sphere_diameter, radius = invert.arc_radius, span = 2 * invert.half_angle();
     Lattice lattice{0.5 * d,
                     detail::spheres_that_fit(invert.length, d),
-                    detail::spheres_that_fit(span * (radius + 0.5 * d), d),
+                    detail::spheres_that_fit(span, 2 * std::asin(0.5 * d / (radius + 0.5 * d))),
                     size.layers,
                     {},
                     {}};

@@ -122,7 +122,10 @@ inline RawMoments ray_moments(std::span<const Sphere> spheres, int rays_across) 
 /// Throws InputError when there is no sphere, or one with a radius that is not > 0.
 inline SolidMoments union_moments(std::span<const Sphere> spheres, int rays_across = 200) {
     require(!spheres.empty(), {"union_moments.spheres", "at least 1 sphere"}, 0);
-    for (const Sphere& s : spheres) require_positive(s.radius, "Sphere.radius", "m");
+    for (const Sphere& s : spheres) {
+        require_positive(s.radius, "Sphere.radius", "m");
+        require(s.centre.allFinite(), {"Sphere.centre", "finite", "m"}, s.centre.sum());
+    }
     const bool exact = spheres.size() <= 2;
     return (exact ? detail::exact_moments(spheres) : detail::ray_moments(spheres, rays_across))
         .about_centroid();

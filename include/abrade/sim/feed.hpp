@@ -23,7 +23,7 @@ struct FeedParams {
     Real volume_rate = 0;  ///< solid [m3/s]
     std::vector<StoneClass> classes{};
     Real density = 2650;  ///< [kg/m3]
-    Box region{};           ///< stones are placed inside it, whole [m]
+    Box region{};         ///< stones are placed inside it, whole [m]
     std::function<Real(Real, Real)>
         bed{};                     ///< height of the ground at (x, y) that region.z counts from [m]; none: 0
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
@@ -33,6 +33,8 @@ struct FeedParams {
     void validate() const {
         require_positive(volume_rate, "Feed.volume_rate", "m3/s");
         require_positive(density, "Feed.density", "kg/m3");
+        require(velocity.allFinite(), {"Feed.velocity", "finite", "m/s"}, velocity.sum());
+        require(std::isfinite(start), {"Feed.start", "finite", "s"}, start);
         require(!classes.empty(), {"Feed.classes", "at least one stone class"}, 0);
         Real total = 0;
         for (const StoneClass& c : classes) {

@@ -89,7 +89,8 @@ inline void drift_body(Particles& p, Index body, Real dt) noexcept {
         p.orientation[b] = turn_freely(p.orientation[b], p.angular_momentum[b], p.inverse_inertia[b], dt);
     const Vec3 velocity = p.velocity[b] + 0.5 * dt * p.inverse_mass[b] * p.force[b];
     const Vec3 momentum = p.angular_momentum[b] + 0.5 * dt * p.torque[b];
-    p.place_spheres(body, velocity, p.angular_velocity(body, momentum));
+    p.place_spheres(body, velocity, p.angular_velocity(body, momentum), p.velocity[b],
+                    p.angular_velocity(body, p.angular_momentum[b]));
 }
 
 }  // namespace abrade

@@ -35,10 +35,19 @@ struct RunOptions {
 /// Stands in the contact slot until `.contact(law)` fills it.
 struct ContactLawIsMissing {};
 
+/// What a slot gives back when its law cannot be used: takes any further call, so that one error is printed.
+struct Unusable {
+    Unusable contact(auto&&...) { return {}; }
+    Unusable bond(auto&&...) { return {}; }
+    Unusable wear(auto&&...) { return {}; }
+    Unusable fluid(auto&&...) { return {}; }
+    void run(const struct RunOptions&, auto&&...) {}
+};
+
 /// Made by `simulate(scene)`, completed by `.contact()`, `.bond()`, `.wear()` and `.fluid()`, then run. The
 /// four policies are part of the type; an absent one costs nothing.
 template <class C = ContactLawIsMissing, BondLaw B = NoBond, WearLaw W = NoWear, FluidModel F = NoFluid,
-          DragLaw D = CliftGauvin>
+          DragLaw D = NoDrag>
 class Simulation {
 public:
     Simulation(Scene scene, C contact, B bond, W wear, F fluid, D drag)
@@ -47,25 +56,43 @@ public:
 
     // --- the four slots --------------------------------------------------------------------------
 
-    template <ContactLaw L>
-    Simulation<L, B, W, F, D> contact(L law) && {
-        return {std::move(scene_), std::move(law),    std::move(bond_),
-                std::move(wear_),  std::move(fluid_), std::move(drag_)};
+    template <class L>
+    auto contact(L law) && {
+        static_assert(ContactLaw<L>, "Simulation::contact(law): the law misses what the notes below name");
+        if constexpr (ContactLaw<L>)
+            return Simulation<L, B, W, F, D>{std::move(scene_), std::move(law),    std::move(bond_),
+                                             std::move(wear_),  std::move(fluid_), std::move(drag_)};
+        else
+            return Unusable{};
     }
-    template <BondLaw L>
-    Simulation<C, L, W, F, D> bond(L law) && {
-        return {std::move(scene_), std::move(contact_), std::move(law),
-                std::move(wear_),  std::move(fluid_),   std::move(drag_)};
+    template <class L>
+    auto bond(L law) && {
+        static_assert(BondLaw<L>, "Simulation::bond(law): the law misses what the notes below name");
+        if constexpr (BondLaw<L>)
+            return Simulation<C, L, W, F, D>{std::move(scene_), std::move(contact_), std::move(law),
+                                             std::move(wear_),  std::move(fluid_),   std::move(drag_)};
+        else
+            return Unusable{};
     }
-    template <WearLaw L>
-    Simulation<C, B, L, F, D> wear(L law) && {
-        return {std::move(scene_), std::move(contact_), std::move(bond_),
-                std::move(law),    std::move(fluid_),   std::move(drag_)};
+    template <class L>
+    auto wear(L law) && {
+        static_assert(WearLaw<L>, "Simulation::wear(law): the law misses what the notes below name");
+        if constexpr (WearLaw<L>)
+            return Simulation<C, B, L, F, D>{std::move(scene_), std::move(contact_), std::move(bond_),
+                                             std::move(law),    std::move(fluid_),   std::move(drag_)};
+        else
+            return Unusable{};
     }
-    template <FluidModel L, DragLaw Drag = CliftGauvin>
-    Simulation<C, B, W, L, Drag> fluid(L law, Drag drag = Drag{}) && {
-        return {std::move(scene_), std::move(contact_), std::move(bond_),
-                std::move(wear_),  std::move(law),      std::move(drag)};
+    template <class L, class Drag = CliftGauvin>
+    auto fluid(L law, Drag drag = Drag{}) && {
+        static_assert(FluidModel<L>, "Simulation::fluid(law): the fluid misses what the notes below name");
+        static_assert(DragLaw<Drag>,
+                      "Simulation::fluid(law, drag): the drag law misses what the notes below name");
+        if constexpr (FluidModel<L> && DragLaw<Drag>)
+            return Simulation<C, B, W, L, Drag>{std::move(scene_), std::move(contact_), std::move(bond_),
+                                                std::move(wear_),  std::move(law),      std::move(drag)};
+        else
+            return Unusable{};
     }
 
     // --- running -------------------------------------------------------------------------------
@@ -75,7 +102,12 @@ public:
     /// be used, RunError when a step goes wrong.
     template <class Observer>
     void run(const RunOptions& options, Observer&& observer) {
-        static_assert(ContactLaw<C>, "a simulation needs a contact law: simulate(scene).contact(law)");
+        static_assert(!std::same_as<C, ContactLawIsMissing>,
+                      "a simulation needs a contact law: simulate(scene).contact(law)");
+        if constexpr (!std::same_as<C, ContactLawIsMissing>) go(options, std::forward<Observer>(observer));
+    }
+    template <class Observer>
+    void go(const RunOptions& options, Observer&& observer) {
         prepare(options);
         const auto clock_start = Clock::now();
         const Real start = time_;
@@ -167,7 +199,7 @@ private:
             world_->set_skin(options.skin > 0 ? options.skin : 0.25 * smallest);
             stable_ =
                 stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
-            world_->renew(time_, nullptr);
+            world_->renew(time_, 0, nullptr);
             world_->open_ledger();
             remember();
         }
@@ -186,7 +218,7 @@ private:
     void do_step(Real t) {
         if (world_->list_is_stale(time_step_) || step_ - list_made_ >= longest_list_life) {
             const auto start = Clock::now();
-            world_->renew(t, feed_ ? &*feed_ : nullptr);
+            world_->renew(t, time_step_, feed_ ? &*feed_ : nullptr);
             list_made_ = step_;
             remember();
             renewal_seconds_ += seconds_since(start);
@@ -270,7 +302,7 @@ private:
 
 /// Starts a simulation; fill the slots, then run.
 inline Simulation<> simulate(Scene scene) {
-    return {std::move(scene), {}, NoBond{}, NoWear{}, NoFluid{}, CliftGauvin{}};
+    return {std::move(scene), {}, NoBond{}, NoWear{}, NoFluid{}, NoDrag{}};
 }
 
 /// Laws with their parameters, the step and why, the ledger, the wear, the wall time and where it went.

@@ -54,11 +54,9 @@ private:
     Vec3 lever_ = Vec3::Zero();
 };
 
-/// 2/omega (sqrt(1 + zeta^2) - zeta), zeta = c / (2 omega), for omega^2 and c bounded as above.
-inline Real damped_step(Real omega2, Real c) noexcept {
-    const Real omega = std::sqrt(omega2), zeta = 0.5 * c / omega;
-    return 2 / omega * (std::sqrt(1 + zeta * zeta) - zeta);
-}
+/// 2 / (sqrt(omega^2 + c^2) + c) for omega^2 and c bounded as above. c counts in full, not by half: dashpots
+/// see a velocity predicted from the last acceleration.
+inline Real damped_step(Real omega2, Real c) noexcept { return 2 / (std::sqrt(omega2 + c * c) + c); }
 
 }  // namespace detail
 

@@ -20,7 +20,6 @@ public:
         if (scene_.concrete) add_concrete(*scene_.concrete);
         for (const Scene::Stone& stone : scene_.stones)
             particles_.add(stone.clump, stone.density, stone.state, Kind::stone);
-        admit_new_bodies();
     }
 
     // --- MechanicalState -----------------------------------------------------------------------
@@ -71,11 +70,11 @@ public:
     /// Whether the list of near pairs may miss a contact in the step to come, or the set of bodies should
     /// change.
     bool list_is_stale(Real dt) const noexcept {
-        return std::sqrt(furthest2_) + dt * std::sqrt(fastest2_) > 0.5 * skin_ || pattern_changed_;
+        return std::sqrt(furthest2_) + dt * std::sqrt(fastest2_) > 0.5 * list_skin_ || pattern_changed_;
     }
 
     /// Renews what changes seldom: loose concrete, bodies that left, supply, near pairs.
-    void renew(Real t, Feed* feed) {
+    void renew(Real t, Real dt, Feed* feed) {
         if constexpr (P::has_bonds)
             if (pattern_changed_) set_loose_concrete_free();
         const Index bodies_before = particles_.bodies();
@@ -88,12 +87,18 @@ public:
                 ledger_.fed_kinetic += particles_.kinetic_energy(body);
                 ledger_.fed_potential += potential_energy(body);
             });
-        admit_new_bodies();
-        ledger_.left_stored += contacts_.rebuild(find_pairs(), particles_.spheres(), moved);
-        built_at_ = particles_.centre;
+        const bool admitted = admit_new_bodies();
         furthest2_ = fastest2_ = 0;
         for (const Vec3& v : particles_.centre_velocity) fastest2_ = std::max(fastest2_, v.squaredNorm());
+        list_skin_ = std::max(skin_, 3 * dt * std::sqrt(fastest2_));  // lasts for one step at least
+        ledger_.left_stored += contacts_.rebuild(find_pairs(), particles_.spheres(), moved);
+        built_at_ = particles_.centre;
         pattern_changed_ = false;
+        if (admitted) {
+            // Their first half kick needs forces of now. Over no time nothing is lost and no memory moves.
+            evaluate(t, 0);
+            kick(0);
+        }
     }
 
     /// Brings the ledger's state functions up to the present.
@@ -151,11 +156,12 @@ private:
     }
 
     auto strength_left() const noexcept {
-        return [this](Index body) {
-            if constexpr (P::has_wear)
+        if constexpr (P::has_wear)
+            return [this](Index body) {
                 return policies_.wear.strength_left(concrete_.fracture(particles_.site[at(body)]));
-            return 1.0;
-        };
+            };
+        else
+            return [](Index) { return 1.0; };
     }
 
     void add_concrete(ConcreteBlock& block) {
@@ -187,12 +193,12 @@ private:
         particles_.inverse_inertia[at(b)].setZero();
     }
 
-    /// New bodies feel their weight from their first half kick on; contacts and water follow at its end.
-    void admit_new_bodies() {
-        for (Index b = static_cast<Index>(interaction_.size()); b < particles_.bodies(); ++b)
-            particles_.force[at(b)] = particles_.mass[at(b)] * scene_.gravity;
+    /// Makes room for the loads of new bodies; whether there are any.
+    bool admit_new_bodies() {
+        const bool any = at(particles_.bodies()) > interaction_.size();
         interaction_.resize(at(particles_.bodies()), Vec3::Zero());
         if constexpr (P::has_fluid) fluid_.resize(at(particles_.bodies()));
+        return any;
     }
 
     /// Sums the pair loads of a body's spheres, adds weight and water, and wears the concrete.
@@ -347,13 +353,13 @@ private:
             passive[at(s)] = kind == Kind::concrete || kind == Kind::fixed;
         }
         std::vector<Pair> pairs =
-            near_pairs({particles_.centre, particles_.radius, particles_.body, passive, skin_});
+            near_pairs({particles_.centre, particles_.radius, particles_.body, passive, list_skin_});
         if constexpr (P::has_bonds)
             std::erase_if(pairs, [&](const Pair& pair) { return network_.holds(pair); });
         for (Index s = 0; s < particles_.spheres(); ++s)
             for (Index w = 0; w < static_cast<Index>(scene_.walls.size()); ++w)
-                if (!passive[at(s)] &&
-                    scene_.walls[at(w)].distance(particles_.centre[at(s)]) < particles_.radius[at(s)] + skin_)
+                if (!passive[at(s)] && scene_.walls[at(w)].distance(particles_.centre[at(s)]) <
+                                           particles_.radius[at(s)] + list_skin_)
                     pairs.push_back({s, -1 - w});
         std::sort(pairs.begin(), pairs.end());
         return pairs;
@@ -369,7 +375,7 @@ private:
     std::vector<Vec3> interaction_;  ///< [body] force of contacts and bonds [N]
     std::vector<FluidLoad> fluid_;   ///< [body]; empty without a fluid
     std::vector<Vec3> built_at_;     ///< [sphere] where the list of pairs was made [m]
-    Real skin_ = 0, furthest2_ = 0, fastest2_ = 0, gauge_volume_ = 0;
+    Real skin_ = 0, list_skin_ = 0, furthest2_ = 0, fastest2_ = 0, gauge_volume_ = 0;
     Index broken_tension_ = 0, broken_shear_ = 0;
     Real loads_time_ = 0;
     bool loads_waiting_ = false;  ///< between the force pass and the kick that gathers its loads
