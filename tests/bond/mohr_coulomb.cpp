@@ -20,7 +20,7 @@ const Real area = pi * radius * radius;
 MohrCoulomb law(Real damping = 0) { return MohrCoulomb{{.tensile = 2.7e6, .friction_angle = 35, .stiffness = kn, .stiffness_ratio = 0.2, .damping = damping}}; }
 
 BondKinematics at(Real compression, const Vec3& velocity = Vec3::Zero()) {
-    return {.normal = Vec3(0, 0, 1), .compression = compression, .velocity = velocity, .radius = radius, .effective_mass = 0.005, .time_step = dt};
+    return {.normal = Vec3(0, 0, 1), .compression = compression, .velocity = velocity, .radius = radius, .effective_mass = 0.005, .time_step = dt, .travel = dt * velocity};
 }
 
 /// Pulls in small steps; the force in the last step before it breaks.
@@ -120,6 +120,7 @@ TEST_CASE("breaking under compression changes no normal force and makes no energ
         REQUIRE(broken.load.force.head<2>().norm() <= tan_phi * broken.load.force.z() * (1 + 1e-12));
         REQUIRE(broken.load.stored >= 0);
         REQUIRE(broken.load.lost_bond >= 0);
+        // What the normal dashpot takes in the step is work done on the bond, no release: allow what it takes intact.
         REQUIRE(broken.load.stored + broken.load.lost_bond + broken.load.lost_normal + broken.load.lost_tangential <=
                 intact.load.stored * (1 + 1e-12) + 1e-18);
         // And none is forgotten.

@@ -67,6 +67,7 @@ TEST_CASE("the force on i points along the normal, from j to i: pushed apart") {
 TEST_CASE("friction opposes the slip of i over j") {
     ContactKinematics<Real> contact = head_on(1e-4, 0);
     contact.velocity = {0.3, 0, 0};
+    contact.travel = contact.time_step * contact.velocity;
     const auto [load, memory] = law().respond(contact, Memory{});
     CHECK(load.force.x() < 0);
     CHECK(load.lost_tangential > 0);
@@ -129,7 +130,7 @@ TEST_CASE("each step accounts for its energy: work in = stored + lost, to second
             // The overlap begins and ends with speed zero: no jump of the dashpot at the ends.
             const Real overlap = 1e-4 * s * s + 1e-12, approach = 1e-4 * pi / period * std::sin(2 * pi * t / period);
             const Real slip = 0.02 * s * std::cos(2.3 * pi * t / period);
-            const auto [load, next] = spring.respond({Vec3(0, 0, 1), overlap, Vec3(slip, 0, -approach), 0.01, 0.005, dt}, memory);
+            const auto [load, next] = spring.respond({Vec3(0, 0, 1), overlap, Vec3(slip, 0, -approach), 0.01, 0.005, dt, Vec3(dt * 0.02 * std::sin(pi * (t - 0.5 * dt) / period) * std::cos(2.3 * pi * (t - 0.5 * dt) / period), 0, 0)}, memory);
             work -= load.force.dot(Vec3(slip, 0, -approach)) * dt;
             dissipated += load.lost_normal + load.lost_tangential;
             stored = load.stored;
@@ -161,6 +162,7 @@ TEST_CASE("what has no friction loses nothing to sliding") {
     for (int n = 0; n < 100; ++n) {
         ContactKinematics<Real> contact = head_on(1e-4, 0);
         contact.velocity.x() = 0.01 * n;  // speeding up
+        contact.travel = contact.time_step * Vec3(0.01 * (n - 0.5), 0, 0);
         const auto [load, next] = smooth.respond(contact, memory);
         lost += load.lost_tangential;
         REQUIRE(load.force.x() == 0);

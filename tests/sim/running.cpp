@@ -164,7 +164,7 @@ TEST_CASE("bits do not depend on threads or on the run: concrete, stones, water,
 }
 
 TEST_CASE("policies that are absent cost no byte") {
-    CHECK(sizeof(Policies<LinearSpring, NoBond, NoWear, NoFluid, CliftGauvin>) == sizeof(LinearSpring));
+    CHECK(sizeof(Policies<LinearSpring, NoBond, NoWear, NoFluid, NoDrag>) == sizeof(LinearSpring));
 }
 
 TEST_CASE("a simulation prints its laws, its step and why, its ledger") {

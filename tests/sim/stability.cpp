@@ -55,7 +55,8 @@ struct Free {
                 p.position[b] += dt * p.velocity[b];
                 const Vec3 v = p.velocity[b] + 0.5 * dt * p.inverse_mass[b] * p.force[b];
                 const Vec3 momentum = p.angular_momentum[b] + 0.5 * dt * p.torque[b];
-                p.place_spheres(static_cast<Index>(b), v, p.angular_velocity(static_cast<Index>(b), momentum));
+                p.place_spheres(static_cast<Index>(b), v, p.angular_velocity(static_cast<Index>(b), momentum), p.velocity[b],
+                                p.angular_velocity(static_cast<Index>(b)));
             }
             forces();
             kick(0.5 * dt);

@@ -108,15 +108,15 @@ public:
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
     Real damping_ratio() const noexcept { return damping_ratio_; }
 
-    /// For a sphere in the midst of twelve others, the most that can touch it, six of them damping at a time:
+    /// For a sphere in the midst of twelve others, the most that can touch it, three of them damping at a time:
     ///   dt = 2 / (sqrt(omega^2 + c^2) + c),
-    ///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(4 (c_n + 2 c_t), 20 c_t) / m.
+    ///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(2 (c_n + 2 c_t), 10 c_t) / m.
     /// c counts in full, not by half: dashpots see a velocity predicted from the last acceleration.
     Real stable_dt(Real mass, Real /*radius*/) const noexcept {
         const Real kn = stiffness(), kt = tangential_stiffness(), root = std::sqrt(0.5 * mass);
         const Real cn = root * dashpot_normal_, ct = root * dashpot_tangential_;
         const Real omega2 = std::max(8 * (kn + 2 * kt), 40 * kt) / mass;
-        const Real c = std::max(4 * (cn + 2 * ct), 20 * ct) / mass;
+        const Real c = std::max(2 * (cn + 2 * ct), 10 * ct) / mass;
         return 2 / (std::sqrt(omega2 + c * c) + c);
     }
 
