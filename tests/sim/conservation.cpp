@@ -155,6 +155,22 @@ TEST_CASE("free flight is exact: a parabola, at any step") {
     }
 }
 
+TEST_CASE("a clump turns its spheres though its three moments are equal") {
+    Clump cross = make_clump("cross", {{{0.02, 0, 0}, 0.01}, {{-0.02, 0, 0}, 0.01}, {{0, 0.02, 0}, 0.01}, {{0, -0.02, 0}, 0.01}, {{0, 0, 0.02}, 0.01}, {{0, 0, -0.02}, 0.01}});
+    cross.principal_moments.setConstant(cross.principal_moments.mean());
+    Scene scene;
+    scene.gravity = Vec3::Zero();
+    scene.add_stone(cross, {.position = {0, 0, 0}, .angular_velocity = {0, 0, 10}});
+    auto sim = simulate(scene).contact(law(1, 0));
+    sim.run({.end_time = 0.1, .time_step = 1e-5});
+    const Particles& p = sim.particles();
+    const Real angle = 0.1 * 10;
+    for (std::size_t s = 0; s < 6; ++s) {
+        const Vec3 at = Eigen::AngleAxis<Real>(angle, Vec3::UnitZ()) * cross.members[s].centre;
+        CHECK((p.centre[s] - at).norm() < 1e-9);  // second order: (w dt)^2 / 12 of the angle
+    }
+}
+
 TEST_CASE("elastic bouncing neither gains nor loses over a thousand bounces") {
     Scene scene;
     scene.add_sphere(0.02, {.position = {0, 0, 0.03}});

@@ -85,7 +85,7 @@ inline void drift_body(Particles& p, Index body, Real dt) noexcept {
     const auto b = static_cast<std::size_t>(body);
     if (p.inverse_mass[b] == 0) return;
     p.position[b] += dt * p.velocity[b];
-    if (!p.isotropic(body))
+    if (p.sphere_count[b] > 1)  // how a sphere is turned nobody sees
         p.orientation[b] = turn_freely(p.orientation[b], p.angular_momentum[b], p.inverse_inertia[b], dt);
     const Vec3 velocity = p.velocity[b] + 0.5 * dt * p.inverse_mass[b] * p.force[b];
     const Vec3 momentum = p.angular_momentum[b] + 0.5 * dt * p.torque[b];
