@@ -79,9 +79,11 @@ struct History {
         time.push_back(sim.time()), kinetic.push_back(sim.ledger().kinetic);
         worn.push_back(sim.concrete().worn_volume()), wear_rate.push_back(worn_in_step / sim.time_step());
         carried.push_back(vertical);
-        if (sim.time() < rest_from) at_rest = p.centre;
-        for (std::size_t s = 0; s < at_rest.size(); ++s)
-            moved = std::max(s == 0 ? 0 : moved, (p.centre[s] - at_rest[s]).norm());
+        if (sim.time() < rest_from)
+            at_rest = p.centre;
+        else
+            for (std::size_t s = 0; s < at_rest.size(); ++s)
+                moved = std::max(moved, (p.centre[s] - at_rest[s]).norm());
     }
 };
 
@@ -137,12 +139,13 @@ Summary heap_at_rest(const OutputFolder& folder) {
     // Since when has the worn volume been what it is now, to the last bit?
     std::size_t last_change = h.worn.size() - 1;
     while (last_change > 0 && h.worn[last_change - 1] == h.worn.back()) --last_change;
-    Real worn_at_rest = 0, fastest_at_rest = 0;
+    Real worn_at_rest = 0, fastest_at_rest = 0, kinetic_at_rest = 0;
     for (std::size_t i = 0; i < h.time.size(); ++i)
         if (h.time[i] < rest_from)
             worn_at_rest = h.worn[i];
         else
-            fastest_at_rest = std::max(fastest_at_rest, h.wear_rate[i]);
+            fastest_at_rest = std::max(fastest_at_rest, h.wear_rate[i]),
+            kinetic_at_rest = std::max(kinetic_at_rest, h.kinetic[i]);
     const Ledger& e = sim.ledger();
     const Real from_energy = coefficient * beta * 0.5 * (e.concrete_lost_normal + e.concrete_lost_sliding);
     return {{"seed", seed},
@@ -155,6 +158,8 @@ Summary heap_at_rest(const OutputFolder& folder) {
             {"bonds_broken", sim.bonds_broken()},
             {"rest_from_s", rest_from},
             {"worn_since_rest_mm3", 1e9 * (h.worn.back() - worn_at_rest)},
+            // All that still swings, kinetic and as much elastic energy, half of it into the concrete.
+            {"wearable_at_rest_mm3", 1e9 * coefficient * beta * kinetic_at_rest},
             {"worn_unchanged_for_s", end_time - h.time[last_change]},
             {"max_wear_rate_at_rest_mm3_per_s", 1e9 * fastest_at_rest},
             {"end_wear_rate_mm3_per_s", 1e9 * h.wear_rate.back()},

@@ -39,7 +39,6 @@ struct Curve {
 
 enum class Palette {
     wear,     ///< pale to dark brown: nothing to much
-    viridis,  ///< dark blue to yellow
 };
 
 namespace charts {

@@ -99,6 +99,7 @@ int run(const Options& options) {
     auto sim = make_simulation(config);
     const Interrupt interrupt;
     LedgerHistory history;
+    std::string went_wrong;
     {
         Recorder recorder(folder.path("series"));
         Progress progress("invert channel", config.end_time);
@@ -116,13 +117,16 @@ int run(const Options& options) {
                     recorder);
         } catch (const RunError& error) {
             progress.clear();
-            std::cerr << "error: " << error.what() << "\n";
-            std::cerr << "saved as " << save_last_good(sim.last_good(), folder).string() << "\n";
-            return 3;
+            went_wrong = error.what();
         } catch (const InputError& error) {
             throw InputError(config.source + ": " + error.what());  // what only the whole scene could tell
         }
         history = recorder.take_history();
+    }
+    if (!went_wrong.empty()) {  // only now: every file of the folder must be closed
+        std::cerr << "error: " << went_wrong << "\n";
+        std::cerr << "saved as " << save_last_good(sim.last_good(), folder).string() << "\n";
+        return 3;
     }
     const ChannelResults results = make_results(config, sim, std::move(history));
     write_report(config, results, folder);

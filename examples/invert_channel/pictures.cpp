@@ -118,7 +118,7 @@ void draw_ledger(const ChannelResults& r, const fs::path& picture) {
                     .y = {.label = "energy", .unit = "J"},
                     .curves = {}};
     static const std::vector<std::pair<std::string, std::string>> shown{
-        {"kinetic", "kinetic energy of the stones"},
+        {"kinetic", "kinetic energy"},
         {"drag_input", "put in by the flow"},
         {"lost_drag", "lost in drag"},
         {"lost_sliding", "lost in sliding"},

@@ -17,10 +17,22 @@ constexpr Real radius = 0.01, dt = 1e-6, kn = 4e8, ks = 0.2 * kn;
 const Real tan_phi = std::tan(radians(35.0));
 const Real area = pi * radius * radius;
 
-MohrCoulomb law(Real damping = 0) { return MohrCoulomb{{.tensile = 2.7e6, .friction_angle = 35, .stiffness = kn, .stiffness_ratio = 0.2, .damping = damping}}; }
+MohrCoulomb law(Real damping = 0) {
+    return MohrCoulomb{{.tensile = 2.7e6,
+                        .friction_angle = 35,
+                        .stiffness = kn,
+                        .stiffness_ratio = 0.2,
+                        .damping = damping}};
+}
 
 BondKinematics at(Real compression, const Vec3& velocity = Vec3::Zero()) {
-    return {.normal = Vec3(0, 0, 1), .compression = compression, .velocity = velocity, .radius = radius, .effective_mass = 0.005, .time_step = dt, .travel = dt * velocity};
+    return {.normal = Vec3(0, 0, 1),
+            .compression = compression,
+            .velocity = velocity,
+            .radius = radius,
+            .effective_mass = 0.005,
+            .time_step = dt,
+            .travel = dt * velocity};
 }
 
 /// Pulls in small steps; the force in the last step before it breaks.
@@ -74,7 +86,8 @@ TEST_CASE("an intact bond is a spring in both directions, in tension too") {
 
 TEST_CASE("tension breaks at A sigma_t, less by what is worn") {
     // Steps of 1e-9 m are 0.4 N, of 848 N: within 0.05 %.
-    for (const Real left : {1.0, 0.5, 0.1}) CHECK(tension_at_break(law(), left) == doctest::Approx(left * area * 2.7e6).epsilon(0.001));
+    for (const Real left : {1.0, 0.5, 0.1})
+        CHECK(tension_at_break(law(), left) == doctest::Approx(left * area * 2.7e6).epsilon(0.001));
     CHECK(tension_at_break(law(), 0) < 1);
     const MohrCoulomb square_area{{.tensile = 2.7e6, .stiffness = kn, .area = MohrCoulomb::Area::square}};
     CHECK(tension_at_break(square_area, 1) == doctest::Approx(4 * radius * radius * 2.7e6).epsilon(0.001));
@@ -107,21 +120,27 @@ TEST_CASE("breaking under compression changes no normal force and makes no energ
     int broke = 0;
     for (int n = 0; n < 20'000; ++n) {
         const MohrCoulomb bond = law(n % 2 ? 0.3 * u(random) : 0);
-        const Vec3 velocity = std::pow(10, 3 * u(random) - 4) * Vec3(u(random) - 0.5, u(random) - 0.5, u(random) - 0.5);
+        const Vec3 velocity =
+            std::pow(10, 3 * u(random) - 4) * Vec3(u(random) - 0.5, u(random) - 0.5, u(random) - 0.5);
         const BondKinematics now = at(std::pow(10, -9 + 4 * u(random)), velocity);
-        const Memory held{std::pow(10, -7 + 3 * u(random)) * Vec3(u(random) - 0.5, u(random) - 0.5, 0), false};
+        const Memory held{std::pow(10, -7 + 3 * u(random)) * Vec3(u(random) - 0.5, u(random) - 0.5, 0),
+                          false};
         const auto intact = bond.respond(now, 1e9, held);  // strong enough for anything
         const auto broken = bond.respond(now, u(random), held);
         if (broken.fate == Fate::intact) continue;
         ++broke;
         REQUIRE(broken.fate == Fate::shear);
-        if (intact.load.force.z() > 0) REQUIRE(broken.load.force.z() == doctest::Approx(intact.load.force.z()).epsilon(1e-12));
-        else REQUIRE(broken.load.force.z() == 0);  // a dashpot that pulled harder than the spring pushed
+        if (intact.load.force.z() > 0)
+            REQUIRE(broken.load.force.z() == doctest::Approx(intact.load.force.z()).epsilon(1e-12));
+        else
+            REQUIRE(broken.load.force.z() == 0);  // a dashpot that pulled harder than the spring pushed
         REQUIRE(broken.load.force.head<2>().norm() <= tan_phi * broken.load.force.z() * (1 + 1e-12));
         REQUIRE(broken.load.stored >= 0);
         REQUIRE(broken.load.lost_bond >= 0);
-        // What the normal dashpot takes in the step is work done on the bond, no release: allow what it takes intact.
-        REQUIRE(broken.load.stored + broken.load.lost_bond + broken.load.lost_normal + broken.load.lost_tangential <=
+        // What the normal dashpot takes in the step is work done on the bond, no release: allow what it takes
+        // intact.
+        REQUIRE(broken.load.stored + broken.load.lost_bond + broken.load.lost_normal +
+                    broken.load.lost_tangential <=
                 (intact.load.stored + intact.load.lost_bond) * (1 + 1e-12) + 1e-18);
         // And none is forgotten.
         REQUIRE(broken.load.stored + broken.load.lost_bond >= intact.load.stored * (1 - 1e-12));
@@ -175,7 +194,8 @@ TEST_CASE("random histories: no loss is negative, intact or broken") {
         const MohrCoulomb bond = law(0.5 + 0.5 * u(random));
         Memory memory{};
         Vec3 normal = Vec3(u(random), u(random), u(random)).normalized();
-        const Real depth = std::pow(10, -8 + 3 * std::abs(u(random))), speed = std::pow(10, 2 * u(random) - 1);
+        const Real depth = std::pow(10, -8 + 3 * std::abs(u(random))),
+                   speed = std::pow(10, 2 * u(random) - 1);
         for (int step = 0; step < 40; ++step) {
             normal = (normal + 0.01 * Vec3(u(random), u(random), u(random))).normalized();
             BondKinematics now = at(depth * u(random), speed * Vec3(u(random), u(random), u(random)));
@@ -186,7 +206,7 @@ TEST_CASE("random histories: no loss is negative, intact or broken") {
             REQUIRE(load.lost_tangential >= 0);
             REQUIRE(load.stored >= 0);
             REQUIRE(std::isfinite(load.force.norm() + load.lost_bond));
-            REQUIRE((next.broken || !memory.broken));             // never heals
+            REQUIRE((next.broken || !memory.broken));  // never heals
             REQUIRE((fate == Fate::intact) == (next.broken == memory.broken));
             memory = next;
         }
@@ -211,5 +231,6 @@ TEST_CASE("parameters that make no sense are refused, with the rule") {
     }
     for (const Real bad : {-1.0, 90.0, nan}) refused([&](Params& p) { p.friction_angle = bad; });
     for (const Real bad : {-0.1, 1.1, nan}) refused([&](Params& p) { p.damping = bad; });
-    CHECK_THROWS_WITH_AS(MohrCoulomb({.tensile = -1, .stiffness = kn}), "MohrCoulomb.tensile must be finite and > 0, got -1 Pa", InputError);
+    CHECK_THROWS_WITH_AS(MohrCoulomb({.tensile = -1, .stiffness = kn}),
+                         "MohrCoulomb.tensile must be finite and > 0, got -1 Pa", InputError);
 }

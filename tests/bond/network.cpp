@@ -74,14 +74,15 @@ TEST_CASE("a way around keeps a body tied") {
     Particles p = chain(4);
     Network<MohrCoulomb> network;
     network.build(p, {{0, 1}, {1, 2}, {2, 3}, {0, 3}});  // a ring
-    move(p, 2, {0, 1e-4, 0});                            // breaks 1-2 and 2-3 in shear or tension; 3 hangs on 0
+    move(p, 2, {0, 1e-4, 0});  // breaks 1-2 and 2-3 in shear or tension; 3 hangs on 0
     network.respond(law, NoWear{}, p, sound, 1e-6);
     const auto tied = network.tied_to_ground(p);
     CHECK(tied[1] == 1);
     CHECK(tied[3] == 1);
 }
 
-TEST_CASE("pruning drops open broken bonds with a loose end, keeps the others, renumbers, and hands back energy") {
+TEST_CASE(
+    "pruning drops open broken bonds with a loose end, keeps the others, renumbers, and hands back energy") {
     Particles p = chain(5);
     Network<MohrCoulomb> network = bonded(p);
     for (std::size_t b = 3; b < 5; ++b) move(p, b, {1e-4, 0, 0});
@@ -115,7 +116,9 @@ TEST_CASE("memory of bonds survives renumbering") {
         const Clump ball = make_clump("ball", {{Vec3::Zero(), 0.5 * d}});
         Particles p;
         p.add(ball, 2650, {.position = {9, 9, 9}}, Kind::stone);
-        for (Index n = 0; n < 3; ++n) p.add(ball, 2400, {.position = {n * d, 0, 0}, .velocity = {0, 0.01 * n, 0}}, n == 0 ? Kind::fixed : Kind::concrete);
+        for (Index n = 0; n < 3; ++n)
+            p.add(ball, 2400, {.position = {n * d, 0, 0}, .velocity = {0, 0.01 * n, 0}},
+                  n == 0 ? Kind::fixed : Kind::concrete);
         Network<MohrCoulomb> network;
         network.build(p, {{1, 2}, {2, 3}});
         for (int n = 0; n < 5; ++n) network.respond(law, NoWear{}, p, sound, 1e-6);
@@ -139,7 +142,8 @@ TEST_CASE("the weaker of two spheres weakens the bond") {
         Network<MohrCoulomb> network;
         Particles rest = chain(3);
         network.build(rest, {{0, 1}, {1, 2}});
-        const BondSums sums = network.respond(law, NoWear{}, p, [&](Index body) { return body == 2 ? left_of_last : 1.0; }, 1e-6);
+        const BondSums sums = network.respond(
+            law, NoWear{}, p, [&](Index body) { return body == 2 ? left_of_last : 1.0; }, 1e-6);
         CHECK(!network.broken(0));
         return sums.broken_tension;
     };

@@ -51,11 +51,23 @@ TEST_CASE("a sum has the same bits with one thread and with two") {
     std::vector<Real> values(100'003);
     // Sizes and signs so mixed that any other order of adding up shows.
     for (Real& v : values) v = std::pow(10, exponent(random)) * (random() % 2 ? 1 : -1);
-    const auto sum = [&] { return parallel_sum<Real>(static_cast<Index>(values.size()), [&](Index i) { return values[static_cast<std::size_t>(i)]; }); };
+    const auto sum = [&] {
+        return parallel_sum<Real>(static_cast<Index>(values.size()),
+                                  [&](Index i) { return values[static_cast<std::size_t>(i)]; });
+    };
     Real one = 0, two = 0, three = 0;
-    { const Threads scope(1); one = sum(); }
-    { const Threads scope(2); two = sum(); }
-    { const Threads scope(3); three = sum(); }
+    {
+        const Threads scope(1);
+        one = sum();
+    }
+    {
+        const Threads scope(2);
+        two = sum();
+    }
+    {
+        const Threads scope(3);
+        three = sum();
+    }
     CHECK(same_bits(one, two));
     CHECK(same_bits(one, three));
     Real backwards = 0;

@@ -19,7 +19,9 @@ struct Still {
     using Params = StillParams;
     explicit Still(Params p) : params_(p) { params_.validate(); }
     const Params& params() const noexcept { return params_; }
-    FluidSample sample(const Vec3& x, Real) const noexcept { return {Vec3::Zero(), params_.surface - x.z(), 1000, params_.viscosity}; }
+    FluidSample sample(const Vec3& x, Real) const noexcept {
+        return {Vec3::Zero(), params_.surface - x.z(), 1000, params_.viscosity};
+    }
 
 private:
     Params params_;
@@ -43,9 +45,13 @@ TEST_CASE("terminal velocity: where drag carries the submerged weight") {
         Real radius, density, viscosity, time;
     };
     // From Stokes to Newton: Re from 1e-4 to 1e5.
-    for (const Case& c : {Case{1e-3, 2650, 10, 0.02}, {1e-3, 2650, 6e-3, 0.5}, {2.5e-3, 2650, 1e-3, 1}, {0.02, 2650, 1e-3, 5}}) {
+    for (const Case& c : {Case{1e-3, 2650, 10, 0.02},
+                          {1e-3, 2650, 6e-3, 0.5},
+                          {2.5e-3, 2650, 1e-3, 1},
+                          {0.02, 2650, 1e-3, 5}}) {
         const auto sim = drop(c.radius, c.density, c.time, {.viscosity = c.viscosity});
-        const Real speed = -sim.particles().velocity[0].z(), weight = (c.density - 1000) * standard_gravity * 4.0 / 3 * pi * cube(c.radius);
+        const Real speed = -sim.particles().velocity[0].z(),
+                   weight = (c.density - 1000) * standard_gravity * 4.0 / 3 * pi * cube(c.radius);
         const Real re = 1000 * speed * 2 * c.radius / c.viscosity;
         MESSAGE("Re " << re << ", terminal velocity " << speed << " m/s");
         const Real drag = 0.5 * 1000 * CliftGauvin{}.coefficient(re) * pi * square(c.radius) * square(speed);

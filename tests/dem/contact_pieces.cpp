@@ -12,7 +12,9 @@ namespace {
 struct Random {
     std::mt19937 engine{17};
     Real uniform(Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(engine); }
-    Real size(Real low_exponent, Real high_exponent) { return std::pow(10, uniform(low_exponent, high_exponent)); }
+    Real size(Real low_exponent, Real high_exponent) {
+        return std::pow(10, uniform(low_exponent, high_exponent));
+    }
     Vec3 direction() {
         Vec3 v;
         do v = Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
@@ -27,7 +29,8 @@ TEST_CASE("a spring turned into the plane keeps its length and lies in the plane
     Random random;
     for (int n = 0; n < 10'000; ++n) {
         const Vec3 normal = random.direction(), spring = random.size(-15, 0) * random.direction();
-        if (spring.normalized().cross(normal).norm() < 1e-3) continue;  // nearly along the normal: no direction to keep
+        if (spring.normalized().cross(normal).norm() < 1e-3)
+            continue;  // nearly along the normal: no direction to keep
         const Vec3 turned = turn_into_plane(spring, normal);
         REQUIRE(turned.norm() == doctest::Approx(spring.norm()).epsilon(1e-12));
         REQUIRE(std::abs(turned.dot(normal)) < 1e-12 * spring.norm());
@@ -49,15 +52,14 @@ TEST_CASE("normal spring: at rest it pushes k delta, stores 1/2 k delta^2 and lo
     CHECK(spring.lost == 0);
 }
 
-TEST_CASE("a contact acts for the share of the step since it began") {
-    const Real dt = 1e-5, v = 2, travel = v * dt;
-    CHECK(acting_share(0.0, v, dt) == 0.5);                                            // touched just now: half a step
-    CHECK(acting_share(0.5 * travel, v, dt) == doctest::Approx(1));                    // half a step ago: a whole one
-    CHECK(acting_share(travel * 0.999999, v, dt) == doctest::Approx(1.5).epsilon(1e-5));
-    CHECK(acting_share(travel * 1.000001, v, dt) == 1);                                // an older contact
-    CHECK(acting_share(1e-9, -v, dt) == 1);                                            // one that parts
-    CHECK(acting_share(1e-9, 0.0, dt) == 1);
-    CHECK(acting_share(0.0, 0.0, dt) == 1);
+TEST_CASE("a contact has lasted for the share of the step since it began") {
+    const Real dt = 1e-5, v = 2, way = v * dt;
+    CHECK(begun_share(0.0, v, dt) == 0);                           // touched just now
+    CHECK(begun_share(0.5 * way, v, dt) == doctest::Approx(0.5));  // half a step ago
+    CHECK(begun_share(way * 1.000001, v, dt) == 1);                // an older contact
+    CHECK(begun_share(1e-9, -v, dt) == 1);                         // one that parts
+    CHECK(begun_share(1e-9, 0.0, dt) == 1);
+    CHECK(begun_share(0.0, 0.0, dt) == 1);
 }
 
 TEST_CASE("normal spring: never pulls; what the clamp holds back is lost") {
@@ -69,7 +71,8 @@ TEST_CASE("normal spring: never pulls; what the clamp holds back is lost") {
     Random random;
     for (int n = 0; n < 100'000; ++n) {
         const Real overlap = random.size(-12, -2), approach = random.uniform(-1, 1) * random.size(-6, 2);
-        const auto s = NormalSpring<Real>::at(overlap, approach, random.size(3, 9), random.size(-3, 5), random.size(-8, -3));
+        const auto s = NormalSpring<Real>::at(overlap, approach, random.size(3, 9), random.size(-3, 5),
+                                              random.size(-8, -3));
         REQUIRE(s.force >= 0);
         REQUIRE(s.lost >= 0);
         REQUIRE(s.stored >= 0);
@@ -97,7 +100,8 @@ TEST_CASE("slider: sliding steadily at the limit loses the limit times the way")
 
 TEST_CASE("slider: a limit that falls on a spring at rest loses what the spring releases") {
     const Vec3 trial(1e-4, 0, 0);
-    const auto s = SlidingSpring<Real>::at(trial, trial, Vec3(Vec3::Zero()), 10, 1e6, 20, 1e-5);  // spring alone 100 N
+    const auto s =
+        SlidingSpring<Real>::at(trial, trial, Vec3(Vec3::Zero()), 10, 1e6, 20, 1e-5);  // spring alone 100 N
     CHECK(s.force.x() == doctest::Approx(-10));
     CHECK(s.spring.x() == doctest::Approx(1e-5));
     CHECK(s.lost == doctest::Approx(0.5 * 1e6 * (1e-8 - 1e-10)));
@@ -117,7 +121,8 @@ TEST_CASE("slider: the limit holds and no loss is negative, whatever comes") {
     for (int n = 0; n < 200'000; ++n) {
         const Vec3 trial = n % 7 ? Vec3(random.size(-12, -2) * random.direction()) : Vec3(Vec3::Zero());
         const Vec3 slip = n % 5 ? Vec3(random.size(-9, 2) * random.direction()) : Vec3(Vec3::Zero());
-        const Real limit = n % 11 ? random.size(-6, 5) : 0, k = random.size(3, 9), c = n % 3 ? random.size(-3, 5) : 0;
+        const Real limit = n % 11 ? random.size(-6, 5) : 0, k = random.size(3, 9),
+                   c = n % 3 ? random.size(-3, 5) : 0;
         const Real dt = random.size(-8, -3);
         const Vec3 before = trial - (n % 2 ? dt : 0) * slip;
         const auto s = SlidingSpring<Real>::at(before, trial, slip, limit, k, c, dt);

@@ -20,7 +20,9 @@ Particles row() {
     Particles p;
     p.add(ball, 2650, {.position = {5, 0, 0}}, Kind::stone);
     p.add(ball, 2650, {.position = {0, 0, 0}, .velocity = {0, 0.02, 0}}, Kind::stone);
-    p.add(ball, 2650, {.position = {0.0199, 0, 0}, .velocity = {0, -0.02, 0.01}, .angular_velocity = {0, 0, 3}}, Kind::stone);
+    p.add(ball, 2650,
+          {.position = {0.0199, 0, 0}, .velocity = {0, -0.02, 0.01}, .angular_velocity = {0, 0, 3}},
+          Kind::stone);
     return p;
 }
 
@@ -37,7 +39,8 @@ TEST_CASE("memory survives renewal of the list, with spheres renumbered") {
     Contacts<LinearSpring> kept, renewed;
     kept.rebuild({{1, 2}}, 3, {});
     renewed.rebuild({{1, 2}}, 3, {});
-    for (int step = 0; step < 5; ++step) kept.respond(law, NoWear{}, p, no_walls, 1e-5), renewed.respond(law, NoWear{}, q, no_walls, 1e-5);
+    for (int step = 0; step < 5; ++step)
+        kept.respond(law, NoWear{}, p, no_walls, 1e-5), renewed.respond(law, NoWear{}, q, no_walls, 1e-5);
     REQUIRE(kept.loads()[0].active);
     REQUIRE(std::abs(kept.loads()[0].force.y()) > 0.01);
 
@@ -74,7 +77,8 @@ TEST_CASE("memory goes to the right pair among many, and walls keep theirs") {
     const std::vector<Plane> floor{{{0, 0, 0}, {0, 0, 1}}};
     Particles p;
     for (int n = 0; n < 6; ++n)
-        p.add(ball, 2650, {.position = {0.0199 * n, 0, 0.0099}, .velocity = {0, 0.01 * (n + 1), 0}}, Kind::stone);
+        p.add(ball, 2650, {.position = {0.0199 * n, 0, 0.0099}, .velocity = {0, 0.01 * (n + 1), 0}},
+              Kind::stone);
     std::vector<Pair> pairs;
     for (Index n = 0; n < 6; ++n) {
         pairs.push_back({n, -1});
@@ -90,17 +94,21 @@ TEST_CASE("memory goes to the right pair among many, and walls keep theirs") {
     std::vector<Vec3> expected;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
         const Index first = moved[static_cast<std::size_t>(pairs[k].first)];
-        const Index second = pairs[k].second < 0 ? pairs[k].second : moved[static_cast<std::size_t>(pairs[k].second)];
+        const Index second =
+            pairs[k].second < 0 ? pairs[k].second : moved[static_cast<std::size_t>(pairs[k].second)];
         if (first < 0 || (pairs[k].second >= 0 && second < 0)) continue;
         fewer.push_back({first, second});
         expected.push_back(before[k].force);
     }
-    fewer.insert(std::lower_bound(fewer.begin(), fewer.end(), Pair{0, 4}), Pair{0, 4});  // and one that is only near
+    fewer.insert(std::lower_bound(fewer.begin(), fewer.end(), Pair{0, 4}),
+                 Pair{0, 4});  // and one that is only near
     contacts.rebuild(fewer, 5, moved);
     std::size_t k = 0;
     for (std::size_t n = 0; n < fewer.size(); ++n) {
-        if (fewer[n] == Pair{0, 4}) CHECK(!contacts.loads()[n].active);
-        else CHECK(contacts.loads()[n].force == expected[k++]);
+        if (fewer[n] == Pair{0, 4})
+            CHECK(!contacts.loads()[n].active);
+        else
+            CHECK(contacts.loads()[n].force == expected[k++]);
     }
 }
 
@@ -111,7 +119,8 @@ TEST_CASE("both sides feel opposite forces and torques that conserve angular mom
     contacts.respond(law, NoWear{}, p, no_walls, 1e-5);
     const PairLoad& load = contacts.loads()[0];
     // About the origin: x1 x f + x2 x (-f) + (arm1 + arm2) f x n = 0.
-    const Vec3 about = p.position[1].cross(load.force) - p.position[2].cross(load.force) + (load.arm_first + load.arm_second) * load.twist;
+    const Vec3 about = p.position[1].cross(load.force) - p.position[2].cross(load.force) +
+                       (load.arm_first + load.arm_second) * load.twist;
     CHECK(about.norm() < 1e-15 * load.force.norm());
     CHECK(load.force.x() < 0);  // the second stands at +x and pushes the first to -x
     const auto sides = contacts.incidence().of(2);

@@ -25,7 +25,9 @@ struct Random {
     explicit Random(unsigned seed) : engine(seed) {}
     std::mt19937 engine;
     Real uniform(Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(engine); }
-    Vec3 in_box(const Vec3& size) { return size.cwiseProduct(Vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1))); }
+    Vec3 in_box(const Vec3& size) {
+        return size.cwiseProduct(Vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)));
+    }
 };
 
 /// Both lists; REQUIREs that they agree and are sorted.
@@ -53,7 +55,8 @@ TEST_CASE("no sphere, one sphere, two spheres") {
     CHECK(compare(s, 0.1) == 0);
 }
 
-TEST_CASE("random spheres of sizes 1:20, several skins, with and without passive ones, in boxes of all shapes") {
+TEST_CASE(
+    "random spheres of sizes 1:20, several skins, with and without passive ones, in boxes of all shapes") {
     std::size_t found = 0;
     unsigned seed = 0;
     for (const Vec3& box : {Vec3(1, 1, 1), Vec3(20, 1, 0.1), Vec3(0.01, 0.01, 30), Vec3(3, 3, 0)})
@@ -62,7 +65,8 @@ TEST_CASE("random spheres of sizes 1:20, several skins, with and without passive
                 Random random(++seed);
                 Spheres s;
                 for (Index n = 0; n < 350; ++n)
-                    s.add(random.in_box(box), 0.01 * std::pow(20, random.uniform(0, 1)), n / 3, random.uniform(0, 1) < passive_share);
+                    s.add(random.in_box(box), 0.01 * std::pow(20, random.uniform(0, 1)), n / 3,
+                          random.uniform(0, 1) < passive_share);
                 found += compare(s, skin);
             }
     CHECK(found > 10'000);
@@ -79,10 +83,12 @@ TEST_CASE("all of one size, on a lattice: pairs at exactly the reach, cells at e
 TEST_CASE("sizes at exactly a power of two apart") {
     Random random(5);
     Spheres s;
-    for (Index n = 0; n < 300; ++n) s.add(random.in_box(Vec3::Ones()), 0.01 * std::pow(2.0, n % 5), n, n % 4 == 0);
+    for (Index n = 0; n < 300; ++n)
+        s.add(random.in_box(Vec3::Ones()), 0.01 * std::pow(2.0, n % 5), n, n % 4 == 0);
     CHECK(compare(s, 0.01) > 100);
     Spheres thirds;
-    for (Index n = 0; n < 300; ++n) thirds.add(random.in_box(Vec3::Ones()), (0.1 / 3) * std::pow(2.0, n % 3), n, n % 4 == 0);
+    for (Index n = 0; n < 300; ++n)
+        thirds.add(random.in_box(Vec3::Ones()), (0.1 / 3) * std::pow(2.0, n % 3), n, n % 4 == 0);
     CHECK(compare(thirds, 0.01) > 100);
 }
 
@@ -111,7 +117,9 @@ TEST_CASE("one boulder among sand, searching and searched for") {
             for (Index n = 0; n < 800; ++n) s.add(random.in_box(Vec3(1, 1, 0.3)), 0.004, n, sand_passive);
             s.add({0.5, 0.5, 0.2}, 0.15, 5000, boulder_passive);
             const std::size_t pairs = compare(s, 0.001);
-            if (!(boulder_passive && sand_passive)) CHECK(pairs > 10);
-            else CHECK(pairs == 0);
+            if (!(boulder_passive && sand_passive))
+                CHECK(pairs > 10);
+            else
+                CHECK(pairs == 0);
         }
 }

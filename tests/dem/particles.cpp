@@ -14,11 +14,14 @@ namespace {
 /// Every column has its length, every sphere knows its body, every body its spheres.
 void check_straight(const Particles& p) {
     const auto bodies = static_cast<std::size_t>(p.bodies()), spheres = static_cast<std::size_t>(p.spheres());
-    for (const std::size_t size : {p.velocity.size(), p.orientation.size(), p.angular_momentum.size(), p.force.size(), p.torque.size(), p.mass.size(),
-                                   p.inverse_mass.size(), p.inverse_inertia.size(), p.volume.size(), p.kind.size(), p.id.size(), p.site.size(),
-                                   p.first_sphere.size(), p.sphere_count.size()})
+    for (const std::size_t size :
+         {p.velocity.size(), p.orientation.size(), p.angular_momentum.size(), p.force.size(), p.torque.size(),
+          p.mass.size(), p.inverse_mass.size(), p.inverse_inertia.size(), p.volume.size(), p.kind.size(),
+          p.id.size(), p.site.size(), p.first_sphere.size(), p.sphere_count.size()})
         REQUIRE(size == bodies);
-    for (const std::size_t size : {p.offset.size(), p.radius.size(), p.centre.size(), p.centre_velocity.size(), p.spin.size()}) REQUIRE(size == spheres);
+    for (const std::size_t size :
+         {p.offset.size(), p.radius.size(), p.centre.size(), p.centre_velocity.size(), p.spin.size()})
+        REQUIRE(size == spheres);
     std::size_t next = 0;
     for (std::size_t b = 0; b < bodies; ++b) {
         REQUIRE(static_cast<std::size_t>(p.first_sphere[b]) == next);
@@ -33,7 +36,9 @@ void check_straight(const Particles& p) {
 
 BodyState somewhere(std::mt19937& random) {
     std::uniform_real_distribution<Real> u(-1, 1);
-    BodyState s{{u(random), u(random), u(random)}, {u(random), u(random), u(random)}, Quaternion(u(random), u(random), u(random), u(random)).normalized(),
+    BodyState s{{u(random), u(random), u(random)},
+                {u(random), u(random), u(random)},
+                Quaternion(u(random), u(random), u(random), u(random)).normalized(),
                 {u(random), u(random), u(random)}};
     return s;
 }
@@ -54,8 +59,10 @@ TEST_CASE("a body is what it was made of") {
     CHECK(p.volume[0] == stone.volume);
     CHECK((p.angular_velocity(0) - state.angular_velocity).norm() < 1e-12);
     // Kinetic energy by its definition: 1/2 m v^2 + 1/2 w . (R I R^T) w.
-    const Mat3 inertia = turn.toRotationMatrix() * Mat3((2650 * stone.principal_moments).asDiagonal()) * turn.toRotationMatrix().transpose();
-    const Real expected = 0.5 * p.mass[0] * state.velocity.squaredNorm() + 0.5 * state.angular_velocity.dot(inertia * state.angular_velocity);
+    const Mat3 inertia = turn.toRotationMatrix() * Mat3((2650 * stone.principal_moments).asDiagonal()) *
+                         turn.toRotationMatrix().transpose();
+    const Real expected = 0.5 * p.mass[0] * state.velocity.squaredNorm() +
+                          0.5 * state.angular_velocity.dot(inertia * state.angular_velocity);
     CHECK(p.kinetic_energy(0) == doctest::Approx(expected).epsilon(1e-13));
     // Velocity of a member sphere: v + w x arm.
     const Vec3 arm = p.centre[3] - p.position[0];
@@ -64,7 +71,8 @@ TEST_CASE("a body is what it was made of") {
 
 TEST_CASE("a fixed body has weight but no motion") {
     Particles p;
-    p.add(make_stone(StoneShape::sphere, 0.05), 2400, {.velocity = {1, 1, 1}, .angular_velocity = {1, 0, 0}}, Kind::fixed);
+    p.add(make_stone(StoneShape::sphere, 0.05), 2400, {.velocity = {1, 1, 1}, .angular_velocity = {1, 0, 0}},
+          Kind::fixed);
     CHECK(p.inverse_mass[0] == 0);
     CHECK(p.inverse_inertia[0] == Vec3::Zero());
     CHECK(p.velocity[0] == Vec3::Zero());
@@ -77,10 +85,12 @@ TEST_CASE("adding and removing at random keeps columns straight and ids unique")
     std::mt19937 random(4);
     Particles p;
     std::vector<Index> alive;
-    const std::array clumps{make_stone(StoneShape::sphere, 0.03), make_stone(StoneShape::ellipsoid, 0.04), make_stone(StoneShape::angular, 0.05)};
+    const std::array clumps{make_stone(StoneShape::sphere, 0.03), make_stone(StoneShape::ellipsoid, 0.04),
+                            make_stone(StoneShape::angular, 0.05)};
     for (int round = 0; round < 60; ++round) {
         for (int n = 0; n < 5; ++n) {
-            const Index b = p.add(clumps[random() % 3], 2650, somewhere(random), random() % 4 ? Kind::stone : Kind::fixed);
+            const Index b = p.add(clumps[random() % 3], 2650, somewhere(random),
+                                  random() % 4 ? Kind::stone : Kind::fixed);
             p.site[static_cast<std::size_t>(b)] = 10 * p.id[static_cast<std::size_t>(b)];
             alive.push_back(p.id[static_cast<std::size_t>(b)]);
         }
@@ -116,9 +126,12 @@ TEST_CASE("a body that cannot be is refused and leaves no trace") {
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Clump sphere = make_stone(StoneShape::sphere, 0.05);
     Particles p;
-    for (const Real density : {0.0, -1.0, nan}) CHECK_THROWS_AS(p.add(sphere, density, {}, Kind::stone), InputError);
+    for (const Real density : {0.0, -1.0, nan})
+        CHECK_THROWS_AS(p.add(sphere, density, {}, Kind::stone), InputError);
     CHECK_THROWS_AS(p.add(sphere, 1, {.position = {0, nan, 0}}, Kind::stone), InputError);
-    CHECK_THROWS_AS(p.add(sphere, 1, {.velocity = {0, 0, std::numeric_limits<Real>::infinity()}}, Kind::stone), InputError);
+    CHECK_THROWS_AS(
+        p.add(sphere, 1, {.velocity = {0, 0, std::numeric_limits<Real>::infinity()}}, Kind::stone),
+        InputError);
     CHECK_THROWS_AS(p.add(sphere, 1, {.angular_velocity = {nan, 0, 0}}, Kind::stone), InputError);
     check_straight(p);
     CHECK(p.bodies() == 0);
@@ -127,6 +140,9 @@ TEST_CASE("a body that cannot be is refused and leaves no trace") {
 TEST_CASE("an orientation that is none is refused") {
     const Clump stone = make_stone(StoneShape::angular, 0.05);
     Particles p;
-    CHECK_THROWS_AS(p.add(stone, 1, {.orientation = Quaternion(std::numeric_limits<Real>::quiet_NaN(), 0, 0, 0)}, Kind::stone), InputError);
+    CHECK_THROWS_AS(
+        p.add(stone, 1, {.orientation = Quaternion(std::numeric_limits<Real>::quiet_NaN(), 0, 0, 0)},
+              Kind::stone),
+        InputError);
     CHECK_THROWS_AS(p.add(stone, 1, {.orientation = Quaternion(0, 0, 0, 0)}, Kind::stone), InputError);
 }

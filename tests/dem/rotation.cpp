@@ -51,7 +51,8 @@ TEST_CASE("rotation about a principal axis is steady, at the rate L/I") {
 
 TEST_CASE("second order in dt") {
     const Vec3 momentum(1, 0.5, -2);
-    const Quaternion start = Quaternion(1, 0.2, -0.3, 0.4).normalized(), exact = turned(start, momentum, 2, 200'000);
+    const Quaternion start = Quaternion(1, 0.2, -0.3, 0.4).normalized(),
+                     exact = turned(start, momentum, 2, 200'000);
     const auto error = [&](int steps) { return turned(start, momentum, 2, steps).angularDistance(exact); };
     CHECK(std::log2(error(100) / error(200)) == doctest::Approx(2).epsilon(0.02));
     CHECK(std::log2(error(400) / error(800)) == doctest::Approx(2).epsilon(0.02));
@@ -80,15 +81,21 @@ TEST_CASE("the flip's period is that of the elliptic integral") {
     const Vec3 momentum = Vec3(0.02, 1, 0.03);
     const Real l2 = momentum.squaredNorm(), twice_energy = momentum.cwiseProduct(momentum).dot(inverse);
     // Eliminate: Pi_1^2 = (2T - l2/I3 - Pi_2^2 (1/I2 - 1/I3)) / (1/I1 - 1/I3), likewise Pi_3^2.
-    const auto pi1 = [&](Real p2) { return (twice_energy - l2 * inverse[2] - p2 * (inverse[1] - inverse[2])) / (inverse[0] - inverse[2]); };
-    const auto pi3 = [&](Real p2) { return (l2 * inverse[0] - twice_energy - p2 * (inverse[0] - inverse[1])) / (inverse[0] - inverse[2]); };
-    const Real top2 = std::min((twice_energy - l2 * inverse[2]) / (inverse[1] - inverse[2]), (l2 * inverse[0] - twice_energy) / (inverse[0] - inverse[1]));
+    const auto pi1 = [&](Real p2) {
+        return (twice_energy - l2 * inverse[2] - p2 * (inverse[1] - inverse[2])) / (inverse[0] - inverse[2]);
+    };
+    const auto pi3 = [&](Real p2) {
+        return (l2 * inverse[0] - twice_energy - p2 * (inverse[0] - inverse[1])) / (inverse[0] - inverse[2]);
+    };
+    const Real top2 = std::min((twice_energy - l2 * inverse[2]) / (inverse[1] - inverse[2]),
+                               (l2 * inverse[0] - twice_energy) / (inverse[0] - inverse[1]));
     // Pi_2 = top sin(a): a smooth integrand once the root at the end is taken out.
     Real half_period = 0;
     constexpr int points = 200'000;
     for (int n = 0; n < points; ++n) {
         const Real a = -pi / 2 + pi * (n + 0.5) / points, p2 = top2 * square(std::sin(a));
-        half_period += pi / points * std::sqrt(top2) * std::cos(a) / ((inverse[0] - inverse[2]) * std::sqrt(pi1(p2) * pi3(p2)));
+        half_period += pi / points * std::sqrt(top2) * std::cos(a) /
+                       ((inverse[0] - inverse[2]) * std::sqrt(pi1(p2) * pi3(p2)));
     }
     Quaternion q = Quaternion::Identity();
     const Real dt = 0.002;
@@ -102,5 +109,7 @@ TEST_CASE("the flip's period is that of the elliptic integral") {
         }
         last = now;
     }
-    CHECK(second_zero - first_zero == doctest::Approx(half_period).epsilon(1e-4));  // second order: (w dt)^2/12 = 1e-7, times ln(1/0.03) of growth
+    CHECK(second_zero - first_zero ==
+          doctest::Approx(half_period)
+              .epsilon(1e-4));  // second order: (w dt)^2/12 = 1e-7, times ln(1/0.03) of growth
 }

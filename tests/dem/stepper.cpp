@@ -1,8 +1,8 @@
 // Our velocity Verlet as one of odeint's steppers.
 #include <abrade/dem/stepper.hpp>
 
-#include <boost/numeric/odeint/integrate/integrate_const.hpp>
 #include <doctest/doctest.h>
+#include <boost/numeric/odeint/integrate/integrate_const.hpp>
 
 #include <cmath>
 
@@ -21,7 +21,9 @@ struct Oscillator {
 struct Spring {
     int* calls;
     Real *last_time, *last_step;
-    void operator()(Oscillator& s, Real t, Real dt) const { s.a = -s.x, ++*calls, *last_time = t, *last_step = dt; }
+    void operator()(Oscillator& s, Real t, Real dt) const {
+        s.a = -s.x, ++*calls, *last_time = t, *last_step = dt;
+    }
 };
 
 struct OnlyKicks {
@@ -36,7 +38,8 @@ Oscillator after(Real time, int steps) {
     Oscillator state;
     int calls = 0;
     Real t = 0, dt = 0;
-    boost::numeric::odeint::integrate_const(VelocityVerlet<Oscillator>{}, Spring{&calls, &t, &dt}, state, 0.0, time * (1 + 1e-12), time / steps);
+    boost::numeric::odeint::integrate_const(VelocityVerlet<Oscillator>{}, Spring{&calls, &t, &dt}, state, 0.0,
+                                            time * (1 + 1e-12), time / steps);
     CHECK(calls == steps);
     CHECK(state.drifts == steps);
     CHECK(state.kicks == 2 * steps);

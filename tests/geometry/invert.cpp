@@ -14,7 +14,8 @@ Real area_by_strips(const Invert& s, Real depth) {
     constexpr int strips = 200'000;
     const Real dy = s.width / strips;
     Real sum = 0;
-    for (int i = 0; i < strips; ++i) sum += std::max(0.0, depth - s.bed_height((i + 0.5) * dy - 0.5 * s.width)) * dy;
+    for (int i = 0; i < strips; ++i)
+        sum += std::max(0.0, depth - s.bed_height((i + 0.5) * dy - 0.5 * s.width)) * dy;
     return sum;
 }
 
@@ -22,7 +23,8 @@ Real area_by_strips(const Invert& s, Real depth) {
 Real perimeter_by_chords(const Invert& s, Real depth) {
     constexpr int chords = 200'000;
     const Real edge = s.bed_height(0.5 * s.width);
-    const Real half = depth > edge ? 0.5 * s.width : std::sqrt(square(s.arc_radius) - square(s.arc_radius - depth));
+    const Real half =
+        depth > edge ? 0.5 * s.width : std::sqrt(square(s.arc_radius) - square(s.arc_radius - depth));
     Real sum = 2 * std::max(0.0, depth - edge);
     for (int i = 0; i < chords; ++i) {
         const Real y0 = half * (2.0 * i / chords - 1), y1 = half * (2.0 * (i + 1) / chords - 1);
@@ -60,9 +62,11 @@ TEST_CASE("flow area and wetted perimeter against sums over strips, below and ab
 
 TEST_CASE("area and perimeter do not jump where the walls begin") {
     const Real edge = channel.bed_height(0.5), step = 1e-9;
-    CHECK(channel.flow_area(edge + step) - channel.flow_area(edge - step) == doctest::Approx(2 * step).epsilon(1e-3));
+    CHECK(channel.flow_area(edge + step) - channel.flow_area(edge - step) ==
+          doctest::Approx(2 * step).epsilon(1e-3));
     // The arc meets the wall at 60 degrees from upright: the perimeter's slope jumps, its value does not.
-    CHECK(std::abs(channel.wetted_perimeter(edge + step) - channel.wetted_perimeter(edge - step)) < 10 * step);
+    CHECK(std::abs(channel.wetted_perimeter(edge + step) - channel.wetted_perimeter(edge - step)) <
+          10 * step);
 }
 
 TEST_CASE("a huge radius is a rectangle") {
@@ -89,6 +93,8 @@ TEST_CASE("a section that cannot be is refused, with the rule") {
         CHECK_THROWS_AS((Invert{.arc_radius = bad}.validate()), InputError);
     }
     CHECK_THROWS_WITH_AS((Invert{.width = 1, .arc_radius = 0.4}.validate()),
-                         "Invert.arc_radius must be at least half the width (0.5 m), got 0.4 m; widen the arc or narrow the channel", InputError);
+                         "Invert.arc_radius must be at least half the width (0.5 m), got 0.4 m; widen the "
+                         "arc or narrow the channel",
+                         InputError);
     for (const Real bad : {-0.01, 1.0, nan}) CHECK_THROWS_AS((Invert{.slope = bad}.validate()), InputError);
 }

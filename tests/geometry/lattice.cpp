@@ -23,7 +23,9 @@ Real sum_of_areas(const Lattice& lattice) {
 Real closest_pair(const Lattice& lattice) {
     Real closest = 1e300;
     for (const auto& [i, j] : lattice.neighbours())
-        closest = std::min(closest, (lattice.sites[static_cast<std::size_t>(i)].centre - lattice.sites[static_cast<std::size_t>(j)].centre).norm());
+        closest = std::min(closest, (lattice.sites[static_cast<std::size_t>(i)].centre -
+                                     lattice.sites[static_cast<std::size_t>(j)].centre)
+                                        .norm());
     return closest;
 }
 
@@ -36,7 +38,8 @@ TEST_CASE("flat: cells fill the slab, spheres lie inside it and do not overlap")
         Real length, width, diameter;
         Index layers;
     };
-    for (const Slab& slab : {Slab{0.2, 0.1, 0.02, 3}, {0.25, 0.11, 0.02, 1}, {0.02, 0.02, 0.02, 5}, {1.0, 0.333, 0.017, 2}}) {
+    for (const Slab& slab :
+         {Slab{0.2, 0.1, 0.02, 3}, {0.25, 0.11, 0.02, 1}, {0.02, 0.02, 0.02, 5}, {1.0, 0.333, 0.017, 2}}) {
         const Real length = slab.length, width = slab.width, d = slab.diameter;
         const Index layers = slab.layers;
         CAPTURE(length);
@@ -80,7 +83,9 @@ TEST_CASE("sites stand where site() says, neighbours are counted once") {
     for (const auto& [i, j] : pairs) {
         CHECK(i < j);
         CHECK(seen.insert({i, j}).second);
-        CHECK((lattice.sites[static_cast<std::size_t>(i)].centre - lattice.sites[static_cast<std::size_t>(j)].centre).norm() < 0.02 * 1.001);
+        CHECK((lattice.sites[static_cast<std::size_t>(i)].centre -
+               lattice.sites[static_cast<std::size_t>(j)].centre)
+                  .norm() < 0.02 * 1.001);
     }
 }
 
@@ -96,9 +101,11 @@ TEST_CASE("invert: cells fill the arch") {
         CAPTURE(radius);
         const Invert invert{.length = 0.3, .width = width, .arc_radius = radius};
         const Lattice lattice = invert_lattice(invert, {.layers = layers});
-        const Real outer = radius + layers * 0.02, exact = invert.half_angle() * (outer * outer - radius * radius) * 0.3;
+        const Real outer = radius + layers * 0.02,
+                   exact = invert.half_angle() * (outer * outer - radius * radius) * 0.3;
         CHECK(sum_of_cells(lattice) == doctest::Approx(exact).epsilon(round_off));
-        CHECK(sum_of_areas(lattice) == doctest::Approx(2 * invert.half_angle() * radius * 0.3).epsilon(round_off));
+        CHECK(sum_of_areas(lattice) ==
+              doctest::Approx(2 * invert.half_angle() * radius * 0.3).epsilon(round_off));
         for (const LatticeSite& s : lattice.sites) {
             // Under the surface by half a sphere and whole layers.
             const Real depth = std::hypot(s.centre.y(), s.centre.z() - radius) - radius;
@@ -117,7 +124,8 @@ TEST_CASE("invert: no two neighbours stand nearer than a diameter, at any width 
         for (int n = 2; n < 10; ++n) {
             const Real span = n * 0.02 / (radius + 0.01);  // n spheres fit the surface layer exactly
             if (span >= pi) continue;
-            const Invert invert{.length = 0.02, .width = 2 * radius * std::sin(0.5 * span), .arc_radius = radius};
+            const Invert invert{
+                .length = 0.02, .width = 2 * radius * std::sin(0.5 * span), .arc_radius = radius};
             const Lattice lattice = invert_lattice(invert, {.layers = 2});
             worst = std::min(worst, closest_pair(lattice) / 0.02);
         }
@@ -126,11 +134,15 @@ TEST_CASE("invert: no two neighbours stand nearer than a diameter, at any width 
 
 TEST_CASE("bodies and spheres that do not fit are refused, with the rule") {
     const Real nan = std::numeric_limits<Real>::quiet_NaN(), infinite = std::numeric_limits<Real>::infinity();
-    for (const Real bad : {0.0, -0.02, nan, infinite}) CHECK_THROWS_AS(flat_lattice(1, 1, {.sphere_diameter = bad}), InputError);
-    CHECK_THROWS_WITH_AS(flat_lattice(1, 1, {.layers = 0}), "LatticeSize.layers must be at least 1, got 0", InputError);
+    for (const Real bad : {0.0, -0.02, nan, infinite})
+        CHECK_THROWS_AS(flat_lattice(1, 1, {.sphere_diameter = bad}), InputError);
+    CHECK_THROWS_WITH_AS(flat_lattice(1, 1, {.layers = 0}), "LatticeSize.layers must be at least 1, got 0",
+                         InputError);
     CHECK_THROWS_AS(flat_lattice(1, 1, {.layers = -2}), InputError);
     CHECK_THROWS_WITH_AS(flat_lattice(0.01, 1, {}),
-                         "flat_lattice.side must be at least one sphere diameter (0.02 m), got 0.01 m; take smaller spheres or a larger body", InputError);
+                         "flat_lattice.side must be at least one sphere diameter (0.02 m), got 0.01 m; take "
+                         "smaller spheres or a larger body",
+                         InputError);
     CHECK_THROWS_AS(flat_lattice(1, 0.01, {}), InputError);
     CHECK_THROWS_AS(flat_lattice(nan, 1, {}), InputError);
     CHECK_THROWS_AS(invert_lattice({.length = 0.01}, {}), InputError);

@@ -14,8 +14,11 @@ using Spheres = std::vector<Sphere>;
 
 Real ball(Real r) { return 4.0 / 3 * pi * cube(r); }
 
-/// Volume common to two balls whose surfaces cross (a lens), e.g. mathworld.wolfram.com/Sphere-SphereIntersection.html.
-Real lens(Real a, Real b, Real d) { return pi * square(a + b - d) * (d * d + 2 * d * (a + b) - 3 * square(a - b)) / (12 * d); }
+/// Volume common to two balls whose surfaces cross (a lens), e.g.
+/// mathworld.wolfram.com/Sphere-SphereIntersection.html.
+Real lens(Real a, Real b, Real d) {
+    return pi * square(a + b - d) * (d * d + 2 * d * (a + b) - 3 * square(a - b)) / (12 * d);
+}
 
 /// Moments by a midpoint rule over a grid of cells: shares nothing with the library but the definition.
 SolidMoments by_cells(const Spheres& spheres, int cells) {
@@ -69,8 +72,10 @@ TEST_CASE("two spheres: volume by the lens formula") {
     for (int n = 0; n < 500; ++n) {
         const Real a = 0.2 + uniform(random), b = 0.2 + uniform(random);
         const Real d = std::abs(a - b) + uniform(random) * (a + b - std::abs(a - b));
-        const Vec3 axis = Vec3(uniform(random) - 0.5, uniform(random) - 0.5, uniform(random) - 0.5).normalized();
-        const SolidMoments m = union_moments(Spheres{{{0.1, 0.2, 0.3}, a}, {Vec3(0.1, 0.2, 0.3) + d * axis, b}});
+        const Vec3 axis =
+            Vec3(uniform(random) - 0.5, uniform(random) - 0.5, uniform(random) - 0.5).normalized();
+        const SolidMoments m =
+            union_moments(Spheres{{{0.1, 0.2, 0.3}, a}, {Vec3(0.1, 0.2, 0.3) + d * axis, b}});
         CAPTURE(a);
         CAPTURE(b);
         CAPTURE(d);
@@ -80,13 +85,16 @@ TEST_CASE("two spheres: volume by the lens formula") {
 
 TEST_CASE("two spheres: one inside the other, touching, apart, the same") {
     const Real a = 0.7, b = 0.3;
-    const auto volume = [&](Real d) { return union_moments(Spheres{{Vec3::Zero(), a}, {{0, d, 0}, b}}).volume; };
+    const auto volume = [&](Real d) {
+        return union_moments(Spheres{{Vec3::Zero(), a}, {{0, d, 0}, b}}).volume;
+    };
     CHECK(volume(0.1) == doctest::Approx(ball(a)).epsilon(round_off));
     CHECK(volume(a - b) == doctest::Approx(ball(a)).epsilon(round_off));  // touching from within
     CHECK(volume(0) == doctest::Approx(ball(a)).epsilon(round_off));
     CHECK(volume(a + b) == doctest::Approx(ball(a) + ball(b)).epsilon(round_off));  // touching from without
     CHECK(volume(5) == doctest::Approx(ball(a) + ball(b)).epsilon(round_off));
-    CHECK(union_moments(Spheres{{Vec3::Zero(), a}, {Vec3::Zero(), a}}).volume == doctest::Approx(ball(a)).epsilon(round_off));
+    CHECK(union_moments(Spheres{{Vec3::Zero(), a}, {Vec3::Zero(), a}}).volume ==
+          doctest::Approx(ball(a)).epsilon(round_off));
 
     // A sphere within another changes nothing, whichever is named first.
     const SolidMoments inner_last = union_moments(Spheres{{{1, 0, 0}, a}, {{1.1, 0, 0}, b}});
@@ -107,7 +115,8 @@ TEST_CASE("two overlapping spheres: centroid and inertia against an independent 
     CHECK(std::abs(exact.volume / numeric.volume - 1) < 1e-4);
     CHECK((exact.centroid - numeric.centroid).norm() < 1e-4 * 0.5);
     CHECK(apart(exact.inertia, numeric.inertia) < 2e-4);
-    CHECK(std::abs(numeric.inertia(0, 1)) > 1e-3 * numeric.inertia(0, 0));  // the off-diagonal is really tested
+    CHECK(std::abs(numeric.inertia(0, 1)) >
+          1e-3 * numeric.inertia(0, 0));  // the off-diagonal is really tested
 }
 
 TEST_CASE("many spheres against the closed form where there is one") {
@@ -130,8 +139,11 @@ TEST_CASE("many random spheres against cells and finer rays") {
     std::uniform_real_distribution<Real> uniform(-0.5, 0.5);
     for (int n = 0; n < 3; ++n) {
         Spheres heap;
-        for (int k = 0; k < 7; ++k) heap.push_back({{uniform(random), uniform(random), uniform(random)}, 0.4 + 0.3 * uniform(random)});
-        const SolidMoments coarse = union_moments(heap), fine = union_moments(heap, 1200), cells = by_cells(heap, 160);
+        for (int k = 0; k < 7; ++k)
+            heap.push_back(
+                {{uniform(random), uniform(random), uniform(random)}, 0.4 + 0.3 * uniform(random)});
+        const SolidMoments coarse = union_moments(heap), fine = union_moments(heap, 1200),
+                           cells = by_cells(heap, 160);
         CHECK(std::abs(coarse.volume / fine.volume - 1) < 1e-4);  // what the header claims
         CHECK(apart(coarse.inertia, fine.inertia) < 1e-3);
         // 160 cells across: as above, 1e-3 leaves a factor of some ten.
@@ -148,10 +160,13 @@ TEST_CASE("a sphere listed twice counts once, in the ray integral too") {
 
 TEST_CASE("what is no solid is refused") {
     CHECK_THROWS_AS(union_moments(Spheres{}), InputError);
-    CHECK_THROWS_WITH_AS(union_moments(Spheres{{Vec3::Zero(), 0}}), "Sphere.radius must be finite and > 0, got 0 m", InputError);
+    CHECK_THROWS_WITH_AS(union_moments(Spheres{{Vec3::Zero(), 0}}),
+                         "Sphere.radius must be finite and > 0, got 0 m", InputError);
     CHECK_THROWS_AS(union_moments(Spheres{{Vec3::Zero(), 1}, {Vec3::Zero(), -1}}), InputError);
-    CHECK_THROWS_AS(union_moments(Spheres{{Vec3::Zero(), std::numeric_limits<Real>::quiet_NaN()}}), InputError);
-    CHECK_THROWS_AS(union_moments(Spheres{{Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()), 1}}), InputError);
+    CHECK_THROWS_AS(union_moments(Spheres{{Vec3::Zero(), std::numeric_limits<Real>::quiet_NaN()}}),
+                    InputError);
+    CHECK_THROWS_AS(union_moments(Spheres{{Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()), 1}}),
+                    InputError);
 }
 
 TEST_CASE("a clump stands in its principal frame") {
@@ -162,7 +177,8 @@ TEST_CASE("a clump stands in its principal frame") {
     const Mat3 moments = clump.principal_moments.asDiagonal();
     CHECK(apart(again.inertia, moments) < 10 * round_off);
     // A rotation, not a mirror, keeps distances and radii.
-    CHECK((clump.members[0].centre - clump.members[1].centre).norm() == doctest::Approx(Vec3(0.3, 0.2, 0.1).norm()).epsilon(round_off));
+    CHECK((clump.members[0].centre - clump.members[1].centre).norm() ==
+          doctest::Approx(Vec3(0.3, 0.2, 0.1).norm()).epsilon(round_off));
     CHECK(clump.bounding_radius >= (clump.members[0].centre.norm() + 0.5) * (1 - round_off));
     CHECK(clump.bounding_radius >= (clump.members[1].centre.norm() + 0.4) * (1 - round_off));
 }
@@ -176,7 +192,8 @@ TEST_CASE("a chiral clump is rotated into its frame, never mirrored") {
     std::uniform_real_distribution<Real> uniform(-1, 1);
     for (int n = 0; n < 10; ++n) {
         Spheres members;
-        for (int k = 0; k < 4; ++k) members.push_back({{uniform(random), uniform(random), uniform(random)}, 0.6});
+        for (int k = 0; k < 4; ++k)
+            members.push_back({{uniform(random), uniform(random), uniform(random)}, 0.6});
         const Clump clump = make_clump("chiral", members);
         CHECK(handedness(clump.members) == doctest::Approx(handedness(members)).epsilon(1e-9));
     }

@@ -30,7 +30,8 @@ TEST_CASE("whatever its shape, a stone has the volume of a sphere of its size") 
         int hits = 0;
         constexpr int darts = 400'000;
         for (int n = 0; n < darts; ++n) {
-            const Vec3 x = low + (high - low).cwiseProduct(Vec3(uniform(random), uniform(random), uniform(random)));
+            const Vec3 x =
+                low + (high - low).cwiseProduct(Vec3(uniform(random), uniform(random), uniform(random)));
             for (const Sphere& s : stone.members)
                 if ((x - s.centre).squaredNorm() < square(s.radius)) {
                     ++hits;
@@ -45,7 +46,8 @@ TEST_CASE("volume grows with the cube of size, inertia with the fifth power") {
     for (const StoneShape shape : shapes) {
         const Clump small = make_stone(shape, 0.01), large = make_stone(shape, 0.1);
         CHECK(large.volume / small.volume == doctest::Approx(1e3).epsilon(1e-12));
-        CHECK(large.principal_moments.z() / small.principal_moments.z() == doctest::Approx(1e5).epsilon(1e-9));
+        CHECK(large.principal_moments.z() / small.principal_moments.z() ==
+              doctest::Approx(1e5).epsilon(1e-9));
         CHECK(large.bounding_radius / small.bounding_radius == doctest::Approx(10).epsilon(1e-9));
     }
 }
@@ -63,7 +65,8 @@ TEST_CASE("the spheres of a stone hang together without gaps") {
             for (std::size_t k = 0; k < stone.members.size(); ++k) {
                 const Sphere& other = stone.members[k];
                 // By at least a tenth of the smaller radius: touching in a point would not be a solid.
-                if (!reached[k] && (s.centre - other.centre).norm() < s.radius + other.radius - 0.1 * std::min(s.radius, other.radius))
+                if (!reached[k] && (s.centre - other.centre).norm() <
+                                       s.radius + other.radius - 0.1 * std::min(s.radius, other.radius))
                     reached[k] = 1, front.push_back(k);
             }
         }
@@ -76,7 +79,8 @@ TEST_CASE("the spheres of a stone hang together without gaps") {
 }
 
 TEST_CASE("the shapes are different shapes") {
-    const Clump sphere = make_stone(StoneShape::sphere, 1), pebble = make_stone(StoneShape::ellipsoid, 1), block = make_stone(StoneShape::angular, 1);
+    const Clump sphere = make_stone(StoneShape::sphere, 1), pebble = make_stone(StoneShape::ellipsoid, 1),
+                block = make_stone(StoneShape::angular, 1);
     CHECK(sphere.members.size() == 1);
     CHECK(pebble.members.size() == 7);
     CHECK(block.members.size() == 9);
@@ -86,7 +90,8 @@ TEST_CASE("the shapes are different shapes") {
         CHECK(m.x() < 0.99 * m.y());
         CHECK(m.y() < 0.99 * m.z());
         CHECK(m.x() + m.y() > m.z());
-        CHECK(m.z() > sphere.principal_moments.z());  // of all bodies of one volume the sphere's is the smallest
+        CHECK(m.z() >
+              sphere.principal_moments.z());  // of all bodies of one volume the sphere's is the smallest
     }
     CHECK(sphere.name == "sphere");
     CHECK(pebble.name == "ellipsoid");
@@ -94,14 +99,18 @@ TEST_CASE("the shapes are different shapes") {
 }
 
 TEST_CASE("1 m3 of sediment holds the counts of the model") {
-    const std::array<std::pair<Real, Real>, 5> counts{{{0.04, 29'800}, {0.05, 15'300}, {0.075, 4'530}, {0.10, 1'910}, {0.15, 566}}};
+    const std::array<std::pair<Real, Real>, 5> counts{
+        {{0.04, 29'800}, {0.05, 15'300}, {0.075, 4'530}, {0.10, 1'910}, {0.15, 566}}};
     for (const auto& [size, count] : counts)
         for (const StoneShape shape : shapes)
-            CHECK(std::abs(1 / make_stone(shape, size).volume / count - 1) < 0.003);  // the counts are given to three figures
+            CHECK(std::abs(1 / make_stone(shape, size).volume / count - 1) <
+                  0.003);  // the counts are given to three figures
 }
 
 TEST_CASE("a size that is none is refused") {
-    for (const Real size : {0.0, -0.04, std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity()})
+    for (const Real size :
+         {0.0, -0.04, std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity()})
         CHECK_THROWS_AS(make_stone(StoneShape::angular, size), InputError);
-    CHECK_THROWS_WITH_AS(make_stone(StoneShape::sphere, -1), "make_stone.size must be finite and > 0, got -1 m", InputError);
+    CHECK_THROWS_WITH_AS(make_stone(StoneShape::sphere, -1),
+                         "make_stone.size must be finite and > 0, got -1 m", InputError);
 }

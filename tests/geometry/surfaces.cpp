@@ -13,7 +13,8 @@ TEST_CASE("a plane measures its distance along the normal") {
     CHECK(wall.distance({2, -3, 1}) == doctest::Approx(std::sqrt(2.0)));
     CHECK(wall.distance({0, 0, 0}) == doctest::Approx(-std::sqrt(0.5)));
     CHECK_NOTHROW(wall.validate());
-    CHECK_THROWS_WITH_AS((Plane{{0, 0, 0}, {0, 0, 2}}.validate()), "Plane.normal must be of length 1, got 2; normalise it", InputError);
+    CHECK_THROWS_WITH_AS((Plane{{0, 0, 0}, {0, 0, 2}}.validate()),
+                         "Plane.normal must be of length 1, got 2; normalise it", InputError);
     CHECK_THROWS_AS((Plane{{0, 0, 0}, {0, 0, std::nan("")}}.validate()), InputError);
 }
 

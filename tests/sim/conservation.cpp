@@ -14,7 +14,8 @@ Vec3 momentum(const Particles& p) {
 }
 Vec3 angular_momentum(const Particles& p) {
     Vec3 sum = Vec3::Zero();
-    for (std::size_t b = 0; b < p.position.size(); ++b) sum += p.mass[b] * p.position[b].cross(p.velocity[b]) + p.angular_momentum[b];
+    for (std::size_t b = 0; b < p.position.size(); ++b)
+        sum += p.mass[b] * p.position[b].cross(p.velocity[b]) + p.angular_momentum[b];
     return sum;
 }
 
@@ -22,8 +23,11 @@ Vec3 angular_momentum(const Particles& p) {
 Scene oblique(Real gap = 1e-3) {
     Scene scene;
     scene.gravity.setZero();
-    scene.add_sphere(0.02, {.position = {0, 0, 0}, .velocity = {2, 0.3, 0}, .angular_velocity = {10, -20, 30}});
-    scene.add_sphere(0.03, {.position = {0.045 + gap, 0.02, 0.01}, .velocity = {-1, 0, 0.2}, .angular_velocity = {-5, 8, 12}});
+    scene.add_sphere(0.02,
+                     {.position = {0, 0, 0}, .velocity = {2, 0.3, 0}, .angular_velocity = {10, -20, 30}});
+    scene.add_sphere(
+        0.03,
+        {.position = {0.045 + gap, 0.02, 0.01}, .velocity = {-1, 0, 0.2}, .angular_velocity = {-5, 8, 12}});
     return scene;
 }
 
@@ -55,7 +59,9 @@ TEST_CASE("an oblique impact of spinning spheres: momentum, angular momentum, th
         for (const Real restitution : {1.0, 0.5}) {
             CAPTURE(friction);
             CAPTURE(restitution);
-            const auto sim = collide(oblique(), LinearSpring{{.stiffness = 1e6, .restitution = restitution, .friction = friction}}, 0.005, 2e-6);
+            const auto sim = collide(
+                oblique(), LinearSpring{{.stiffness = 1e6, .restitution = restitution, .friction = friction}},
+                0.005, 2e-6);
             const Real size = 0.1 * 2;  // mass times speed
             CHECK((momentum(sim.particles()) - momentum(start)).norm() < 1e-12 * size);
             CHECK((angular_momentum(sim.particles()) - angular_momentum(start)).norm() < 1e-10 * size * 0.05);
@@ -64,10 +70,14 @@ TEST_CASE("an oblique impact of spinning spheres: momentum, angular momentum, th
             CHECK(e.stored_contacts == 0);  // they have parted
             CHECK(e.lost_normal >= 0);
             CHECK(e.lost_sliding >= 0);
-            if (restitution == 1) CHECK(e.lost_normal == 0);
-            else CHECK(e.lost_normal > 0.1);
-            if (friction > 0) CHECK(e.lost_sliding > 1e-6);
-            else CHECK(e.lost_sliding < 1e-6 * e.lost_normal + 1e-7);
+            if (restitution == 1)
+                CHECK(e.lost_normal == 0);
+            else
+                CHECK(e.lost_normal > 0.1);
+            if (friction > 0)
+                CHECK(e.lost_sliding > 1e-6);
+            else
+                CHECK(e.lost_sliding < 1e-6 * e.lost_normal + 1e-7);
             CHECK(std::abs(e.integration_residue()) < 1e-3 * e.kinetic_start);
         }
 }
@@ -79,7 +89,8 @@ TEST_CASE("a head-on impact loses 1/2 m_eff v^2 (1 - e^2), all of it normal") {
         const Particles& p = sim.particles();
         const Real m_eff = 1 / (p.inverse_mass[0] + p.inverse_mass[1]);
         CAPTURE(e);
-        CHECK(sim.ledger().lost_normal == doctest::Approx(0.5 * m_eff * 9 * (1 - e * e)).epsilon(1e-3));  // some 500 steps a contact, second order
+        CHECK(sim.ledger().lost_normal == doctest::Approx(0.5 * m_eff * 9 * (1 - e * e))
+                                              .epsilon(1e-3));  // some 500 steps a contact, second order
         CHECK(sim.ledger().lost_sliding == 0);
         CHECK((p.velocity[1] - p.velocity[0]).x() == doctest::Approx(3 * e).epsilon(2e-3));
     }
@@ -88,9 +99,12 @@ TEST_CASE("a head-on impact loses 1/2 m_eff v^2 (1 - e^2), all of it normal") {
 TEST_CASE("equal spheres with mirrored spins meet without slip: spins stay (Chung & Ooi 2011, test 7)") {
     Scene scene;
     scene.gravity.setZero();
-    scene.add_sphere(0.02, {.position = {-0.0201, 0, 0}, .velocity = {0.2, 0, 0}, .angular_velocity = {0, 0, 5}});
-    scene.add_sphere(0.02, {.position = {0.0201, 0, 0}, .velocity = {-0.2, 0, 0}, .angular_velocity = {0, 0, -5}});
-    const auto sim = collide(std::move(scene), LinearSpring{{.stiffness = 1e6, .restitution = 0.7, .friction = 0.4}}, 0.005, 2e-6);
+    scene.add_sphere(0.02,
+                     {.position = {-0.0201, 0, 0}, .velocity = {0.2, 0, 0}, .angular_velocity = {0, 0, 5}});
+    scene.add_sphere(0.02,
+                     {.position = {0.0201, 0, 0}, .velocity = {-0.2, 0, 0}, .angular_velocity = {0, 0, -5}});
+    const auto sim = collide(
+        std::move(scene), LinearSpring{{.stiffness = 1e6, .restitution = 0.7, .friction = 0.4}}, 0.005, 2e-6);
     CHECK(sim.particles().velocity[0].x() < 0);
     CHECK(sim.particles().angular_velocity(0).z() == doctest::Approx(5).epsilon(1e-10));
     CHECK(sim.particles().angular_velocity(1).z() == doctest::Approx(-5).epsilon(1e-10));
@@ -114,13 +128,16 @@ TEST_CASE("the integration residue falls with the step; its order is measured") 
         LinearSpring law;
         bool is_oblique;
     };
-    for (const Case& c : {Case{"elastic head-on", LinearSpring{{.stiffness = 1e6}}, false},
-                          {"damped head-on", LinearSpring{{.stiffness = 1e6, .restitution = 0.5}}, false},
-                          {"elastic, sticking", LinearSpring{{.stiffness = 1e6, .friction = 5}}, true},
-                          {"damped, sliding", LinearSpring{{.stiffness = 1e6, .restitution = 0.5, .friction = 0.1}}, true}}) {
-        const Real coarse = mean_residue(c.law, c.is_oblique, 4e-6), fine = mean_residue(c.law, c.is_oblique, 5e-7);
+    for (const Case& c :
+         {Case{"elastic head-on", LinearSpring{{.stiffness = 1e6}}, false},
+          {"damped head-on", LinearSpring{{.stiffness = 1e6, .restitution = 0.5}}, false},
+          {"elastic, sticking", LinearSpring{{.stiffness = 1e6, .friction = 5}}, true},
+          {"damped, sliding", LinearSpring{{.stiffness = 1e6, .restitution = 0.5, .friction = 0.1}}, true}}) {
+        const Real coarse = mean_residue(c.law, c.is_oblique, 4e-6),
+                   fine = mean_residue(c.law, c.is_oblique, 5e-7);
         const Real order = std::log2(coarse / fine) / 3;
-        MESSAGE(c.name << ": residue " << coarse << " at " << pi * std::sqrt(0.065 / 1e6) / 4e-6 << " steps a contact, " << fine << " at eight times as many; order " << order);
+        MESSAGE(c.name << ": residue " << coarse << " at " << pi * std::sqrt(0.065 / 1e6) / 4e-6
+                       << " steps a contact, " << fine << " at eight times as many; order " << order);
         CHECK(order > 1.8);
         CHECK(fine < 1e-4);
     }
@@ -129,10 +146,14 @@ TEST_CASE("the integration residue falls with the step; its order is measured") 
 TEST_CASE("a clump tumbling on a floor closes its ledger") {
     for (const StoneShape shape : {StoneShape::ellipsoid, StoneShape::angular}) {
         Scene scene;
-        scene.add_stone(make_stone(shape, 0.05),
-                        {.position = {0, 0, 0.06}, .velocity = {1.5, 0.2, 0}, .orientation = Quaternion(1, 0.3, -0.2, 0.5).normalized(), .angular_velocity = {5, 20, -7}});
+        scene.add_stone(make_stone(shape, 0.05), {.position = {0, 0, 0.06},
+                                                  .velocity = {1.5, 0.2, 0},
+                                                  .orientation = Quaternion(1, 0.3, -0.2, 0.5).normalized(),
+                                                  .angular_velocity = {5, 20, -7}});
         scene.add_wall({0, 0, 0}, {0, 0, 1});
-        const auto sim = collide(std::move(scene), LinearSpring{{.stiffness = 1e6, .restitution = 0.6, .friction = 0.4}}, 0.6, 1e-5);
+        const auto sim =
+            collide(std::move(scene), LinearSpring{{.stiffness = 1e6, .restitution = 0.6, .friction = 0.4}},
+                    0.6, 1e-5);
         const Ledger& e = sim.ledger();
         CHECK(e.residual_relative() < 1e-12);
         CHECK(e.lost_normal > 0.05);
@@ -140,8 +161,10 @@ TEST_CASE("a clump tumbling on a floor closes its ledger") {
         CHECK(std::abs(e.integration_residue()) < 2e-3 * e.throughput());
         CHECK(std::abs(sim.particles().orientation[0].norm() - 1) < 1e-14);
         // Where the energy went, without the works: start = now + lost, up to the residue that is shown.
-        const Real start = e.kinetic_start + e.potential_start, now = e.kinetic + e.potential + e.stored_contacts;
-        CHECK(start - now - e.lost() == doctest::Approx(e.integration_residue()).scale(e.throughput()).epsilon(1e-11));
+        const Real start = e.kinetic_start + e.potential_start,
+                   now = e.kinetic + e.potential + e.stored_contacts;
+        CHECK(start - now - e.lost() ==
+              doctest::Approx(e.integration_residue()).scale(e.throughput()).epsilon(1e-11));
     }
 }
 
@@ -156,7 +179,12 @@ TEST_CASE("free flight is exact: a parabola, at any step") {
 }
 
 TEST_CASE("a clump turns its spheres though its three moments are equal") {
-    Clump cross = make_clump("cross", {{{0.02, 0, 0}, 0.01}, {{-0.02, 0, 0}, 0.01}, {{0, 0.02, 0}, 0.01}, {{0, -0.02, 0}, 0.01}, {{0, 0, 0.02}, 0.01}, {{0, 0, -0.02}, 0.01}});
+    Clump cross = make_clump("cross", {{{0.02, 0, 0}, 0.01},
+                                       {{-0.02, 0, 0}, 0.01},
+                                       {{0, 0.02, 0}, 0.01},
+                                       {{0, -0.02, 0}, 0.01},
+                                       {{0, 0, 0.02}, 0.01},
+                                       {{0, 0, -0.02}, 0.01}});
     cross.principal_moments.setConstant(cross.principal_moments.mean());
     Scene scene;
     scene.gravity = Vec3::Zero();
@@ -180,7 +208,8 @@ TEST_CASE("elastic bouncing neither gains nor loses over a thousand bounces") {
     sim.run({.end_time = 90, .time_step = 5e-5});
     const Ledger& e = sim.ledger();
     const Real total = e.kinetic + e.potential + e.stored_contacts;
-    CHECK(total == doctest::Approx(e.potential_start).epsilon(0.01));  // each bounce errs by dt^2 at random: no drift of one sign
+    CHECK(total == doctest::Approx(e.potential_start)
+                       .epsilon(0.01));  // each bounce errs by dt^2 at random: no drift of one sign
     CHECK(e.lost_normal == 0);
     CHECK(e.residual_relative() < 1e-12);
 }

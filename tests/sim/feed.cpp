@@ -13,7 +13,9 @@ const LinearSpring law{{.stiffness = 1e4, .restitution = 0.5}};
 
 FeedParams params() {
     return {.volume_rate = 0.01,
-            .classes = {{0.02, 0.3, StoneShape::sphere}, {0.03, 0.5, StoneShape::ellipsoid}, {0.05, 0.2, StoneShape::angular}},
+            .classes = {{0.02, 0.3, StoneShape::sphere},
+                        {0.03, 0.5, StoneShape::ellipsoid},
+                        {0.05, 0.2, StoneShape::angular}},
             .region = {{0, 0, 0}, {5, 5, 5}}};
 }
 
@@ -44,13 +46,15 @@ TEST_CASE("fractions are met by volume") {
     for (int n = 0; n <= 20; ++n) feed.supply(p, 0.005 * n, [](Index) {});  // 0.04 m3, about 3700 stones
     std::map<Index, Real> by_shape;  // told apart by their number of spheres
     std::map<Index, int> count;
-    for (std::size_t b = 0; b < p.volume.size(); ++b) by_shape[p.sphere_count[b]] += p.volume[b], ++count[p.sphere_count[b]];
+    for (std::size_t b = 0; b < p.volume.size(); ++b)
+        by_shape[p.sphere_count[b]] += p.volume[b], ++count[p.sphere_count[b]];
     const Real total = feed.supplied_volume();
     // Numbers are multinomial: a class of n stones strays by 1/sqrt(n) or less; 4 sigma.
     const std::map<Index, Real> fraction{{1, 0.3}, {7, 0.5}, {9, 0.2}};
     for (const auto& [spheres, share] : fraction) {
         CHECK(count[spheres] > 50);
-        CHECK(std::abs(by_shape[spheres] / total - share) < 4 * share / std::sqrt(static_cast<Real>(count[spheres])));
+        CHECK(std::abs(by_shape[spheres] / total - share) <
+              4 * share / std::sqrt(static_cast<Real>(count[spheres])));
     }
 }
 
@@ -67,7 +71,8 @@ TEST_CASE("one seed, one sequence; another seed, another") {
     CHECK(places(1) != places(2));
 }
 
-TEST_CASE("stones lie whole inside the region, free of each other, turned at random, with the given velocity") {
+TEST_CASE(
+    "stones lie whole inside the region, free of each other, turned at random, with the given velocity") {
     FeedParams f = params();
     f.region = {{1, 2, 3}, {1.6, 2.5, 3.4}};
     f.velocity = {1, 2, 3};
@@ -81,14 +86,16 @@ TEST_CASE("stones lie whole inside the region, free of each other, turned at ran
             CHECK(p.centre[s][a] + p.radius[s] <= f.region.high[a] + 1e-12);
         }
         for (std::size_t o = 0; o < s; ++o)
-            if (p.body[s] != p.body[o]) REQUIRE((p.centre[s] - p.centre[o]).norm() >= p.radius[s] + p.radius[o]);
+            if (p.body[s] != p.body[o])
+                REQUIRE((p.centre[s] - p.centre[o]).norm() >= p.radius[s] + p.radius[o]);
     }
     Vec3 mean = Vec3::Zero();
     for (std::size_t b = 0; b < p.position.size(); ++b) {
         CHECK(p.velocity[b] == f.velocity);
         mean += p.orientation[b] * Vec3::UnitX() / static_cast<Real>(p.bodies());
     }
-    CHECK(mean.norm() < 4 / std::sqrt(static_cast<Real>(p.bodies())));  // random directions: 1/sqrt(n), 4 sigma
+    CHECK(mean.norm() <
+          4 / std::sqrt(static_cast<Real>(p.bodies())));  // random directions: 1/sqrt(n), 4 sigma
 }
 
 TEST_CASE("region.z counts from the bed where there is one") {
@@ -173,4 +180,39 @@ TEST_CASE("the gauge counts net: a stone that comes back is taken off again") {
     CHECK(sim.sediment_passed() == doctest::Approx(4.0 / 3 * pi * cube(0.02)));
     sim.run({.end_time = 0.8});
     CHECK(sim.sediment_passed() == 0);
+}
+
+TEST_CASE("stones are fed onto concrete, not into it") {
+    Particles p;
+    const Clump sphere = make_clump("concrete", {{Vec3::Zero(), 0.01}});
+    for (int i = 0; i < 60; ++i)
+        for (int j = 0; j < 10; ++j)
+            p.add(sphere, 2400, {.position = {0.02 * i, 0.02 * j, 0.3 * square(0.02 * i)}},
+                  j ? Kind::concrete : Kind::fixed);
+    const Index concrete = p.bodies();
+    FeedParams f = params();
+    f.region = {{0, 0, 0}, {1.2, 0.2, 0.1}};
+    Feed(f).supply(p, 0.1, [](Index) {});
+    CHECK(p.bodies() > concrete + 10);
+    for (Index s = concrete; s < p.spheres(); ++s)
+        for (Index c = 0; c < concrete; ++c) {
+            const auto i = static_cast<std::size_t>(s), j = static_cast<std::size_t>(c);
+            CHECK_MESSAGE((p.centre[i] - p.centre[j]).norm() > p.radius[i] + p.radius[j] - 1e-12, s, c);
+        }
+}
+
+TEST_CASE("what is fed into contact brings its elastic energy with it") {
+    FeedParams f = params();
+    f.classes = {{0.05, 1, StoneShape::sphere}};
+    f.region = {{0, 0, 0.0}, {1, 1, 0.06}};
+    f.velocity = {0.1, 0, 0};
+    Scene scene;
+    scene.feed = f;
+    scene.add_wall({0, 0, 0.002}, {0, 0, 1});  // 2 mm too high for the feed
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e4, .restitution = 0.5}});
+    sim.run({.end_time = 0.1, .safety = 0.1});
+    const Ledger& e = sim.ledger();
+    CHECK(e.fed_stored > 0);
+    CHECK(e.residual_relative() < 1e-12);
+    CHECK(std::abs(e.integration_residue()) < 0.01 * e.fed_stored);
 }

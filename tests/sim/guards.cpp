@@ -1,4 +1,5 @@
-// Runs that go wrong are stopped in the step in which they do, with the id, the place and the last good state.
+// Runs that go wrong are stopped in the step in which they do, with the id, the place and the last good
+// state.
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/sim/simulation.hpp>
 
@@ -19,7 +20,8 @@ struct Faulty {
         static constexpr Params none{};
         return none;
     }
-    ContactResponse<Real, Memory<Real>> respond(const ContactKinematics<Real>& c, const Memory<Real>&) const noexcept {
+    ContactResponse<Real, Memory<Real>> respond(const ContactKinematics<Real>& c,
+                                                const Memory<Real>&) const noexcept {
         const Real force = c.overlap > 1e-5 ? std::nan("") : 1e6 * std::max(c.overlap, 0.0);
         return {{force * c.normal, 0, 0, 0}, {}};
     }
@@ -41,7 +43,9 @@ RunError error_of(Simulation& sim, const RunOptions& options) {
     throw 0;
 }
 
-bool says(const RunError& error, const std::string& what) { return std::string(error.what()).find(what) != std::string::npos; }
+bool says(const RunError& error, const std::string& what) {
+    return std::string(error.what()).find(what) != std::string::npos;
+}
 
 template <class Simulation>
 void check_sound(const Simulation& sim, const RunError& error) {
@@ -56,7 +60,8 @@ void check_sound(const Simulation& sim, const RunError& error) {
     const std::string what = error.what(), before = "the last good state is that of t = ";
     REQUIRE(what.find(before) != std::string::npos);
     // Rounded, to be read.
-    CHECK(std::abs(std::stod(what.substr(what.find(before) + before.size())) - good.time) <= 1e-3 * good.time);
+    CHECK(std::abs(std::stod(what.substr(what.find(before) + before.size())) - good.time) <=
+          1e-3 * good.time);
 }
 
 }  // namespace
@@ -68,7 +73,8 @@ TEST_CASE("a NaN from a law is caught in its own step, with the id of the body")
     scene.add_sphere(0.01, {.position = {0, 0, 0.0105}, .velocity = {0, 0, -1}});
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     auto sim = simulate(scene).contact(Faulty{});
-    // 0.5 mm of gap at 1e-5 m a step: touches in step 50, overlaps by 1e-5 in step 51, by more in step 52 at the latest.
+    // 0.5 mm of gap at 1e-5 m a step: touches in step 50, overlaps by 1e-5 in step 51, by more in step 52 at
+    // the latest.
     const RunError error = error_of(sim, {.end_time = 0.1, .time_step = 1e-5});
     CHECK(error.step >= 51);
     CHECK(error.step <= 52);
@@ -127,8 +133,23 @@ TEST_CASE("a runaway overlap between bonded spheres is caught too") {
     scene.gravity.setZero();
     scene.concrete = ConcreteBlock{flat_lattice(0.06, 0.06, {.layers = 3})};
     scene.add_sphere(0.02, {.position = {0, 0, 0.021}, .velocity = {0, 0, -100}});
-    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e6}}).bond(MohrCoulomb{{.tensile = 1e9, .stiffness = 1e6}});
+    auto sim = simulate(scene)
+                   .contact(LinearSpring{{.stiffness = 1e6}})
+                   .bond(MohrCoulomb{{.tensile = 1e9, .stiffness = 1e6}});
     const RunError error = error_of(sim, {.end_time = 0.1});
+    check_sound(sim, error);
+}
+
+TEST_CASE("bonds crushed under their own weight are caught, without any contact") {
+    Scene scene;
+    scene.gravity = {0, 0, -1e6};
+    scene.concrete = ConcreteBlock{flat_lattice(0.06, 0.06, {.layers = 3})};
+    auto sim = simulate(scene)
+                   .contact(LinearSpring{{.stiffness = 1e6}})
+                   .bond(MohrCoulomb{{.tensile = 1e12, .stiffness = 1e6}});
+    const RunError error = error_of(sim, {.end_time = 0.1});
+    CHECK(says(error, "concrete sphere with id"));
+    CHECK(says(error, "% of the smaller radius"));
     check_sound(sim, error);
 }
 

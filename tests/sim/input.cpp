@@ -39,7 +39,8 @@ bool has(const std::string& text, const std::string& what) { return text.find(wh
 
 TEST_CASE("run options: each is checked") {
     CHECK(run(one_stone(), {.end_time = 1e-3}) == "nothing was thrown");
-    CHECK(has(run(one_stone(), {.end_time = -1}), "RunOptions.end_time must be finite and not before now (0 s), got -1 s"));
+    CHECK(has(run(one_stone(), {.end_time = -1}),
+              "RunOptions.end_time must be finite and not before now (0 s), got -1 s"));
     CHECK(has(run(one_stone(), {.end_time = nan_}), "RunOptions.end_time"));
     CHECK(has(run(one_stone(), {.end_time = std::numeric_limits<Real>::infinity()}), "RunOptions.end_time"));
     for (const Real bad : {-1.0, nan_}) {
@@ -47,7 +48,8 @@ TEST_CASE("run options: each is checked") {
         CHECK(has(run(one_stone(), {.end_time = 1, .observe_every = bad}), "RunOptions.observe_every"));
         CHECK(has(run(one_stone(), {.end_time = 1, .skin = bad}), "RunOptions.skin"));
     }
-    for (const Real bad : {0.0, -0.1, 1.1, nan_}) CHECK(has(run(one_stone(), {.end_time = 1, .safety = bad}), "RunOptions.safety must be in (0, 1]"));
+    for (const Real bad : {0.0, -0.1, 1.1, nan_})
+        CHECK(has(run(one_stone(), {.end_time = 1, .safety = bad}), "RunOptions.safety must be in (0, 1]"));
 }
 
 TEST_CASE("a time step above the stable one: the message has the stable step, what sets it and the remedy") {
@@ -55,7 +57,8 @@ TEST_CASE("a time step above the stable one: the message has the stable step, wh
     probe.run({.end_time = 0});
     const Real stable = probe.stable_time_step().seconds;
     const std::string said = run(one_stone(), {.end_time = 1, .time_step = 1.01 * stable});
-    CHECK(has(said, "RunOptions.time_step must be at most the stable step of " + to_text(stable) + " s (contacts of the lightest stone), got " + to_text(1.01 * stable) + " s"));
+    CHECK(has(said, "RunOptions.time_step must be at most the stable step of " + to_text(stable) +
+                        " s (contacts of the lightest stone), got " + to_text(1.01 * stable) + " s"));
     CHECK(has(said, "take a smaller step"));
     CHECK(run(one_stone(), {.end_time = 10 * stable, .time_step = 0.99 * stable}) == "nothing was thrown");
 }
@@ -69,9 +72,13 @@ TEST_CASE("a time that has passed cannot be run to") {
 
 TEST_CASE("stones: radius, density, position, velocity") {
     for (const Real bad : {0.0, -0.02, nan_}) {
-        CHECK(has(message_of([&] { Scene().add_sphere(bad, {}); }), "Scene.add_sphere.radius must be finite and > 0"));
+        CHECK(has(message_of([&] { Scene().add_sphere(bad, {}); }),
+                  "Scene.add_sphere.radius must be finite and > 0"));
         Scene scene;
-        CHECK(has(message_of([&] { simulate(scene.add_sphere(0.02, {}, bad)).contact(law).run({.end_time = 1e-3}); }), "density must be finite and > 0"));
+        CHECK(has(message_of([&] {
+                      simulate(scene.add_sphere(0.02, {}, bad)).contact(law).run({.end_time = 1e-3});
+                  }),
+                  "density must be finite and > 0"));
     }
     for (int axis = 0; axis < 3; ++axis) {
         BodyState state;
@@ -110,7 +117,9 @@ TEST_CASE("walls, gravity, concrete") {
 }
 
 TEST_CASE("the feed") {
-    const FeedParams good{.volume_rate = 1e-3, .classes = {{0.04, 0.5, StoneShape::sphere}, {0.05, 0.5, StoneShape::angular}}, .region = {{0, 0, 0}, {1, 1, 1}}};
+    const FeedParams good{.volume_rate = 1e-3,
+                          .classes = {{0.04, 0.5, StoneShape::sphere}, {0.05, 0.5, StoneShape::angular}},
+                          .region = {{0, 0, 0}, {1, 1, 1}}};
     const auto said = [&](auto change) {
         Scene scene;
         scene.feed = good;
@@ -123,9 +132,11 @@ TEST_CASE("the feed") {
         CHECK(has(said([&](FeedParams& f) { f.density = bad; }), "Feed.density"));
         CHECK(has(said([&](FeedParams& f) { f.classes[0].size = bad; }), "Feed.classes.size"));
     }
-    CHECK(has(said([](FeedParams& f) { f.classes[1].fraction = 0.4; }), "Feed.classes.fraction (sum) must be 1, got 0.9; let the fractions add up to 1"));
+    CHECK(has(said([](FeedParams& f) { f.classes[1].fraction = 0.4; }),
+              "Feed.classes.fraction (sum) must be 1, got 0.9; let the fractions add up to 1"));
     CHECK(has(said([](FeedParams& f) { f.classes[1].fraction = nan_; }), "Feed.classes.fraction"));
-    CHECK(has(said([](FeedParams& f) { f.classes[0].fraction = 1.5, f.classes[1].fraction = -0.5; }), "Feed.classes.fraction must be finite and >= 0"));
+    CHECK(has(said([](FeedParams& f) { f.classes[0].fraction = 1.5, f.classes[1].fraction = -0.5; }),
+              "Feed.classes.fraction must be finite and >= 0"));
     CHECK(has(said([](FeedParams& f) { f.classes.clear(); }), "at least one stone class"));
     CHECK(has(said([](FeedParams& f) { f.region = {}; }), "Feed.region"));
     CHECK(has(said([](FeedParams& f) { f.region.high.x() = -1; }), "Feed.region"));
@@ -139,4 +150,37 @@ TEST_CASE("an empty scene runs, and nothing happens") {
     CHECK_NOTHROW(sim.run({.end_time = 1}));
     CHECK(sim.time() == 1);
     CHECK(sim.ledger().kinetic == 0);
+}
+
+TEST_CASE("stones that overlap too far at the start are refused, both named") {
+    Scene scene = one_stone();
+    scene.add_sphere(0.01, {.position = {0.027, 0, 0}});  // 0.03 would touch
+    auto sim = simulate(scene).contact(law);
+    const std::string text = message_of([&] { sim.run({.end_time = 0.1}); });
+    CAPTURE(text);
+    CHECK(has(text, "stone with id 0"));
+    CHECK(has(text, "stone with id 1"));
+    CHECK(has(text, "got 29.99"));
+    CHECK(has(text, "move them apart"));
+}
+
+TEST_CASE("a simulation that refused its input runs once the input is mended") {
+    Scene scene = one_stone();
+    scene.concrete = ConcreteBlock{flat_lattice(0.06, 0.06, {.layers = 2})};
+    scene.stones[0].state.position.z() = 0.03;
+    auto sim = simulate(scene).contact(law);
+    CHECK(has(message_of([&] { sim.run({.end_time = 0.01, .time_step = 1}); }), "time_step"));
+    sim.run({.end_time = 0.01});
+    CHECK(sim.particles().bodies() == 1 + sim.concrete().sites());
+
+    scene.stones[0].density = -1;
+    auto refused = simulate(scene).contact(law);
+    for (int again = 0; again < 2; ++again)
+        CHECK(has(message_of([&] { refused.run({.end_time = 0.01}); }), "density"));
+}
+
+TEST_CASE("a clump of nothing is refused") {
+    Scene scene;
+    scene.add_stone(Clump{}, {});
+    CHECK(has(run(scene, {.end_time = 0.1}), "make_clump"));
 }

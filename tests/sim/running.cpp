@@ -24,10 +24,13 @@ Scene box_of_stones(int stones, Real speed = 2) {
     for (int n = 0; n < stones; ++n) {
         const Vec3 at(0.12 * (n % 3 - 1), 0.12 * (n / 3 % 3 - 1), 0.12 * (n / 9) - 0.12);
         scene.add_stone(make_stone(n % 2 ? StoneShape::angular : StoneShape::sphere, 0.05),
-                        {.position = at, .velocity = speed * Vec3(u(random), u(random), u(random)), .angular_velocity = 10 * Vec3(u(random), u(random), u(random))});
+                        {.position = at,
+                         .velocity = speed * Vec3(u(random), u(random), u(random)),
+                         .angular_velocity = 10 * Vec3(u(random), u(random), u(random))});
     }
     for (int axis = 0; axis < 3; ++axis)
-        for (const Real side : {-1.0, 1.0}) scene.add_wall(0.25 * side * Vec3::Unit(axis), -side * Vec3::Unit(axis));
+        for (const Real side : {-1.0, 1.0})
+            scene.add_wall(0.25 * side * Vec3::Unit(axis), -side * Vec3::Unit(axis));
     return scene;
 }
 
@@ -36,7 +39,8 @@ std::vector<Real> state(const Particles& p) {
     std::vector<Real> all;
     for (std::size_t b = 0; b < p.position.size(); ++b) {
         all.push_back(p.id[b]);
-        for (const Vec3* v : {&p.position[b], &p.velocity[b], &p.angular_momentum[b]}) all.insert(all.end(), v->data(), v->data() + 3);
+        for (const Vec3* v : {&p.position[b], &p.velocity[b], &p.angular_momentum[b]})
+            all.insert(all.end(), v->data(), v->data() + 3);
         all.insert(all.end(), p.orientation[b].coeffs().data(), p.orientation[b].coeffs().data() + 4);
     }
     return all;
@@ -49,6 +53,20 @@ constexpr Real step = 0x1p-16;  // 1.5e-5 s; sums of it are exact, so two runs s
 
 }  // namespace
 
+TEST_CASE("a run ends exactly at its end time, and may be asked to end there again") {
+    for (int n = 1; n <= 50; ++n) {
+        const Real end = 1e-3 * n / 7;
+        Scene scene;
+        scene.add_sphere(0.01, {});
+        auto sim = simulate(scene).contact(law);
+        sim.run({.end_time = end, .time_step = 1.3e-6});
+        CHECK(sim.time() == end);
+        const Index steps = sim.steps();
+        sim.run({.end_time = end, .time_step = 1.3e-6});
+        CHECK(sim.steps() == steps);
+    }
+}
+
 TEST_CASE("run() twice is run() once") {
     const auto run = [](std::vector<Real> ends) {
         auto sim = simulate(box_of_stones(9)).contact(law);
@@ -56,7 +74,9 @@ TEST_CASE("run() twice is run() once") {
         CHECK(sim.steps() == 8192);
         CHECK(sim.time() == 0.125);
         std::vector<Real> all = state(sim.particles());
-        for (const Real e : {sim.ledger().lost_normal, sim.ledger().lost_sliding, sim.ledger().interaction_work, sim.ledger().kinetic_start}) all.push_back(e);
+        for (const Real e : {sim.ledger().lost_normal, sim.ledger().lost_sliding,
+                             sim.ledger().interaction_work, sim.ledger().kinetic_start})
+            all.push_back(e);
         return all;
     };
     const auto once = run({0.125});
@@ -101,11 +121,13 @@ TEST_CASE("two that race towards each other from just beyond the skin are found 
 TEST_CASE("the run ends on time, and the observer sees start, intervals and end") {
     auto sim = simulate(box_of_stones(2)).contact(law);
     std::vector<Real> seen;
-    sim.run({.end_time = 0.1, .time_step = 3e-5, .observe_every = 0.02}, [&](const auto& s) { seen.push_back(s.time()); });
+    sim.run({.end_time = 0.1, .time_step = 3e-5, .observe_every = 0.02},
+            [&](const auto& s) { seen.push_back(s.time()); });
     CHECK(sim.time() == doctest::Approx(0.1).epsilon(1e-12));
     CHECK(sim.time_step() <= 3e-5);
     REQUIRE(seen.size() == 6);
-    for (std::size_t n = 0; n < 6; ++n) CHECK(std::abs(seen[n] - 0.02 * static_cast<Real>(n)) <= sim.time_step());
+    for (std::size_t n = 0; n < 6; ++n)
+        CHECK(std::abs(seen[n] - 0.02 * static_cast<Real>(n)) <= sim.time_step());
     seen.clear();
     sim.run({.end_time = 0.2}, [&](const auto& s) { seen.push_back(s.time()); });
     CHECK(seen.size() == 2);  // start and end
@@ -115,7 +137,8 @@ TEST_CASE("the run ends on time, and the observer sees start, intervals and end"
 TEST_CASE("a run that is asked to stop stops soon, whole and continuable") {
     auto sim = simulate(box_of_stones(4)).contact(law);
     int asked = 0, observed = 0;
-    sim.run({.end_time = 0.1, .time_step = step, .stop = [&] { return ++asked == 3; }}, [&](const auto&) { ++observed; });
+    sim.run({.end_time = 0.1, .time_step = step, .stop = [&] { return ++asked == 3; }},
+            [&](const auto&) { ++observed; });
     CHECK(sim.stopped());
     CHECK(asked == 3);
     CHECK(observed == 2);  // start, and where it stopped
@@ -135,10 +158,11 @@ TEST_CASE("bits do not depend on threads or on the run: concrete, stones, water,
         Scene scene;
         scene.gravity = invert.gravity();
         scene.concrete = ConcreteBlock{invert_lattice(invert, {.layers = 3})};
-        scene.feed = FeedParams{.volume_rate = 0.01,
-                                .classes = {{0.03, 0.5, StoneShape::sphere}, {0.04, 0.5, StoneShape::angular}},
-                                .region = {{0, -0.15, 0.08}, {0.1, 0.15, 0.3}},
-                                .velocity = {2, 0, -2}};
+        scene.feed =
+            FeedParams{.volume_rate = 0.01,
+                       .classes = {{0.03, 0.5, StoneShape::sphere}, {0.04, 0.5, StoneShape::angular}},
+                       .region = {{0, -0.15, 0.08}, {0.1, 0.15, 0.3}},
+                       .velocity = {2, 0, -2}};
         scene.outlet = 0.38;
         auto sim = simulate(scene)
                        .contact(LinearSpring{{.stiffness = 1e5, .restitution = 0.5, .friction = 0.5}})
@@ -174,7 +198,8 @@ TEST_CASE("a simulation prints its laws, its step and why, its ledger") {
     CHECK(before.str().find("not run yet") != std::string::npos);
     sim.run({.end_time = 0.1});
     after << sim;
-    for (const char* part : {"LinearSpring(stiffness = 1e+06 N/m", "NoBond", "NoWear", "NoFluid", "contacts of the lightest stone", "lost_normal", "bodies   3", "wall"}) {
+    for (const char* part : {"LinearSpring(stiffness = 1e+06 N/m", "NoBond", "NoWear", "NoFluid",
+                             "contacts of the lightest stone", "lost_normal", "bodies   3", "wall"}) {
         CAPTURE(std::string(part));
         CHECK(after.str().find(part) != std::string::npos);
     }

@@ -16,7 +16,8 @@ auto thrown(Real radius, Real mass, const Vec3& velocity, const LinearSpring& la
     Scene scene;
     scene.gravity.setZero();
     scene.add_wall({0, 0, 0}, {0, 0, 1});
-    scene.add_sphere(radius, {.position = {0, 0, radius + gap}, .velocity = velocity}, mass / (4.0 / 3 * pi * cube(radius)));
+    scene.add_sphere(radius, {.position = {0, 0, radius + gap}, .velocity = velocity},
+                     mass / (4.0 / 3 * pi * cube(radius)));
     auto sim = simulate(std::move(scene)).contact(law);
     const Real contact = pi * std::sqrt(mass / law.stiffness());
     sim.run({.end_time = 2 * contact + 2 * gap / -velocity.z() + 10 * dt, .time_step = dt});
@@ -33,19 +34,22 @@ TEST_CASE("restitution comes out as it was put in, at 50 steps a contact, from a
         const LinearSpring law{{.stiffness = 1e6, .restitution = e}};
         const Real mass = 0.1, dt = pi * std::sqrt(mass / 1e6) / 50;
         for (int n = 0; n < 20; ++n) {
-            const Real speed = 1 + u(random), gap = (3 + u(random)) * speed * dt;  // touches anywhere within a step
+            const Real speed = 1 + u(random),
+                       gap = (3 + u(random)) * speed * dt;  // touches anywhere within a step
             const auto sim = thrown(0.02, mass, {0, 0, -speed}, law, dt, gap);
             const Real out = sim.particles().velocity[0].z() / speed;
             worst = std::max(worst, std::abs(out - e));
             CHECK(std::abs(out - e) <= 0.005);  // the gate of the published audits of other codes
             // The ledger says the same, to the residue that it shows: second order, 2 % at 50 steps.
             const Real brought = 0.5 * mass * speed * speed, lost = brought * (1 - out * out);
-            CHECK(sim.ledger().lost_normal + sim.ledger().integration_residue() == doctest::Approx(lost).scale(brought).epsilon(1e-12));
+            CHECK(sim.ledger().lost_normal + sim.ledger().integration_residue() ==
+                  doctest::Approx(lost).scale(brought).epsilon(1e-12));
             CHECK(std::abs(sim.ledger().integration_residue()) < 0.04 * brought);
             worst_residue = std::max(worst_residue, std::abs(sim.ledger().integration_residue()) / brought);
         }
     }
-    MESSAGE("worst |e_out - e_in| at 50 steps a contact: " << worst << ", worst integration residue: " << worst_residue);
+    MESSAGE("worst |e_out - e_in| at 50 steps a contact: " << worst << ", worst integration residue: "
+                                                           << worst_residue);
 }
 
 TEST_CASE("linear spring-dashpot: time of contact and greatest overlap (dem04)") {
@@ -62,15 +66,18 @@ TEST_CASE("linear spring-dashpot: time of contact and greatest overlap (dem04)")
         scene.gravity.setZero();
         scene.add_wall({0, 0, 0}, {0, 0, 1});
         const Real radius = 0.01;
-        scene.add_sphere(radius, {.position = {0, 0, radius + 1e-9}, .velocity = {0, 0, -1}}, mass / (4.0 / 3 * pi * cube(radius)));
+        scene.add_sphere(radius, {.position = {0, 0, radius + 1e-9}, .velocity = {0, 0, -1}},
+                         mass / (4.0 / 3 * pi * cube(radius)));
         auto sim = simulate(std::move(scene)).contact(law);
-        sim.run({.end_time = 1.1 * row.at("t_c_us") * 1e-6, .time_step = dt, .observe_every = dt}, [&](const auto& s) {
-            const Real overlap = radius - s.particles().position[0].z();
-            if (overlap > 0 && begin < 0) begin = s.time() - overlap;  // at 1 m/s
-            if (overlap > deepest) deepest = overlap, at_deepest = s.time();
-        });
+        sim.run({.end_time = 1.1 * row.at("t_c_us") * 1e-6, .time_step = dt, .observe_every = dt},
+                [&](const auto& s) {
+                    const Real overlap = radius - s.particles().position[0].z();
+                    if (overlap > 0 && begin < 0) begin = s.time() - overlap;  // at 1 m/s
+                    if (overlap > deepest) deepest = overlap, at_deepest = s.time();
+                });
         CHECK(deepest == doctest::Approx(row.at("delta_max_um") * 1e-6).epsilon(0.005));
-        CHECK(at_deepest - begin == doctest::Approx(row.at("t_max_us") * 1e-6).epsilon(0.01));  // to a step of 1/500
+        CHECK(at_deepest - begin ==
+              doctest::Approx(row.at("t_max_us") * 1e-6).epsilon(0.01));  // to a step of 1/500
     }
 }
 
@@ -82,9 +89,12 @@ TEST_CASE("oblique impact in gross sliding: rebound speed and spin (dem06)") {
     for (const auto& row : reference_table("dem06_oblique_gross_sliding_analytic.csv")) {
         const Real theta = radians(row.at("theta_deg"));
         CAPTURE(row.at("theta_deg"));
-        const auto sim = thrown(radius, mass, speed * Vec3(std::sin(theta), 0, -std::cos(theta)), law, dt, 1e-6);
-        CHECK(sim.particles().velocity[0].x() / (speed * std::sin(theta)) == doctest::Approx(row.at("e_t")).epsilon(0.01));
-        CHECK(sim.particles().angular_velocity(0).norm() == doctest::Approx(row.at("omega_rad_s")).epsilon(0.01));
+        const auto sim =
+            thrown(radius, mass, speed * Vec3(std::sin(theta), 0, -std::cos(theta)), law, dt, 1e-6);
+        CHECK(sim.particles().velocity[0].x() / (speed * std::sin(theta)) ==
+              doctest::Approx(row.at("e_t")).epsilon(0.01));
+        CHECK(sim.particles().angular_velocity(0).norm() ==
+              doctest::Approx(row.at("omega_rad_s")).epsilon(0.01));
         CHECK(sim.particles().angular_velocity(0).y() > 0);  // rolls on in the direction of flight
     }
 }
@@ -113,11 +123,14 @@ TEST_CASE("stick regime: the usual step agrees with a step forty times finer") {
             const LinearSpring law{{.stiffness = 1e7, .restitution = e, .friction = 0.5}};
             const Real contact = pi * std::sqrt(mass / 1e7);
             const Vec3 velocity = 3 * Vec3(std::sin(radians(degrees)), 0, -std::cos(radians(degrees)));
-            const auto usual = thrown(radius, mass, velocity, law, contact / 50, 1e-6), fine = thrown(radius, mass, velocity, law, contact / 2000, 1e-6);
+            const auto usual = thrown(radius, mass, velocity, law, contact / 50, 1e-6),
+                       fine = thrown(radius, mass, velocity, law, contact / 2000, 1e-6);
             CAPTURE(e);
             CAPTURE(degrees);
             // Of the incoming speed: 2 %, the gate for the stick regime.
             CHECK((usual.particles().velocity[0] - fine.particles().velocity[0]).norm() < 0.02 * 3);
-            CHECK((usual.particles().angular_velocity(0) - fine.particles().angular_velocity(0)).norm() * radius < 0.02 * 3);
+            CHECK((usual.particles().angular_velocity(0) - fine.particles().angular_velocity(0)).norm() *
+                      radius <
+                  0.02 * 3);
         }
 }

@@ -11,7 +11,10 @@ namespace {
 
 /// A flat four-footed body that slides without tipping.
 Clump block() {
-    return make_clump("block", {{{0.05, 0.05, 0}, 0.02}, {{0.05, -0.05, 0}, 0.02}, {{-0.05, 0.05, 0}, 0.02}, {{-0.05, -0.05, 0}, 0.02}});
+    return make_clump("block", {{{0.05, 0.05, 0}, 0.02},
+                                {{0.05, -0.05, 0}, 0.02},
+                                {{-0.05, 0.05, 0}, 0.02},
+                                {{-0.05, -0.05, 0}, 0.02}});
 }
 
 }  // namespace
@@ -22,8 +25,10 @@ TEST_CASE("a sliding block loses mu N L") {
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     const Clump body = block();
     const Real mass = 2650 * body.volume, k = 1e6;
-    scene.add_stone(body, {.position = {0, 0, 0.02 - mass * g / (4 * k)}, .velocity = {speed, 0, 0}});  // on its springs, in balance
-    auto sim = simulate(std::move(scene)).contact(LinearSpring{{.stiffness = k, .restitution = 0.3, .friction = mu}});
+    scene.add_stone(body, {.position = {0, 0, 0.02 - mass * g / (4 * k)},
+                           .velocity = {speed, 0, 0}});  // on its springs, in balance
+    auto sim = simulate(std::move(scene))
+                   .contact(LinearSpring{{.stiffness = k, .restitution = 0.3, .friction = mu}});
     sim.run({.end_time = 0.2, .time_step = 1e-5});
     const Real path = speed * 0.2 - 0.5 * mu * g * 0.04;  // still sliding
     const Particles& p = sim.particles();
@@ -46,7 +51,8 @@ TEST_CASE("a block at rest on a slope below the angle of friction stays and lose
     scene.gravity = standard_gravity * Vec3(std::sin(slope), 0, -std::cos(slope));
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     scene.add_stone(block(), {.position = {0, 0, 0.02}});
-    auto sim = simulate(std::move(scene)).contact(LinearSpring{{.stiffness = 1e6, .restitution = 0.3, .friction = 0.4}});
+    auto sim = simulate(std::move(scene))
+                   .contact(LinearSpring{{.stiffness = 1e6, .restitution = 0.3, .friction = 0.4}});
     sim.run({.end_time = 1});
     const Vec3 at = sim.particles().position[0];
     const Real lost = sim.ledger().lost_sliding;
@@ -64,13 +70,17 @@ TEST_CASE("spheres on an incline roll or slip (dem11)") {
         scene.add_wall({0, 0, 0}, {0, 0, 1});
         const Real mass = 2650 * 4.0 / 3 * pi * cube(radius), sag = mass * g * std::cos(theta) / k;
         scene.add_sphere(radius, {.position = {0, 0, radius - sag}});
-        auto sim = simulate(std::move(scene)).contact(LinearSpring{{.stiffness = k, .restitution = 0.2, .friction = row.at("mu")}});
+        auto sim = simulate(std::move(scene))
+                       .contact(LinearSpring{{.stiffness = k, .restitution = 0.2, .friction = row.at("mu")}});
         sim.run({.end_time = 0.05});  // past what the start set swinging
-        const Real v = sim.particles().velocity[0].x(), w = sim.particles().angular_velocity(0).y(), t = sim.time();
+        const Real v = sim.particles().velocity[0].x(), w = sim.particles().angular_velocity(0).y(),
+                   t = sim.time();
         sim.run({.end_time = 0.35});
         CAPTURE(row.at("theta_deg"));
-        CHECK((sim.particles().velocity[0].x() - v) / (sim.time() - t) == doctest::Approx(row.at("a")).epsilon(0.005));
-        CHECK(radius * (sim.particles().angular_velocity(0).y() - w) / (sim.time() - t) == doctest::Approx(row.at("R_alpha")).epsilon(0.005));
+        CHECK((sim.particles().velocity[0].x() - v) / (sim.time() - t) ==
+              doctest::Approx(row.at("a")).epsilon(0.005));
+        CHECK(radius * (sim.particles().angular_velocity(0).y() - w) / (sim.time() - t) ==
+              doctest::Approx(row.at("R_alpha")).epsilon(0.005));
     }
 }
 
@@ -80,9 +90,11 @@ TEST_CASE("a skidding sphere ends rolling at 5/7 of its speed, having lost m v^2
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     const Real mass = 2650 * 4.0 / 3 * pi * cube(radius);
     scene.add_sphere(radius, {.position = {0, 0, radius - mass * g / k}, .velocity = {speed, 0, 0}});
-    auto sim = simulate(std::move(scene)).contact(LinearSpring{{.stiffness = k, .restitution = 0.2, .friction = mu}});
+    auto sim = simulate(std::move(scene))
+                   .contact(LinearSpring{{.stiffness = k, .restitution = 0.2, .friction = mu}});
     sim.run({.end_time = 1.5 * 2 * speed / (7 * mu * g)});
     CHECK(sim.particles().velocity[0].x() == doctest::Approx(5.0 / 7 * speed).epsilon(0.005));
-    CHECK(radius * sim.particles().angular_velocity(0).y() == doctest::Approx(5.0 / 7 * speed).epsilon(0.005));
+    CHECK(radius * sim.particles().angular_velocity(0).y() ==
+          doctest::Approx(5.0 / 7 * speed).epsilon(0.005));
     CHECK(sim.ledger().lost_sliding == doctest::Approx(mass * speed * speed / 7).epsilon(0.005));
 }

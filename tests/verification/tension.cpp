@@ -8,9 +8,12 @@
 
 using namespace abrade;
 
-TEST_CASE("a chain of bonds breaks at sigma_t A, at the strain sigma_t / E, with the energy sigma_t^2 A l / (2 E) in each bond") {
+TEST_CASE(
+    "a chain of bonds breaks at sigma_t A, at the strain sigma_t / E, with the energy sigma_t^2 A l / (2 E) "
+    "in each bond") {
     std::vector<Real> value;
-    for (const auto& row : reference_table("bpm02_tension_strength_analytic.csv")) value.push_back(row.at("value"));
+    for (const auto& row : reference_table("bpm02_tension_strength_analytic.csv"))
+        value.push_back(row.at("value"));
     REQUIRE(value.size() == 4);
     const Real force = value[0], strain = value[1], energy = value[2], elongation_of_100 = value[3];
     const Real area = 1e-4, youngs = 30e9, tensile = 3e6, length = 0.01;  // the table's example
@@ -22,7 +25,8 @@ TEST_CASE("a chain of bonds breaks at sigma_t A, at the strain sigma_t / E, with
     constexpr int count = 100;
     const Clump ball = make_clump("ball", {{Vec3::Zero(), radius}});
     Particles p;
-    for (int n = 0; n <= count; ++n) p.add(ball, 2400, {.position = {n * length, 0, 0}}, n == 0 ? Kind::fixed : Kind::concrete);
+    for (int n = 0; n <= count; ++n)
+        p.add(ball, 2400, {.position = {n * length, 0, 0}}, n == 0 ? Kind::fixed : Kind::concrete);
     Network<MohrCoulomb> network;
     std::vector<Pair> pairs;
     for (Index n = 0; n < count; ++n) pairs.push_back({n, n + 1});
@@ -33,7 +37,8 @@ TEST_CASE("a chain of bonds breaks at sigma_t A, at the strain sigma_t / E, with
             p.position[static_cast<std::size_t>(n)].x() = n * length * (1 + stretch);
             p.place_spheres(n, Vec3::Zero(), Vec3::Zero());
         }
-        const BondSums sums = network.respond(law, NoWear{}, p, [](Index) { return 1.0; }, 1e-7);
+        const BondSums sums = network.respond(
+            law, NoWear{}, p, [](Index) { return 1.0; }, 1e-7);
         if (sums.broken_tension > 0) {
             CHECK(sums.lost_bond / sums.broken_tension == doctest::Approx(energy).epsilon(0.001));
             at = stretch;
@@ -49,7 +54,8 @@ TEST_CASE("a chain of bonds breaks at sigma_t A, at the strain sigma_t / E, with
     CHECK(at * count * length == doctest::Approx(elongation_of_100).epsilon(0.001));
 }
 
-TEST_CASE("a column pulled at by its weight, through the engine: it holds below its strength and breaks above") {
+TEST_CASE(
+    "a column pulled at by its weight, through the engine: it holds below its strength and breaks above") {
     // Two free spheres above a fixed one, pulled upward by gravity turned around.
     const Real d = 0.02, k = 4e6, sphere = 2400 * pi / 6 * cube(d);
     const MohrCoulomb law{{.tensile = 2.7e6, .stiffness = k, .damping = 0.5}};

@@ -45,7 +45,9 @@ TEST_CASE("nothing is lost between worn volume and overflow, however small the p
 }
 
 TEST_CASE("depth times area is the volume lost: worn off those that stand, whole cells of those gone") {
-    for (const Lattice& lattice : {flat_lattice(0.1, 0.06, {.layers = 3}), invert_lattice({.length = 0.1, .width = 0.5, .arc_radius = 0.4}, {.layers = 3})}) {
+    for (const Lattice& lattice :
+         {flat_lattice(0.1, 0.06, {.layers = 3}),
+          invert_lattice({.length = 0.1, .width = 0.5, .arc_radius = 0.4}, {.layers = 3})}) {
         Concrete c(lattice);
         for (Index s = 0; s < c.sites(); s += 4) c.wear(s, 1e-7 * (s % 11));
         CHECK(lost_by_depth(c) == doctest::Approx(c.worn_volume()).epsilon(1e-13));
@@ -67,7 +69,8 @@ TEST_CASE("depth of a column whose top sphere is gone is one layer") {
     c.set_gone(c.lattice().site(2, 3, 0));
     const auto depth = c.depth();
     for (Index i = 0; i < 5; ++i)
-        for (Index j = 0; j < 5; ++j) CHECK(depth[static_cast<std::size_t>(i * 5 + j)] == doctest::Approx(i == 2 && j == 3 ? 0.02 : 0));
+        for (Index j = 0; j < 5; ++j)
+            CHECK(depth[static_cast<std::size_t>(i * 5 + j)] == doctest::Approx(i == 2 && j == 3 ? 0.02 : 0));
 }
 
 TEST_CASE("V_omega as the sphere: it is full sooner") {

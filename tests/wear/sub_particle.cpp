@@ -12,8 +12,8 @@ namespace {
 
 constexpr Real coefficient = 1.1e-7;
 
-/// A head-on impact on one body by one, stepped as the engine does: kick, drift, force at the predicted velocity,
-/// kick. Worn volume off one of the two bodies.
+/// A head-on impact on one body by one, stepped as the engine does: kick, drift, force at the predicted
+/// velocity, kick. Worn volume off one of the two bodies.
 Real worn_by_impact(Real mass, Real speed, Real restitution, const SubParticleAbrasion& wear) {
     const LinearSpring law{{.stiffness = 1e6, .restitution = restitution}};
     const Real dt = pi * std::sqrt(mass / 1e6) / 500;
@@ -44,17 +44,20 @@ TEST_CASE("one impact wears C_w beta 1/2 of 1/2 m v^2 (1 - e^2)") {
     for (const Real e : {0.9, 0.6, 0.3}) {
         const Real mass = 0.05, speed = 2, lost = 0.5 * mass * speed * speed * (1 - e * e);
         CAPTURE(e);
-        CHECK(worn_by_impact(mass, speed, e, wear) == doctest::Approx(coefficient * 4800 * 0.5 * lost).epsilon(0.001));  // 500 steps: second order, 1e-5
+        CHECK(worn_by_impact(mass, speed, e, wear) == doctest::Approx(coefficient * 4800 * 0.5 * lost)
+                                                          .epsilon(0.001));  // 500 steps: second order, 1e-5
     }
     CHECK(worn_by_impact(0.05, 2, 1, wear) == 0);  // elastic
 }
 
 TEST_CASE("wear is linear in mass, in drop height and in beta") {
     const auto worn = [](Real mass, Real speed, Real beta) {
-        return worn_by_impact(mass, speed, 0.5, SubParticleAbrasion{{.coefficient = coefficient, .acceleration = beta}});
+        return worn_by_impact(mass, speed, 0.5,
+                              SubParticleAbrasion{{.coefficient = coefficient, .acceleration = beta}});
     };
     const Real one = worn(0.1, 1, 1);
-    CHECK(worn(0.4, 1, 1) / one == doctest::Approx(4).epsilon(1e-9));               // the same steps in units of the contact time
+    CHECK(worn(0.4, 1, 1) / one ==
+          doctest::Approx(4).epsilon(1e-9));  // the same steps in units of the contact time
     CHECK(worn(0.1, std::sqrt(3.0), 1) / one == doctest::Approx(3).epsilon(1e-9));  // height goes with v^2
     CHECK(worn(0.1, 1, 4800) / one == doctest::Approx(4800).epsilon(1e-12));
 }
@@ -64,8 +67,10 @@ TEST_CASE("the two kinds of loss are weighed apart") {
     const SubParticleAbrasion paper{{.coefficient = coefficient, .acceleration = 10}};
     CHECK(paper.increment({}, load).normal == doctest::Approx(0.5 * coefficient * 10 * 2).epsilon(1e-15));
     CHECK(paper.increment({}, load).tangential == doctest::Approx(0.5 * coefficient * 10 * 7).epsilon(1e-15));
-    const SubParticleAbrasion impact_only{{.coefficient = coefficient, .normal_weight = 2, .tangential_weight = 0}};
-    CHECK(impact_only.increment({}, load).normal == doctest::Approx(0.5 * coefficient * 2 * 2).epsilon(1e-15));
+    const SubParticleAbrasion impact_only{
+        {.coefficient = coefficient, .normal_weight = 2, .tangential_weight = 0}};
+    CHECK(impact_only.increment({}, load).normal ==
+          doctest::Approx(0.5 * coefficient * 2 * 2).epsilon(1e-15));
     CHECK(impact_only.increment({}, load).tangential == 0);
 }
 
@@ -95,6 +100,7 @@ TEST_CASE("parameters that make no sense are refused") {
         CHECK_THROWS_AS(SubParticleAbrasion({.normal_weight = bad}), InputError);
         CHECK_THROWS_AS(SubParticleAbrasion({.tangential_weight = bad}), InputError);
     }
-    for (const Real bad : {0.0, -1.0, nan}) CHECK_THROWS_AS(SubParticleAbrasion({.acceleration = bad}), InputError);
+    for (const Real bad : {0.0, -1.0, nan})
+        CHECK_THROWS_AS(SubParticleAbrasion({.acceleration = bad}), InputError);
     CHECK(SubParticleAbrasion{{}}.params().coefficient == coefficient);  // the paper's
 }

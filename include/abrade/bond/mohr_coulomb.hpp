@@ -13,6 +13,7 @@ namespace abrade {
 /// Springs f_n = k_n c (c compression), f_s = -k_s s. The bond breaks
 ///   in tension when -f_n > f_b,
 ///   in shear when |f_s| > (f_n + f_b) tan(phi).
+/// While sound, dashpots c = 2 zeta sqrt(k m_eff) act beside both springs; they are no part of the yield.
 /// A broken bond is a frictional contact with the same springs: f_n >= 0, |f_s| <= f_n tan(phi). So breaking
 /// under compression changes no normal force; what the springs then give up is booked as lost in the bond.
 class MohrCoulomb {
@@ -83,6 +84,8 @@ public:
                 const Real damped = (cn * square(approach) + cs * slip.squaredNorm()) * dt;
                 return {{force, elastic, damped, 0, 0}, {shear, false}, Fate::intact};
             }
+            if (bond.compression <= 0)
+                return {{Vec3::Zero(), 0, elastic, 0, 0}, {Vec3::Zero(), true}, Fate::shear};
             BondResponse<Memory> broken = slide(bond, before, shear, cn, cs);
             broken.load.lost_bond = std::max(0.0, elastic - broken.load.stored) + broken.load.lost_normal;
             broken.load.lost_normal = broken.load.lost_tangential = 0;

@@ -12,6 +12,8 @@ struct BondSums {
     Real concrete_lost_normal = 0,
          concrete_lost_tangential = 0;           ///< both sides of a broken bond are concrete [J]
     Index broken_tension = 0, broken_shear = 0;  ///< bonds that broke in this step
+    Real deepest = 0;                            ///< compression over the smaller radius [-]
+    Index deepest_bond = -1;
 
     BondSums& operator+=(const BondSums& other) noexcept {
         lost_bond += other.lost_bond;
@@ -21,6 +23,8 @@ struct BondSums {
         concrete_lost_tangential += other.concrete_lost_tangential;
         broken_tension += other.broken_tension;
         broken_shear += other.broken_shear;
+        if (other.deepest > deepest || !(other.deepest == other.deepest))
+            deepest = other.deepest, deepest_bond = other.deepest_bond;
         return *this;
     }
 };
@@ -30,14 +34,15 @@ struct BondSums {
 template <BondLaw Law>
 class Network {
 public:
-    /// Bonds the given pairs of bodies as they stand: rest lengths are the present distances.
+    /// Bonds the given pairs of spheres, each of them a body, as they stand: rest lengths are the present
+    /// distances.
     void build(const Particles& particles, std::vector<Pair> bonded) {
         std::sort(bonded.begin(), bonded.end());
         pairs_ = std::move(bonded);
         rest_length_.clear();
         for (const Pair& pair : pairs_)
-            rest_length_.push_back((particles.position[static_cast<std::size_t>(pair.first)] -
-                                    particles.position[static_cast<std::size_t>(pair.second)])
+            rest_length_.push_back((particles.centre[static_cast<std::size_t>(pair.first)] -
+                                    particles.centre[static_cast<std::size_t>(pair.second)])
                                        .norm());
         memory_.assign(pairs_.size(), {});
         loads_.assign(pairs_.size(), {});
@@ -76,9 +81,9 @@ public:
         return tied;
     }
 
-    /// Drops broken bonds that are open and have a loose end, so that ordinary contacts may take over, and
-    /// bonds whose body is gone. `moved` says where the spheres are now. Returns the elastic energy [J] of
-    /// what went with bodies that are gone.
+    /// Drops broken bonds that are open, as contacts too, and have a loose end: the contact law takes over.
+    /// Drops bonds whose body is gone. `moved` says where the spheres are now. Returns the elastic energy [J]
+    /// of what went with bodies that are gone.
     Real prune(const Particles& particles, std::span<const Index> moved) {
         std::size_t to = 0;
         Real gone = 0;
@@ -93,8 +98,10 @@ public:
                 return particles.kind[static_cast<std::size_t>(
                            particles.body[static_cast<std::size_t>(sphere)])] == Kind::grain;
             };
-            if (memory_[from].broken && !loads_[from].active && (loose(pair.first) || loose(pair.second)))
-                continue;
+            const auto i = static_cast<std::size_t>(pair.first), j = static_cast<std::size_t>(pair.second);
+            const Real apart = (particles.centre[i] - particles.centre[j]).norm();
+            const bool open = !loads_[from].active && apart >= particles.radius[i] + particles.radius[j];
+            if (memory_[from].broken && open && (loose(pair.first) || loose(pair.second))) continue;
             pairs_[to] = pair;
             rest_length_[to] = rest_length_[from];
             memory_[to] = memory_[from];
@@ -121,7 +128,6 @@ public:
     const std::vector<Pair>& pairs() const noexcept { return pairs_; }  ///< of spheres
     const std::vector<PairLoad>& loads() const noexcept { return loads_; }
     bool broken(Index bond) const noexcept { return memory_[static_cast<std::size_t>(bond)].broken; }
-    Real rest_length(Index bond) const noexcept { return rest_length_[static_cast<std::size_t>(bond)]; }
     Real worn(Index bond) const noexcept {
         return worn_[static_cast<std::size_t>(bond)];
     }  ///< off each side, this step [m3]
@@ -153,11 +159,23 @@ private:
         memory_[p] = memory;
         loads_[p] = {answer.force,  answer.force.cross(bond.normal),       arm, arm,
                      answer.stored, !memory.broken || bond.compression > 0};
-        BondSums sums{answer.lost_bond,      answer.lost_normal, answer.lost_tangential, 0, 0,
-                      fate == Fate::tension, fate == Fate::shear};
+        BondSums sums{answer.lost_bond,
+                      answer.lost_normal,
+                      answer.lost_tangential,
+                      0,
+                      0,
+                      fate == Fate::tension,
+                      fate == Fate::shear,
+                      bond.compression / bond.radius,
+                      static_cast<Index>(p)};
         if (memory.broken) {
-            const ContactKinematics<Real> contact{bond.normal,         bond.compression,  bond.velocity,
-                                                  bond.effective_mass, 0.5 * bond.radius, dt};
+            const ContactKinematics<Real> contact{.normal = bond.normal,
+                                                  .overlap = bond.compression,
+                                                  .velocity = bond.velocity,
+                                                  .effective_mass = bond.effective_mass,
+                                                  .effective_radius = 0.5 * bond.radius,
+                                                  .time_step = dt,
+                                                  .travel = bond.travel};
             const auto worn = wear.increment(
                 contact, {answer.force, answer.stored, answer.lost_normal, answer.lost_tangential});
             worn_[p] = worn.normal + worn.tangential;

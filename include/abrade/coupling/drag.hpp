@@ -16,7 +16,8 @@ concept DragLaw = Law<D> && requires(const D& law) {
 };
 // clang-format on
 
-/// Drag of a sphere for Re < 3e5:
+/// Drag of a sphere for Re < 3e5; beyond, where the boundary layer may turn turbulent, the value at 3e5 is
+/// kept:
 ///   C_d = 24/Re (1 + 0.15 Re^0.687) + 0.42 / (1 + 42500 Re^-1.16)
 /// R. Clift, W. H. Gauvin, Chemeca 70 (1970) 14; as given in Clift, Grace, Weber, Bubbles, Drops and
 /// Particles (1978), table 5.1. Angular stones drag more; `shape_factor` multiplies C_d.
@@ -35,7 +36,7 @@ public:
     const Params& params() const noexcept { return params_; }
 
     Real coefficient(Real reynolds) const noexcept {
-        const Real re = std::max(reynolds, 1e-12);
+        const Real re = std::clamp(reynolds, 1e-12, 3e5);
         return params_.shape_factor *
                (24 / re * (1 + 0.15 * std::pow(re, 0.687)) + 0.42 / (1 + 42500 * std::pow(re, -1.16)));
     }

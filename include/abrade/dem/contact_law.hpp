@@ -44,7 +44,9 @@ struct ContactResponse {
 /// - `respond` handles overlap <= 0 too: no force, the memory cleared, what it still stored booked as lost;
 /// - `stable_dt(mass, radius)` is a time step [s] that is safe for a sphere of that mass and radius in the
 ///   densest surroundings;
-/// - `stiffness()` and `tangential_stiffness()` [N/m] let the engine sum up what acts on one body.
+/// - `stiffness()`, `tangential_stiffness()` [N/m] and `damping_ratio()` [-] let the engine sum up what acts
+/// on
+///   one body.
 // clang-format off
 template <class L>
 concept RemembersContacts = requires { typename L::template Memory<Real>; } &&
@@ -74,13 +76,13 @@ Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number
     return scale * flat;
 }
 
-/// How much of the step centred on t_n a contact has acted, in steps: 1, but for the step in which it
-/// begins. There it began tau = overlap / approach before t_n and acts for tau + dt/2. Dashpots that count
-/// this give an impulse of second order in dt; without it restitution is first order.
+/// How much of the step that led to t_n a contact has lasted: 1, but for the step in which it begins, tau =
+/// overlap / approach before t_n. Springs count the way since then only; dashpots, whose step is centred on
+/// t_n, act for tau + dt/2. Without this, restitution is of first order in dt.
 template <class Number>
-Number acting_share(Number overlap, Number approach, Real dt) noexcept {
-    const Number travel = approach * Number(dt);
-    return select(overlap < travel, Number(0.5) + overlap / max(travel, tiny<Number>), Number(1));
+Number begun_share(Number overlap, Number approach, Real dt) noexcept {
+    const Number way = approach * Number(dt);
+    return select(overlap < way, overlap / max(way, tiny<Number>), Number(1));
 }
 
 /// Spring and dashpot along the normal, without tension.

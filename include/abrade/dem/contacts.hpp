@@ -89,8 +89,8 @@ public:
     using Memory = typename Law::template Memory<Real>;
 
     /// Takes a new sorted list of pairs. Memory of pairs that touch is carried over; `moved` says where the
-    /// spheres of the old list are now (-1: gone). Returns the elastic energy of pairs that went with them
-    /// [J].
+    /// spheres of the old list are now (-1: gone). Returns the elastic energy of pairs that went with them or
+    /// are no longer in the list [J].
     Real rebuild(std::vector<Pair> pairs, Index spheres, std::span<const Index> moved) {
         struct Kept {
             Pair pair;
@@ -116,12 +116,14 @@ public:
         loads_.assign(pairs_.size(), PairLoad{});
         worn_.assign(pairs_.size(), 0);
         auto next = kept.begin();
-        for (std::size_t p = 0; p < pairs_.size() && next != kept.end(); ++p)
-            if (pairs_[p] == next->pair) {
-                memory_[p] = next->memory;
-                loads_[p] = next->load;
-                ++next;
-            }
+        for (std::size_t p = 0; p < pairs_.size(); ++p) {
+            for (; next != kept.end() && next->pair < pairs_[p]; ++next) gone += next->load.stored;
+            if (next == kept.end() || next->pair != pairs_[p]) continue;
+            memory_[p] = next->memory;
+            loads_[p] = next->load;
+            ++next;
+        }
+        for (; next != kept.end(); ++next) gone += next->load.stored;
         incidence_.build(spheres, static_cast<Index>(pairs_.size()),
                          [&](Index p) { return pairs_[static_cast<std::size_t>(p)]; });
         return gone;

@@ -9,8 +9,8 @@ namespace abrade {
 /// A contact that ends when its force falls to zero has
 ///   e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),             zeta < 1,
 ///   e = exp(-2 zeta acosh(zeta) / sqrt(zeta^2 - 1)),            zeta > 1,
-/// inverted here by bisection. T. Schwager, T. Poeschel, Granular Matter 9 (2007) 465,
-/// doi:10.1007/s10035-007-0065-z.
+/// inverted here by bisection. Throws InputError for a restitution outside (0, 1]. T. Schwager, T. Poeschel,
+/// Granular Matter 9 (2007) 465, doi:10.1007/s10035-007-0065-z.
 inline Real damping_ratio_without_tension(Real restitution) {
     require(restitution > 0 && restitution <= 1, {"restitution", "in (0, 1]"}, restitution);
     const auto restitution_of = [](Real zeta) {
@@ -80,16 +80,15 @@ public:
         const auto touching = contact.overlap > Number(0);
         const Number approach = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
-        const Number acting = acting_share(contact.overlap, approach, contact.time_step);
+        const Number begun = begun_share(contact.overlap, approach, contact.time_step);
+        const Number acting = select(begun < Number(1), Number(0.5) + begun, Number(1));
         const Number root_mass = acting * sqrt(contact.effective_mass);
 
         const auto normal = NormalSpring<Number>::at(max(contact.overlap, Number(0)), approach, kn,
                                                      root_mass * Number(dashpot_normal_), contact.time_step);
         const Vec3Of<Number> before = turn_into_plane(memory.spring, contact.normal);
-        // In the step in which the contact begins only the way since then counts.
-        const Number share = select(acting == Number(1), Number(1), acting - Number(0.5));
         const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
-        const Vec3Of<Number> trial = before + share * way;
+        const Vec3Of<Number> trial = before + begun * way;
         const auto tangential =
             SlidingSpring<Number>::at(before, trial, slip, Number(params_.friction) * normal.force, kt,
                                       root_mass * Number(dashpot_tangential_), contact.time_step);
@@ -108,7 +107,8 @@ public:
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
     Real damping_ratio() const noexcept { return damping_ratio_; }
 
-    /// For a sphere in the midst of twelve others, the most that can touch it, three of them damping at a time:
+    /// For a sphere in the midst of twelve others, the most that can touch it, three of them damping at a
+    /// time:
     ///   dt = 2 / (sqrt(omega^2 + c^2) + c),
     ///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(2 (c_n + 2 c_t), 10 c_t) / m.
     /// c counts in full, not by half: dashpots see a velocity predicted from the last acceleration.

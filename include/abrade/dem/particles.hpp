@@ -73,9 +73,12 @@ struct Particles {
         return 0.5 * mass[i] * velocity[i].squaredNorm() + 0.5 * angular_momentum[i].dot(angular_velocity(b));
     }
 
-    /// Adds a body and returns its index. A density [kg/m3] of 0 or less, or a position that is not
-    /// finite, throws InputError.
+    /// Adds a body and returns its index. A clump without spheres or volume, a density [kg/m3] of 0 or less,
+    /// or a state that is not finite throws InputError.
     Index add(const Clump& clump, Real density, const BodyState& state, Kind body_kind) {
+        require(!clump.members.empty() && clump.volume > 0 && clump.principal_moments.minCoeff() > 0,
+                {"Clump.volume", "> 0, of at least one sphere", "m3", "make clumps with make_clump()"},
+                clump.volume);
         require_positive(density, "density", "kg/m3");
         require(std::abs(state.orientation.norm() - 1) < 1e-6,
                 {"BodyState.orientation", "a unit quaternion", "", "normalise it"}, state.orientation.norm());

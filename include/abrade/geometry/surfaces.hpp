@@ -15,6 +15,7 @@ struct Plane {
     Real distance(const Vec3& x) const noexcept { return normal.dot(x - point); }
 
     void validate() const {
+        require(point.allFinite(), {"Plane.point", "finite", "m"}, point.sum());
         require(std::abs(normal.norm() - 1) < 1e-9, {"Plane.normal", "of length 1", "", "normalise it"},
                 normal.norm());
     }

@@ -20,14 +20,14 @@ namespace abrade {
 
 /// A folder of results that is filled aside, in the hidden sibling `.name.partial-<pid>`, and then put in the
 /// place of `name`.
-///  - The constructor refuses (InputError), before any work is done, a place that cannot be written and a
-///  folder that
-///    holds files but was not made by this class: nothing of the user's is in danger by a mistyped path.
-///  - `publish` swaps the folders. It deletes of the old one only the files on the list `.abrade-files`,
-///  which the run
-///    that made them left there. Anything else is the user's and is carried over; where the new run made a
-///    file of the same name, the user's becomes `file.kept-1`.
-///  - Without `publish` the destructor removes the partial folder. A killed run leaves it (`leftovers`).
+/// - The constructor refuses (InputError), before any work is done, a place that cannot be written and a
+/// folder
+///   that holds files but was not made by this class: nothing of the user's is in danger by a mistyped path.
+/// - `publish` swaps the folders. It deletes of the old one only the files on the list `.abrade-files`, which
+/// the
+///   run that made them left there. Anything else is the user's and is carried over; where the new run made a
+///   file of the same name, the user's becomes `file.kept-1`.
+/// - Without `publish` the destructor removes the partial folder. A killed run leaves it (`leftovers`).
 class OutputFolder {
 public:
     explicit OutputFolder(const std::filesystem::path& final_path) : final_{resolve(final_path)} {

@@ -6,6 +6,7 @@
 #include <abrade/geometry/surfaces.hpp>
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <random>
 
@@ -23,7 +24,7 @@ struct FeedParams {
     Real volume_rate = 0;  ///< solid [m3/s]
     std::vector<StoneClass> classes{};
     Real density = 2650;  ///< [kg/m3]
-    Box region{};         ///< stones are placed inside it, whole [m]
+    Box region{};  ///< stones are placed inside it, whole in x and y, lifted where concrete is in the way [m]
     std::function<Real(Real, Real)>
         bed{};                     ///< height of the ground at (x, y) that region.z counts from [m]; none: 0
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
@@ -114,9 +115,24 @@ private:
             if (params_.bed) state.position.z() += params_.bed(state.position.x(), state.position.y());
             state.velocity = params_.velocity;
             state.orientation = random_orientation();
+            state.position.z() =
+                std::max(state.position.z(), height_above_concrete(particles, state.position, reach));
             if (is_free(particles, state.position, reach)) return state;
         }
         return std::nullopt;
+    }
+
+    /// The lowest z at which a sphere of radius `reach` over x touches no concrete.
+    static Real height_above_concrete(const Particles& particles, const Vec3& x, Real reach) {
+        Real lowest = -std::numeric_limits<Real>::infinity();
+        for (std::size_t s = 0; s < particles.centre.size(); ++s) {
+            const Kind kind = particles.kind[static_cast<std::size_t>(particles.body[s])];
+            if (kind != Kind::concrete && kind != Kind::fixed) continue;
+            const Real across2 = (particles.centre[s] - x).head<2>().squaredNorm();
+            const Real room2 = square(particles.radius[s] + reach) - across2;
+            if (room2 > 0) lowest = std::max(lowest, particles.centre[s].z() + std::sqrt(room2));
+        }
+        return lowest;
     }
 
     static bool is_free(const Particles& particles, const Vec3& x, Real reach) {

@@ -35,14 +35,18 @@ struct RunOptions {
 /// Stands in the contact slot until `.contact(law)` fills it.
 struct ContactLawIsMissing {};
 
+namespace detail {
+
 /// What a slot gives back when its law cannot be used: takes any further call, so that one error is printed.
-struct Unusable {
-    Unusable contact(auto&&...) { return {}; }
-    Unusable bond(auto&&...) { return {}; }
-    Unusable wear(auto&&...) { return {}; }
-    Unusable fluid(auto&&...) { return {}; }
-    void run(const struct RunOptions&, auto&&...) {}
+struct AfterRejectedLaw {
+    AfterRejectedLaw contact(auto&&...) { return {}; }
+    AfterRejectedLaw bond(auto&&...) { return {}; }
+    AfterRejectedLaw wear(auto&&...) { return {}; }
+    AfterRejectedLaw fluid(auto&&...) { return {}; }
+    void run(const RunOptions&, auto&&...) {}
 };
+
+}  // namespace detail
 
 /// Made by `simulate(scene)`, completed by `.contact()`, `.bond()`, `.wear()` and `.fluid()`, then run. The
 /// four policies are part of the type; an absent one costs nothing.
@@ -63,7 +67,7 @@ public:
             return Simulation<L, B, W, F, D>{std::move(scene_), std::move(law),    std::move(bond_),
                                              std::move(wear_),  std::move(fluid_), std::move(drag_)};
         else
-            return Unusable{};
+            return detail::AfterRejectedLaw{};
     }
     template <class L>
     auto bond(L law) && {
@@ -72,7 +76,7 @@ public:
             return Simulation<C, L, W, F, D>{std::move(scene_), std::move(contact_), std::move(law),
                                              std::move(wear_),  std::move(fluid_),   std::move(drag_)};
         else
-            return Unusable{};
+            return detail::AfterRejectedLaw{};
     }
     template <class L>
     auto wear(L law) && {
@@ -81,9 +85,9 @@ public:
             return Simulation<C, B, L, F, D>{std::move(scene_), std::move(contact_), std::move(bond_),
                                              std::move(law),    std::move(fluid_),   std::move(drag_)};
         else
-            return Unusable{};
+            return detail::AfterRejectedLaw{};
     }
-    template <class L, class Drag = CliftGauvin>
+    template <class L, class Drag = std::conditional_t<std::same_as<L, NoFluid>, NoDrag, CliftGauvin>>
     auto fluid(L law, Drag drag = Drag{}) && {
         static_assert(FluidModel<L>, "Simulation::fluid(law): the fluid misses what the notes below name");
         static_assert(DragLaw<Drag>,
@@ -92,42 +96,19 @@ public:
             return Simulation<C, B, W, L, Drag>{std::move(scene_), std::move(contact_), std::move(bond_),
                                                 std::move(wear_),  std::move(law),      std::move(drag)};
         else
-            return Unusable{};
+            return detail::AfterRejectedLaw{};
     }
 
     // --- running -------------------------------------------------------------------------------
 
-    /// Runs to `end_time`; may be called again to go on. `observer(simulation)` sees the start, every
+    /// Runs to `end_time`; may be called again to go on. `observer(const simulation&)` sees the start, every
     /// `observe_every`, and the end. Throws InputError before the first step when options or scene cannot
     /// be used, RunError when a step goes wrong.
     template <class Observer>
     void run(const RunOptions& options, Observer&& observer) {
         static_assert(!std::same_as<C, ContactLawIsMissing>,
                       "a simulation needs a contact law: simulate(scene).contact(law)");
-        if constexpr (!std::same_as<C, ContactLawIsMissing>) go(options, std::forward<Observer>(observer));
-    }
-    template <class Observer>
-    void go(const RunOptions& options, Observer&& observer) {
-        prepare(options);
-        const auto clock_start = Clock::now();
-        const Real start = time_;
-        Real next_observation = start + options.observe_every;
-        const auto steps = static_cast<Index>(std::ceil((options.end_time - start) / time_step_ - 1e-9));
-        if (steps > 0) time_step_ = (options.end_time - start) / steps;  // so that the last step ends on time
-        observer(*this);
-        for (Index n = 0; n < steps && !stopped_; ++n) {
-            do_step(start + n * time_step_);
-            const bool last = n + 1 == steps;
-            if (step_ % steps_between_checks == 0 && options.stop && options.stop()) stopped_ = true;
-            if (last || stopped_ ||
-                (options.observe_every > 0 && time_ >= next_observation - 0.5 * time_step_)) {
-                next_observation += options.observe_every;
-                wall_seconds_ = seconds_since(clock_start);
-                balance();
-                observer(*this);
-            }
-        }
-        wall_seconds_ = seconds_since(clock_start);
+        if constexpr (!std::same_as<C, ContactLawIsMissing>) advance(options, observer);
     }
     void run(const RunOptions& options) {
         run(options, [](const Simulation&) {});
@@ -154,7 +135,7 @@ public:
     const Feed* feed() const noexcept { return feed_ ? &*feed_ : nullptr; }
     const Snapshot& last_good() const noexcept { return last_good_; }
 
-    /// Shares of wall time [-]: contacts and bonds with gathering, motion, renewal of lists.
+    /// Shares of wall time [-]: laws of contacts and bonds; motion with gathering of loads; renewal of lists.
     struct Shares {
         Real forces = 0, motion = 0, renewal = 0;
     };
@@ -182,6 +163,43 @@ private:
         return std::chrono::duration<Real>(Clock::now() - start).count();
     }
 
+    void advance(const RunOptions& options, auto&& observer) {
+        prepare(options);
+        const auto clock_start = Clock::now();
+        const Real wall_before = wall_seconds_, start = time_;
+        const auto show = [&] {
+            wall_seconds_ = wall_before + seconds_since(clock_start);
+            balance();
+            observer(std::as_const(*this));
+        };
+        const Index steps = steps_to(options.end_time);
+        if (steps > 0) time_step_ = (options.end_time - start) / steps;  // so that the last step ends on time
+        Real next_observation = start + options.observe_every;
+        show();
+        for (Index n = 0; n < steps && !stopped_; ++n) {
+            const bool last = n + 1 == steps;
+            do_step(start + n * time_step_);
+            if (last) time_ = options.end_time;
+            if (step_ % steps_between_checks == 0 && options.stop && options.stop()) stopped_ = true;
+            if (last || stopped_ ||
+                (options.observe_every > 0 && time_ >= next_observation - 0.5 * time_step_)) {
+                next_observation += options.observe_every;
+                show();
+            }
+        }
+        wall_seconds_ = wall_before + seconds_since(clock_start);
+    }
+
+    Index steps_to(Real end_time) const {
+        const Real steps = std::ceil((end_time - time_) / time_step_ - 1e-9);
+        constexpr Real most = std::numeric_limits<Index>::max();
+        require(static_cast<Real>(step_) + steps < most,
+                {"RunOptions.end_time over the time step: steps", "fewer than " + to_text(most), "",
+                 "run for a shorter time or with a larger step"},
+                steps);
+        return static_cast<Index>(std::max(steps, 0.0));
+    }
+
     void prepare(const RunOptions& options) {
         require(std::isfinite(options.end_time) && options.end_time >= time_,
                 {"RunOptions.end_time", "finite and not before now (" + to_text(time_) + " s)", "s"},
@@ -191,18 +209,11 @@ private:
         require_not_negative(options.observe_every, "RunOptions.observe_every", "s");
         require_not_negative(options.time_step, "RunOptions.time_step", "s");
         require_not_negative(options.skin, "RunOptions.skin", "m");
-        if (!world_) {
-            if (scene_.feed) feed_.emplace(*scene_.feed);
-            world_.emplace(std::move(scene_), PoliciesOf{contact_, bond_, wear_, fluid_, drag_});
-            const auto& radius = world_->particles().radius;
-            Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
-            world_->set_skin(options.skin > 0 ? options.skin : 0.25 * smallest);
-            stable_ =
-                stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
-            world_->renew(time_, 0, nullptr);
-            world_->open_ledger();
-            remember();
-        }
+        if (!world_) build_world();
+        const auto& radius = world_->particles().radius;
+        const Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
+        world_->set_skin(options.skin > 0 ? options.skin : 0.25 * smallest);
+        if (!opened_) open();
         stopped_ = false;
         time_step_ = options.time_step > 0 ? options.time_step : options.safety * stable_.seconds;
         require(time_step_ <= stable_.seconds,
@@ -215,12 +226,37 @@ private:
         balance();
     }
 
+    /// From a copy: a scene that is refused stays whole, to be asked again.
+    void build_world() {
+        if (scene_.feed) feed_.emplace(*scene_.feed);
+        world_.emplace(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_});
+        stable_ = stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
+    }
+
+    /// Finds the forces at the start, and what is wrong with it.
+    void open() {
+        world_->renew(time_, 0, nullptr);
+        if (const Trouble trouble = world_->take_trouble(); trouble.cause == Trouble::Cause::overlap) {
+            const std::string what =
+                "Scene: overlap of " + name_of(trouble.body) + " with " + name_of(trouble.other);
+            world_.reset();
+            require(false,
+                    {what, "at most " + to_text(100 * World::overlap_limit) + " % of the smaller radius", "%",
+                     "move them apart"},
+                    100 * trouble.measure);
+        }
+        world_->open_ledger();
+        remember();
+        opened_ = true;
+    }
+
     void do_step(Real t) {
+        world_->free_loose_concrete();
         if (world_->list_is_stale(time_step_) || step_ - list_made_ >= longest_list_life) {
             const auto start = Clock::now();
             world_->renew(t, time_step_, feed_ ? &*feed_ : nullptr);
             list_made_ = step_;
-            remember();
+            if (step_ - remembered_ >= longest_list_life) remember();
             renewal_seconds_ += seconds_since(start);
         }
         // Asking the clock in every step would cost small scenes dear: every 64th stands for all.
@@ -241,15 +277,19 @@ private:
             raise(trouble);
     }
 
+    std::string name_of(Index body) const {
+        if (body < 0) return "a boundary";
+        static constexpr std::string_view kinds[] = {"stone", "concrete sphere", "concrete grain",
+                                                     "fixed sphere"};
+        const Particles& p = world_->particles();
+        const auto b = static_cast<std::size_t>(body);
+        return std::string(kinds[static_cast<std::size_t>(p.kind[b])]) + " with id " +
+               std::to_string(p.id[b]);
+    }
+
     [[noreturn]] void raise(const Trouble& trouble) {
         const Particles& p = world_->particles();
         const auto b = static_cast<std::size_t>(trouble.body);
-        const auto name = [&](std::size_t body) {
-            static constexpr std::string_view kinds[] = {"stone", "concrete sphere", "concrete grain",
-                                                         "fixed sphere"};
-            return std::string(kinds[static_cast<std::size_t>(p.kind[body])]) + " with id " +
-                   std::to_string(p.id[body]);
-        };
         const auto place = [&] {
             return "x = (" + short_text(p.position[b].x()) + ", " + short_text(p.position[b].y()) + ", " +
                    short_text(p.position[b].z()) + ") m, speed " + short_text(p.velocity[b].norm()) + " m/s";
@@ -258,18 +298,17 @@ private:
                            " s, dt = " + short_text(time_step_) + " s): ";
         switch (trouble.cause) {
             case Trouble::Cause::lost:
-                text += name(b) + " left the world's bounds, " + place();
+                text += name_of(trouble.body) + " left the world's bounds, " + place();
                 break;
             case Trouble::Cause::overlap:
-                text += name(b) + " overlaps " +
-                        (trouble.other < 0 ? std::string("a boundary")
-                                           : name(static_cast<std::size_t>(trouble.other))) +
-                        " by " + short_text(100 * trouble.measure) + " % of the smaller radius (limit " +
+                text += name_of(trouble.body) + " overlaps " + name_of(trouble.other) + " by " +
+                        short_text(100 * trouble.measure) + " % of the smaller radius (limit " +
                         short_text(100 * World::overlap_limit) + " %), " + place() +
                         "; stiffer springs or a smaller step are needed";
                 break;
             default:
-                text += "velocity of " + name(b) + " is not finite, " + place();
+                text +=
+                    "velocity of " + name_of(trouble.body) + " is not finite or beyond 10 km/s, " + place();
                 break;
         }
         text += "; the last good state is that of t = " + short_text(last_good_.time) + " s";
@@ -277,7 +316,10 @@ private:
     }
 
     void balance() { ledger_ = world_->balance(); }
-    void remember() { last_good_ = take_snapshot(world_->particles(), world_->concrete(), time_, step_); }
+    void remember() {
+        last_good_ = take_snapshot(world_->particles(), world_->concrete(), time_, step_);
+        remembered_ = step_;
+    }
 
     using PoliciesOf = Policies<std::conditional_t<ContactLaw<C>, C, LinearSpring>, B, W, F, D>;
     using World = abrade::World<PoliciesOf>;
@@ -295,8 +337,8 @@ private:
     StableStep stable_;
     Snapshot last_good_;
     Real time_ = 0, time_step_ = 0;
-    Index step_ = 0, list_made_ = 0;
-    bool stopped_ = false;
+    Index step_ = 0, list_made_ = 0, remembered_ = 0;
+    bool opened_ = false, stopped_ = false;
     Real wall_seconds_ = 0, forces_seconds_ = 0, step_seconds_ = 0, renewal_seconds_ = 0;
 };
 

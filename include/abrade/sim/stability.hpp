@@ -22,7 +22,8 @@ namespace detail {
 
 /// Stiffness and damping that act on one sphere, as a matrix over (displacement, rotation x radius) divided
 /// by (mass, inertia / radius^2). Twice the largest row sum bounds omega^2 of the whole system: a spring
-/// 1/2 k |a_i - a_j|^2 is at most k (|a_i|^2 + |a_j|^2).
+/// 1/2 k |a_i - a_j|^2 is at most k (|a_i|^2 + |a_j|^2), and no eigenvalue exceeds the largest row sum
+/// (S. Gerschgorin, 1931).
 class SphereStiffness {
 public:
     explicit SphereStiffness(Real mass) noexcept : per_mass_(1 / mass), per_inertia_(1 / (0.4 * mass)) {}
@@ -37,7 +38,7 @@ public:
     }
     /// `count` links from anywhere.
     void add_anywhere(int count, Real normal, Real tangential) noexcept {
-        translation_.diagonal().array() += count * normal;
+        translation_.diagonal().array() += count * std::max(normal, tangential);
         rotation_.diagonal().array() += count * tangential;
     }
 
@@ -107,6 +108,9 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
         c.add_anywhere(2, dashpot(contact.damping_ratio(), contact.stiffness(), mass),
                        dashpot(contact.damping_ratio(), contact.tangential_stiffness(), mass));
         step.lower(detail::damped_step(k.bound(), c.bound()), "bonded concrete");
+        step.lower(
+            contact.stable_dt(mass, particles.radius[static_cast<std::size_t>(particles.first_sphere[i])]),
+            "contacts of loose concrete");
     }
     if (feed)
         for (const StoneClass& stones : feed->classes) {

@@ -48,7 +48,8 @@ public:
         ledger_.lost_sliding += contacts.lost_tangential;
         ledger_.concrete_lost_normal += contacts.concrete_lost_normal;
         ledger_.concrete_lost_sliding += contacts.concrete_lost_tangential;
-        if (!(contacts.deepest <= overlap_limit)) report_overlap(contacts);
+        if (!(contacts.deepest <= overlap_limit))
+            report_overlap(contacts_.pairs()[at(contacts.deepest_pair)], contacts.deepest);
         if constexpr (P::has_bonds) {
             const BondSums bonds =
                 network_.respond(policies_.bond, policies_.wear, particles_, strength_left(), dt);
@@ -60,6 +61,8 @@ public:
             broken_tension_ += bonds.broken_tension;
             broken_shear_ += bonds.broken_shear;
             pattern_changed_ |= bonds.broken_tension + bonds.broken_shear > 0;
+            if (!(bonds.deepest <= overlap_limit))
+                report_overlap(network_.pairs()[at(bonds.deepest_bond)], bonds.deepest);
         }
         loads_time_ = t;
         loads_waiting_ = true;
@@ -67,21 +70,30 @@ public:
 
     // --- between steps -------------------------------------------------------------------------
 
-    /// Whether the list of near pairs may miss a contact in the step to come, or the set of bodies should
-    /// change.
-    bool list_is_stale(Real dt) const noexcept {
-        return std::sqrt(furthest2_) + dt * std::sqrt(fastest2_) > 0.5 * list_skin_ || pattern_changed_;
+    /// Lets concrete go whose last bond to the ground broke in the step before.
+    void free_loose_concrete() {
+        if constexpr (P::has_bonds) {
+            if (!std::exchange(pattern_changed_, false)) return;
+            const std::vector<char> tied = network_.tied_to_ground(particles_);
+            for (Index b = 0; b < particles_.bodies(); ++b)
+                if (particles_.kind[at(b)] == Kind::concrete && !tied[at(b)]) {
+                    particles_.kind[at(b)] = Kind::grain;
+                    concrete_.set_gone(particles_.site[at(b)]);
+                    loosened_ = true;
+                }
+        }
     }
 
-    /// Renews what changes seldom: loose concrete, bodies that left, supply, near pairs.
+    /// Whether the list of near pairs may miss a contact in the step to come.
+    bool list_is_stale(Real dt) const noexcept {
+        return std::sqrt(furthest2_) + dt * std::sqrt(fastest2_) > 0.5 * list_skin_ || loosened_;
+    }
+
+    /// Renews what changes seldom: bodies that left, supply, near pairs.
     void renew(Real t, Real dt, Feed* feed) {
-        if constexpr (P::has_bonds)
-            if (pattern_changed_) set_loose_concrete_free();
-        const Index bodies_before = particles_.bodies();
         const std::vector<Index> moved = remove_departed();
         if constexpr (P::has_bonds)
-            if (pattern_changed_ || particles_.bodies() != bodies_before)
-                ledger_.left_stored += network_.prune(particles_, moved);
+            if (broken_tension_ + broken_shear_ > 0) ledger_.left_stored += network_.prune(particles_, moved);
         if (feed)
             feed->supply(particles_, t, [&](Index body) {
                 ledger_.fed_kinetic += particles_.kinetic_energy(body);
@@ -93,11 +105,13 @@ public:
         list_skin_ = std::max(skin_, 3 * dt * std::sqrt(fastest2_));  // lasts for one step at least
         ledger_.left_stored += contacts_.rebuild(find_pairs(), particles_.spheres(), moved);
         built_at_ = particles_.centre;
-        pattern_changed_ = false;
+        loosened_ = false;
         if (admitted) {
-            // Their first half kick needs forces of now. Over no time nothing is lost and no memory moves.
+            // Their first half kick needs forces of now; over no time dashpots lose nothing.
+            const Real stored_before = contacts_.stored() + network_.stored();
             evaluate(t, 0);
             kick(0);
+            ledger_.fed_stored += contacts_.stored() + network_.stored() - stored_before;
         }
     }
 
@@ -125,8 +139,6 @@ public:
     void set_skin(Real skin) noexcept { skin_ = skin; }
     Trouble take_trouble() noexcept { return std::exchange(trouble_, {}); }
 
-    P& policies() noexcept { return policies_; }
-    const P& policies() const noexcept { return policies_; }
     const Scene& scene() const noexcept { return scene_; }
     const Particles& particles() const noexcept { return particles_; }
     const Contacts<decltype(P::contact)>& contacts() const noexcept { return contacts_; }
@@ -135,7 +147,6 @@ public:
     Index broken_tension() const noexcept { return broken_tension_; }
     Index broken_shear() const noexcept { return broken_shear_; }
     Real gauge_volume() const noexcept { return gauge_volume_; }  ///< solid, net downstream [m3]
-    Real skin() const noexcept { return skin_; }
 
     /// Overlap over the smaller radius beyond which a run is wrong, whatever it computes.
     static constexpr Real overlap_limit = 0.2;
@@ -169,7 +180,11 @@ private:
         const Clump sphere = make_clump("concrete", {{Vec3::Zero(), lattice.radius}});
         for (Index s = 0; s < static_cast<Index>(lattice.sites.size()); ++s) {
             const LatticeSite& site = lattice.sites[at(s)];
-            const bool base = site.layer + 1 == lattice.count_layers;
+            // What a wall passes through stands in that wall: set free, it would be shot out of it.
+            const bool in_wall = std::any_of(
+                scene_.walls.begin(), scene_.walls.end(),
+                [&](const Plane& wall) { return wall.distance(site.centre) < (1 - 1e-6) * lattice.radius; });
+            const bool base = in_wall || site.layer + 1 == lattice.count_layers;
             const Index body = particles_.add(sphere, block.density, {.position = site.centre},
                                               base ? Kind::fixed : Kind::concrete);
             particles_.site[at(body)] = s;
@@ -301,19 +316,9 @@ private:
             trouble_ = {Trouble::Cause::lost, sums.drift.lost, -1, 0};
     }
 
-    void report_overlap(const ContactSums& contacts) {
-        const Pair& pair = contacts_.pairs()[at(contacts.deepest_pair)];
+    void report_overlap(const Pair& pair, Real overlap) {
         trouble_ = {Trouble::Cause::overlap, particles_.body[at(pair.first)],
-                    pair.second < 0 ? -1 : particles_.body[at(pair.second)], contacts.deepest};
-    }
-
-    void set_loose_concrete_free() {
-        const std::vector<char> tied = network_.tied_to_ground(particles_);
-        for (Index b = 0; b < particles_.bodies(); ++b)
-            if (particles_.kind[at(b)] == Kind::concrete && !tied[at(b)]) {
-                particles_.kind[at(b)] = Kind::grain;
-                concrete_.set_gone(particles_.site[at(b)]);
-            }
+                    pair.second < 0 ? -1 : particles_.body[at(pair.second)], overlap};
     }
 
     std::vector<Index> remove_departed() {
@@ -378,8 +383,9 @@ private:
     Real skin_ = 0, list_skin_ = 0, furthest2_ = 0, fastest2_ = 0, gauge_volume_ = 0;
     Index broken_tension_ = 0, broken_shear_ = 0;
     Real loads_time_ = 0;
-    bool loads_waiting_ = false;  ///< between the force pass and the kick that gathers its loads
-    bool pattern_changed_ = false;
+    bool loads_waiting_ = false;    ///< between the force pass and the kick that gathers its loads
+    bool pattern_changed_ = false;  ///< a bond broke
+    bool loosened_ = false;         ///< concrete came loose
     Trouble trouble_;
 };
 

@@ -18,6 +18,7 @@ enum class FractureVolume { cell, sphere };
 class Concrete {
 public:
     Concrete() = default;
+    /// Throws InputError for a site without volume.
     explicit Concrete(Lattice lattice, FractureVolume kind = FractureVolume::cell)
         : lattice_(std::move(lattice)), kind_(kind), fractured_(lattice_.sites.size(), 0),
           overflow_(lattice_.sites.size(), 0), gone_(lattice_.sites.size(), 0) {}
