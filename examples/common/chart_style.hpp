@@ -38,7 +38,7 @@ struct Curve {
 };
 
 enum class Palette {
-    wear,     ///< pale to dark brown: nothing to much
+    wear,  ///< pale to dark brown: nothing to much
 };
 
 namespace charts {

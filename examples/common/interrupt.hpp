@@ -1,5 +1,5 @@
 #pragma once
-// Ctrl-C asks a run to end well; a second Ctrl-C ends it at once.
+// Ctrl-C (or a terminal that goes away) asks a run to end well; a second Ctrl-C ends it at once.
 
 #include <signal.h>
 
@@ -9,8 +9,8 @@
 
 namespace abrade::examples {
 
-/// While it lives, the first SIGINT or SIGTERM only sets a flag, to be read between two steps; the next one
-/// kills the program as usual. The destructor puts back what was there before. Only one at a time.
+/// While it lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag, to be read between two steps; the
+/// next one kills the program as usual. The destructor puts back what was there before. Only one at a time.
 class Interrupt {
 public:
     Interrupt() {
@@ -30,7 +30,7 @@ public:
     /// Whether a signal came.
     bool requested() const noexcept { return flag() != 0; }
 
-    /// Which one: SIGINT, SIGTERM, or 0.
+    /// Which one, or 0.
     int signal_number() const noexcept { return flag(); }
 
 private:
@@ -47,8 +47,8 @@ private:
         ::raise(number);
     }
 
-    static constexpr std::array<int, 2> signals_{SIGINT, SIGTERM};
-    std::array<struct sigaction, 2> before_{};
+    static constexpr std::array<int, 3> signals_{SIGINT, SIGTERM, SIGHUP};
+    std::array<struct sigaction, 3> before_{};
 };
 
 }  // namespace abrade::examples

@@ -38,7 +38,8 @@ namespace detail {
 
 /// Depth along the centre line [mm per m3 of converted sediment], and its mean over the compared section.
 inline void compare_centre(const ChannelConfig& c, const Lattice& lattice, ChannelResults& r) {
-    const Real per_m3 = r.converted_sediment_m3 > 0 ? 1e3 / r.converted_sediment_m3 : 0;
+    const Real per_m3 =
+        r.converted_sediment_m3 > 0 ? 1e3 / r.converted_sediment_m3 : std::numeric_limits<Real>::quiet_NaN();
     Real sum = 0, worn = 0;
     Index counted = 0;
     std::vector<Real> across(static_cast<std::size_t>(r.across), 0);

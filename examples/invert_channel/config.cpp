@@ -34,11 +34,13 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
                                                .help = "of the bonded spheres",
                                                .assumption = "\"spheres of 0.02 m\" is read as the diameter",
                                                .bound = Bound::positive});
-    c.lattice.layers =
-        static_cast<Index>(in.integer("concrete.layers", {.fallback = 3,
-                                                          .help = "of spheres; the deepest is fixed",
-                                                          .assumption = "not in the text",
-                                                          .bound = Bound::positive}));
+    const auto layers = in.integer("concrete.layers", {.fallback = 3,
+                                                       .help = "of spheres; the deepest is fixed",
+                                                       .assumption = "not in the text",
+                                                       .bound = Bound::positive});
+    require(layers <= 1000, {in.where("concrete.layers") + ": concrete.layers", "at most 1000"},
+            static_cast<Real>(layers));
+    c.lattice.layers = static_cast<Index>(layers);
     c.concrete_density =
         in.number("concrete.density",
                   {.unit = "kg/m3", .fallback = 2400, .help = "of the spheres", .bound = Bound::positive});
@@ -187,6 +189,10 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
             {in.where("sediment.feed_to") + ": sediment.feed_to",
              "at most the channel's length (" + to_text(c.invert.length) + " m)", "m"},
             to);
+    require(from < to,
+            {in.where("sediment.feed_from") + ": sediment.feed_from",
+             "upstream of sediment.feed_to (" + to_text(to) + " m)", "m"},
+            from);
     feed.region = {{from, -half, 0.002}, {to, half, 0.02}};
     feed.velocity = {speed, 0, 0};
     feed.bed = [invert = c.invert](Real, Real y) { return invert.bed_height(y); };
@@ -263,12 +269,19 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
     c.parameters = in.parameters();
 
     // Whatever else the laws object to is said now, before anything is written.
-    const LinearSpring contact(c.contact);
-    const MohrCoulomb bond(c.bond);
-    const SubParticleAbrasion wear(c.wear);
-    const UniformFlow water(c.water);
-    c.invert.validate();
-    c.feed.validate();
+    const auto check = [&](const char* section, auto&& make) {
+        try {
+            make();
+        } catch (const InputError& error) {
+            throw InputError(c.source + ", [" + section + "]: " + error.what());
+        }
+    };
+    check("channel", [&] { c.invert.validate(); });
+    check("concrete", [&] { MohrCoulomb{c.bond}, check_size(c.lattice, c.invert.length, c.invert.width); });
+    check("contact", [&] { LinearSpring{c.contact}; });
+    check("wear", [&] { SubParticleAbrasion{c.wear}; });
+    check("water", [&] { UniformFlow{c.water}; });
+    check("sediment", [&] { c.feed.validate(); });
     return c;
 }
 

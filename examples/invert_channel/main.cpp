@@ -18,6 +18,7 @@
 
 #include <abrade/io/checkpoint.hpp>
 
+#include <hdf5.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -80,13 +81,18 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
     if (!file.flush()) throw FileError("cannot write '" + path.string() + "'");
 }
 
-/// The last good state of a run that failed, beside where the results would have been.
-std::filesystem::path save_last_good(const Snapshot& shot, OutputFolder& folder) {
-    const auto bodies = shot.body_fields(), sites = shot.site_fields();
-    const std::vector<FieldGroup> groups{{"bodies", bodies}, {"concrete", sites}};
-    save_fields(folder.path("last_good.h5"), groups,
-                {{"time_s", shot.time}, {"step", std::int64_t{shot.step}}});
-    return folder.publish_beside("failed") / "last_good.h5";
+/// Puts the last good state of a run that failed, and what was recorded of it, beside where the results would
+/// have been.
+void keep_failed_run(const Snapshot& shot, OutputFolder& folder) {
+    try {
+        const auto bodies = shot.body_fields(), sites = shot.site_fields();
+        const std::vector<FieldGroup> groups{{"bodies", bodies}, {"concrete", sites}};
+        save_fields(folder.path("last_good.h5"), groups,
+                    {{"time_s", shot.time}, {"step", std::int64_t{shot.step}}});
+    } catch (const std::exception& error) {
+        std::cerr << "the last good state is lost: " << error.what() << "\n";
+    }
+    std::cerr << "what there is of the run is in " << folder.publish_beside("failed").string() << "\n";
 }
 
 int run(const Options& options) {
@@ -95,11 +101,15 @@ int run(const Options& options) {
     require_gnuplot();
     if (!config.comparison.measured.empty()) read_measured_points(config.comparison.measured);
     OutputFolder folder(options.out);
+    for (const auto& left : folder.leftovers())
+        std::cerr << "note: " << left.string()
+                  << " was left by a run that was killed; delete it if you do not need it\n";
 
     auto sim = make_simulation(config);
     const Interrupt interrupt;
     LedgerHistory history;
     std::string went_wrong;
+    int code = 3;
     {
         Recorder recorder(folder.path("series"));
         Progress progress("invert channel", config.end_time);
@@ -120,26 +130,51 @@ int run(const Options& options) {
             went_wrong = error.what();
         } catch (const InputError& error) {
             throw InputError(config.source + ": " + error.what());  // what only the whole scene could tell
+        } catch (const std::exception& error) {                     // a full disk, no memory
+            progress.clear();
+            went_wrong = error.what();
+            code = 1;
         }
         history = recorder.take_history();
     }
     if (!went_wrong.empty()) {  // only now: every file of the folder must be closed
         std::cerr << "error: " << went_wrong << "\n";
-        std::cerr << "saved as " << save_last_good(sim.last_good(), folder).string() << "\n";
-        return 3;
+        keep_failed_run(sim.last_good(), folder);
+        return code;
     }
     const ChannelResults results = make_results(config, sim, std::move(history));
-    write_report(config, results, folder);
-    write_summary(config, results, folder.path("summary.json"));
+    std::string unfinished;  // what was computed is kept, whatever happens to its pictures
+    try {
+        write_summary(config, results, folder.path("summary.json"));
+        write_report(config, results, folder);
+    } catch (const std::exception& error) {
+        unfinished = error.what();
+    }
     const std::filesystem::path place = folder.publish();
 
     std::cout << sim;
     if (results.stopped)
         std::cout << "stopped early, at " << short_text(results.simulated_s) << " s of "
                   << short_text(config.end_time) << " s\n";
-    std::cout << "worn " << short_text(1e6 * results.worn_volume_m3) << " cm3; at the centre "
-              << short_text(results.centre_depth_mm_per_m3) << " mm per m3 of sediment\n"
-              << "results in " << place.string() << ", start with report.html\n";
+    const Real due = config.feed.volume_rate * results.simulated_s;
+    Real largest = 0;  // stones are fed whole
+    for (const StoneClass& stones : config.feed.classes)
+        largest = std::max(largest, pi / 6 * cube(stones.size));
+    if (results.sediment_fed_m3 < 0.95 * due - largest)
+        std::cerr << "note: the supply fell short, there was no room: " << short_text(results.sediment_fed_m3)
+                  << " of " << short_text(due) << " m3 were fed; widen the feed or raise its speed\n";
+    std::cout << "worn " << short_text(1e6 * results.worn_volume_m3) << " cm3; ";
+    if (std::isfinite(results.centre_depth_mm_per_m3))
+        std::cout << "at the centre " << short_text(results.centre_depth_mm_per_m3)
+                  << " mm per m3 of sediment\n";
+    else
+        std::cout << "no sediment has passed the gauge yet\n";
+    if (!unfinished.empty()) {
+        std::cerr << "error: " << unfinished << "\nwhat was computed is in " << place.string()
+                  << ", its pictures or its summary are not complete\n";
+        return 1;
+    }
+    std::cout << "results in " << place.string() << ", start with report.html\n";
     return 0;
 }
 
@@ -155,7 +190,8 @@ int main(int argc, char** argv) {
         ->take_all();
     app.add_option("--out", options.out, "folder of the results")->capture_default_str();
     app.add_option("--threads", options.threads, "0: OMP_NUM_THREADS or all cores")
-        ->check(CLI::NonNegativeNumber);
+        ->check(CLI::Range(0, 1024));
+    H5dont_atexit();  // files are closed here; after a full disk HDF5's own clean-up at exit would crash
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp& help) {

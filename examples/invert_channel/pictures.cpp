@@ -95,11 +95,15 @@ void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs:
                    .x = {from, to},
                    .low = {bracket.low, bracket.low},
                    .high = {bracket.high, bracket.high}}}};
-    chart.curves.push_back({.title = "simulation", .x = r.x_m, .y = smoothed(r.centre_depth_per_m3, 2)});
-    chart.curves.push_back({.title = "mean of the compared section",
-                            .x = {from, to},
-                            .y = {mean, mean},
-                            .style = CurveStyle::dashed});
+    if (std::isfinite(mean)) {
+        chart.curves.push_back({.title = "simulation", .x = r.x_m, .y = smoothed(r.centre_depth_per_m3, 2)});
+        chart.curves.push_back({.title = "mean of the compared section",
+                                .x = {from, to},
+                                .y = {mean, mean},
+                                .style = CurveStyle::dashed});
+    } else {
+        chart.title = "No sediment has passed the gauge yet";
+    }
     if (!c.comparison.measured.empty()) {
         Curve points{.title = "measured (" + c.comparison.measured.filename().string() + ")",
                      .x = {},
@@ -138,7 +142,8 @@ void draw_ledger(const ChannelResults& r, const fs::path& picture) {
 
 std::vector<ReportRow> summary_rows(const ChannelResults& r) {
     const auto row = [](const char* name, Real value, const char* unit) {
-        return ReportRow{name, short_number(value), unit};
+        return ReportRow{name, std::isfinite(value) ? short_number(value) : "no sediment has passed yet",
+                         std::isfinite(value) ? unit : ""};
     };
     return {row("simulated time", r.simulated_s, "s"),
             row("represented time (times beta)", r.represented_h, "h"),

@@ -49,6 +49,21 @@ status=0
 grep -qE 'step [0-9]+ .*with id [0-9]+ .*overlaps' soft.log || fail "runaway overlap is not explained: $(cat soft.log)"
 [ ! -e soft ] && [ -s soft.failed/last_good.h5 ] || fail "runaway overlap: wrong files"
 
+# --- pictures that fail take nothing with them: exit 1, data and summary are kept
+mkdir -p stub
+printf '#!/bin/sh\n[ "$1" = --version ] && { echo gnuplot 5.4; exit 0; }\nexit 1\n' > stub/gnuplot
+chmod +x stub/gnuplot
+status=0
+PATH="$PWD/stub:$PATH" "$program" "${short[@]}" --set run.end_time=0.01 --out unpainted > unpainted.log 2>&1 || status=$?
+[ $status -eq 1 ] || fail "no pictures: exit code $status"
+for file in summary.json series.h5; do [ -s unpainted/$file ] || fail "no pictures: $file is lost"; done
+grep -q 'null' unpainted/summary.json || fail "a depth per sediment without sediment"
+
+# --- what a killed run left is mentioned
+mkdir -p .left.partial-1
+"$program" "${short[@]}" --set run.end_time=0.001 --out left > left.log 2>&1 || fail "a run beside leftovers"
+grep -q 'left.partial-1 was left' left.log || fail "leftovers are not mentioned"
+
 # --- bad input: exit 2, one clear message, nothing written
 refused() { # refused WHAT REGEX OPTION...
     local what="$1" regex="$2" code=0

@@ -97,7 +97,7 @@ TEST_CASE("stones: radius, density, position, velocity") {
     Scene outside;
     outside.bounds = {{-1, -1, -1}, {1, 1, 1}};
     outside.add_sphere(0.02, {.position = {3, 0, 0}});
-    CHECK(has(run(outside, {.end_time = 1e-3}), "Scene.stones.position must be inside Scene.bounds"));
+    CHECK(has(run(outside, {.end_time = 1e-3}), "Scene.stones[0].position must be inside Scene.bounds"));
     Scene infinite;
     infinite.add_sphere(0.02, {.position = {std::numeric_limits<Real>::infinity(), 0, 0}});
     CHECK(has(run(infinite, {.end_time = 1e-3}), "finite"));
@@ -183,4 +183,34 @@ TEST_CASE("a clump of nothing is refused") {
     Scene scene;
     scene.add_stone(Clump{}, {});
     CHECK(has(run(scene, {.end_time = 0.1}), "make_clump"));
+}
+
+TEST_CASE("a step too small to count its steps is refused") {
+    CHECK(has(run(one_stone(), {.end_time = 1, .time_step = 1e-30}), "steps must be fewer than"));
+}
+
+TEST_CASE("slots are filled before the first run") {
+    auto sim = simulate(one_stone()).contact(law);
+    sim.run({.end_time = 1e-3});
+    CHECK_THROWS_AS(std::move(sim).wear(NoWear{}), std::logic_error);
+}
+
+TEST_CASE("bounds, outlet and gauge are checked") {
+    Scene scene = one_stone();
+    scene.outlet = nan_;
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.outlet must be finite"));
+    scene.outlet.reset();
+    scene.gauge = nan_;
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.gauge must be finite"));
+    scene = one_stone();
+    scene.stones.clear();
+    scene.bounds = {{1, 1, 1}, {-1, -1, -1}};
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.bounds must be low < high"));
+}
+
+TEST_CASE("nothing moves: the observer is still called at its times") {
+    auto sim = simulate(Scene{}).contact(law);
+    int calls = 0;
+    sim.run({.end_time = 1, .observe_every = 0.1}, [&](const auto&) { ++calls; });
+    CHECK(calls == 11);
 }

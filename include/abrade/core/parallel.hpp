@@ -40,7 +40,7 @@ void parallel_blocks(Index items, Body&& body) {
     const Index blocks = block_count(items);
     // Below a few blocks waking the other threads costs more than it saves.
 #if defined(_OPENMP)
-#pragma omp parallel for schedule(static) if (blocks > 2)
+#pragma omp parallel for schedule(dynamic) if (blocks > 2)
 #endif
     for (Index block = 0; block < blocks; ++block) {
         const Index first = block * block_size;

@@ -64,5 +64,8 @@ inline void require_not_negative(Real value, std::string_view field, std::string
                                  std::string_view remedy = {}) {
     require(value >= 0 && std::isfinite(value), {field, "finite and >= 0", unit, remedy}, value);
 }
+inline void require_finite(const Vec3& value, std::string_view field, std::string_view unit = {}) {
+    for (int a = 0; a < 3; ++a) require(std::isfinite(value[a]), {field, "finite", unit}, value[a]);
+}
 
 }  // namespace abrade

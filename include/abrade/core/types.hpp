@@ -1,6 +1,10 @@
 #pragma once
 // Number and vector types shared by every room.
 
+#if __cplusplus < 202002L
+#error "Abrade needs C++20: compile with -std=c++20 or later"
+#endif
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 

@@ -47,8 +47,9 @@ struct LatticeSize {
     Index layers = 3;
 };
 
-namespace detail {
-inline void validate(const LatticeSize& size, Real length, Real width, const char* side) {
+/// Throws InputError for a lattice over `length` x `width` [m] that has no sphere, or far too many.
+inline void check_size(const LatticeSize& size, Real length, Real width,
+                       const std::string& side = "lattice side") {
     for (const Real each : {length, width}) require_positive(each, side, "m");
     const Real shortest_side = std::min(length, width);
     require_positive(size.sphere_diameter, "LatticeSize.sphere_diameter", "m");
@@ -57,7 +58,15 @@ inline void validate(const LatticeSize& size, Real length, Real width, const cha
             {side, "at least one sphere diameter (" + to_text(size.sphere_diameter) + " m)", "m",
              "take smaller spheres or a larger body"},
             shortest_side);
+    constexpr Real most = 1e8;  // some 60 GB
+    const Real spheres = length / size.sphere_diameter * (width / size.sphere_diameter) * size.layers;
+    require(spheres <= most,
+            {"LatticeSize.sphere_diameter of " + to_text(size.sphere_diameter) + " m: spheres",
+             "at most " + to_text(most), "", "take larger spheres, fewer layers or a smaller body"},
+            spheres);
 }
+
+namespace detail {
 
 /// How many spheres fit; a body meant to hold n of them must not lose one to round-off.
 inline Index spheres_that_fit(Real length, Real diameter) {
@@ -68,7 +77,7 @@ inline Index spheres_that_fit(Real length, Real diameter) {
 /// A slab with its surface at z = 0, its centre at x = y = 0. Spacing is stretched a little, never
 /// squeezed, so that the cells fill `length` x `width`.
 inline Lattice flat_lattice(Real length, Real width, const LatticeSize& size) {
-    detail::validate(size, length, width, "flat_lattice.side");
+    check_size(size, length, width, "flat_lattice.side");
     const Real d = size.sphere_diameter;
     Lattice lattice{
         0.5 * d, detail::spheres_that_fit(length, d), detail::spheres_that_fit(width, d), size.layers, {},
@@ -92,7 +101,7 @@ inline Lattice flat_lattice(Real length, Real width, const LatticeSize& size) {
 /// spaced wider; the surface layer is the tightest and its spheres just touch at most.
 inline Lattice invert_lattice(const Invert& invert, const LatticeSize& size) {
     invert.validate();
-    detail::validate(size, invert.length, invert.width, "Invert.width or length");
+    check_size(size, invert.length, invert.width, "Invert.width or length");
     const Real d = size.sphere_diameter, radius = invert.arc_radius, span = 2 * invert.half_angle();
     Lattice lattice{0.5 * d,
                     detail::spheres_that_fit(invert.length, d),

@@ -4,6 +4,7 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,30 +13,6 @@
 namespace abrade {
 
 namespace hdf5 {
-
-/// Owns one HDF5 identifier of any kind (file, group, dataset, data space, type, property list).
-class Handle {
-public:
-    Handle() = default;
-    explicit Handle(hid_t id) noexcept : id_{id} {}
-    Handle(Handle&& other) noexcept : id_{std::exchange(other.id_, H5I_INVALID_HID)} {}
-    Handle& operator=(Handle&& other) noexcept {
-        std::swap(id_, other.id_);
-        return *this;
-    }
-    ~Handle() {
-        if (id_ >= 0) H5Idec_ref(id_);
-    }
-
-    hid_t get() const noexcept { return id_; }
-    /// False where the HDF5 call that made it failed.
-    explicit operator bool() const noexcept { return id_ >= 0; }
-    /// Gives the identifier away: the caller closes it.
-    hid_t release() noexcept { return std::exchange(id_, H5I_INVALID_HID); }
-
-private:
-    hid_t id_ = H5I_INVALID_HID;
-};
 
 /// While it lives HDF5 prints nothing; then the caller's own setting is back.
 class Quiet {
@@ -53,6 +30,32 @@ private:
     void* data_ = nullptr;
 };
 
+/// Owns one HDF5 identifier of any kind (file, group, dataset, data space, type, property list).
+class Handle {
+public:
+    Handle() = default;
+    explicit Handle(hid_t id) noexcept : id_{id} {}
+    Handle(Handle&& other) noexcept : id_{std::exchange(other.id_, H5I_INVALID_HID)} {}
+    Handle& operator=(Handle&& other) noexcept {
+        std::swap(id_, other.id_);
+        return *this;
+    }
+    ~Handle() {
+        if (id_ < 0) return;
+        const Quiet quiet;  // a full disk has been reported by then
+        H5Idec_ref(id_);
+    }
+
+    hid_t get() const noexcept { return id_; }
+    /// False where the HDF5 call that made it failed.
+    explicit operator bool() const noexcept { return id_ >= 0; }
+    /// Gives the identifier away: the caller closes it.
+    hid_t release() noexcept { return std::exchange(id_, H5I_INVALID_HID); }
+
+private:
+    hid_t id_ = H5I_INVALID_HID;
+};
+
 /// What HDF5 says went wrong in the last failed call of this thread: the innermost message of its stack.
 inline std::string reason() {
     std::string text;
@@ -61,6 +64,13 @@ inline std::string reason() {
         return 0;
     };
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_first, &text);
+    // Failures of the system come as a page of figures around the one that counts: error message = 'No space
+    // left'.
+    constexpr std::string_view system = "error message = '";
+    if (const auto at = text.find(system); at != std::string::npos) {
+        text.erase(0, at + system.size());
+        text.erase(std::min(text.find('\''), text.size()));
+    }
     return text.empty() ? std::string{"no reason given"} : text;
 }
 

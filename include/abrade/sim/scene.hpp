@@ -53,13 +53,20 @@ struct Scene {
     void validate() const {
         require(gravity.allFinite(), {"Scene.gravity", "finite", "m/s2"}, gravity.sum());
         for (const Plane& wall : walls) wall.validate();
-        for (const Stone& stone : stones) {
-            require_positive(stone.density, "Scene.stones.density", "kg/m3");
-            require(
-                bounds.contains(stone.state.position),
-                {"Scene.stones.position", "inside Scene.bounds", "m", "move the stone or widen the bounds"},
-                stone.state.position.norm());
+        for (std::size_t n = 0; n < stones.size(); ++n) {
+            const std::string name = "Scene.stones[" + std::to_string(n) + "]";
+            const BodyState& state = stones[n].state;
+            require_positive(stones[n].density, name + ".density", "kg/m3");
+            require_finite(state.velocity, name + ".velocity", "m/s");
+            require_finite(state.angular_velocity, name + ".angular_velocity", "rad/s");
+            require(bounds.contains(state.position),
+                    {name + ".position", "inside Scene.bounds", "m", "move the stone or widen the bounds"},
+                    state.position.norm());
         }
+        require((bounds.high - bounds.low).minCoeff() > 0, {"Scene.bounds", "low < high", "m"},
+                (bounds.high - bounds.low).minCoeff());
+        for (const auto& [place, name] : {std::pair(outlet, "Scene.outlet"), std::pair(gauge, "Scene.gauge")})
+            require(!place || std::isfinite(*place), {name, "finite", "m"}, place.value_or(0));
         if (concrete) {
             require_positive(concrete->density, "Scene.concrete.density", "kg/m3");
             require(!concrete->lattice.sites.empty(), {"Scene.concrete.lattice", "of at least one sphere"},

@@ -62,6 +62,7 @@ public:
 
     template <class L>
     auto contact(L law) && {
+        check_not_run();
         static_assert(ContactLaw<L>, "Simulation::contact(law): the law misses what the notes below name");
         if constexpr (ContactLaw<L>)
             return Simulation<L, B, W, F, D>{std::move(scene_), std::move(law),    std::move(bond_),
@@ -71,6 +72,7 @@ public:
     }
     template <class L>
     auto bond(L law) && {
+        check_not_run();
         static_assert(BondLaw<L>, "Simulation::bond(law): the law misses what the notes below name");
         if constexpr (BondLaw<L>)
             return Simulation<C, L, W, F, D>{std::move(scene_), std::move(contact_), std::move(law),
@@ -80,6 +82,7 @@ public:
     }
     template <class L>
     auto wear(L law) && {
+        check_not_run();
         static_assert(WearLaw<L>, "Simulation::wear(law): the law misses what the notes below name");
         if constexpr (WearLaw<L>)
             return Simulation<C, B, L, F, D>{std::move(scene_), std::move(contact_), std::move(bond_),
@@ -89,6 +92,7 @@ public:
     }
     template <class L, class Drag = std::conditional_t<std::same_as<L, NoFluid>, NoDrag, CliftGauvin>>
     auto fluid(L law, Drag drag = Drag{}) && {
+        check_not_run();
         static_assert(FluidModel<L>, "Simulation::fluid(law): the fluid misses what the notes below name");
         static_assert(DragLaw<Drag>,
                       "Simulation::fluid(law, drag): the drag law misses what the notes below name");
@@ -163,6 +167,10 @@ private:
         return std::chrono::duration<Real>(Clock::now() - start).count();
     }
 
+    void check_not_run() const {
+        if (world_) throw std::logic_error("Simulation: fill the slots before the first run");
+    }
+
     void advance(const RunOptions& options, auto&& observer) {
         prepare(options);
         const auto clock_start = Clock::now();
@@ -222,7 +230,10 @@ private:
                      std::string(stable_.limit) + ")",
                  "s", "take a smaller step, softer springs or heavier spheres"},
                 time_step_);
-        if (!std::isfinite(time_step_)) time_step_ = std::max(options.end_time - time_, 1e-300);
+        if (!std::isfinite(time_step_)) {  // nothing moves
+            const Real left = std::max(options.end_time - time_, 1e-300);
+            time_step_ = options.observe_every > 0 ? std::min(options.observe_every, left) : left;
+        }
         balance();
     }
 
