@@ -3,6 +3,7 @@
 
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/coupling/drag.hpp>
+#include <abrade/dem/hertz_mindlin.hpp>
 #include <abrade/dem/linear_spring.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/geometry/stone_shapes.hpp>

@@ -12,9 +12,7 @@ struct Throwing {
     abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(const abrade::ContactKinematics<abrade::Real>&,
                                                                         const Memory<abrade::Real>&) const;
     abrade::Real stable_dt(abrade::Real, abrade::Real) const noexcept;
-    abrade::Real stiffness() const noexcept;
-    abrade::Real tangential_stiffness() const noexcept;
-    abrade::Real damping_ratio() const noexcept;
+    abrade::ContactRigidity rigidity(abrade::Real) const noexcept;
 };
 
 int main() { abrade::simulate({}).contact(Throwing{{}}).run({.end_time = 1}); }

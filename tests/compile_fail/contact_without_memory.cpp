@@ -8,9 +8,7 @@ struct Forgetful {
     explicit Forgetful(Params) {}
     const Params& params() const noexcept;
     abrade::Real stable_dt(abrade::Real, abrade::Real) const noexcept;
-    abrade::Real stiffness() const noexcept;
-    abrade::Real tangential_stiffness() const noexcept;
-    abrade::Real damping_ratio() const noexcept;
+    abrade::ContactRigidity rigidity(abrade::Real) const noexcept;
 };
 
 int main() { abrade::simulate({}).contact(Forgetful{{}}).run({.end_time = 1}); }

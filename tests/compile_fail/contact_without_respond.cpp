@@ -10,9 +10,7 @@ struct Mute {
     explicit Mute(Params) {}
     const Params& params() const noexcept;
     abrade::Real stable_dt(abrade::Real, abrade::Real) const noexcept;
-    abrade::Real stiffness() const noexcept;
-    abrade::Real tangential_stiffness() const noexcept;
-    abrade::Real damping_ratio() const noexcept;
+    abrade::ContactRigidity rigidity(abrade::Real) const noexcept;
 };
 
 int main() { abrade::simulate({}).contact(Mute{{}}).run({.end_time = 1}); }

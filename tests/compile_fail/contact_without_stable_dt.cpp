@@ -11,9 +11,7 @@ struct Reckless {
     const Params& params() const noexcept;
     abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(const abrade::ContactKinematics<abrade::Real>&,
                                                                         const Memory<abrade::Real>&) const noexcept;
-    abrade::Real stiffness() const noexcept;
-    abrade::Real tangential_stiffness() const noexcept;
-    abrade::Real damping_ratio() const noexcept;
+    abrade::ContactRigidity rigidity(abrade::Real) const noexcept;
 };
 
 int main() { abrade::simulate({}).contact(Reckless{{}}).run({.end_time = 1}); }

@@ -15,8 +15,6 @@ struct Trusting {
     abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(const abrade::ContactKinematics<abrade::Real>&,
                                                                         const Memory<abrade::Real>&) const noexcept;
     abrade::Real stable_dt(abrade::Real, abrade::Real) const noexcept;
-    abrade::Real stiffness() const noexcept;
-    abrade::Real tangential_stiffness() const noexcept;
-    abrade::Real damping_ratio() const noexcept;
+    abrade::ContactRigidity rigidity(abrade::Real) const noexcept;
 };
 static_assert(abrade::ContactLaw<Trusting>);

@@ -46,7 +46,7 @@ TEST_CASE("a spring of no length, or along the normal, turns into none, without 
 }
 
 TEST_CASE("normal spring: at rest it pushes k delta, stores 1/2 k delta^2 and loses nothing") {
-    const auto spring = NormalSpring<Real>::at(1e-4, 0, 1e6, 50, 1e-5);
+    const auto spring = NormalSpring<Real>::pushing(100, 0.005, 50, 0, 1e-5);
     CHECK(spring.force == doctest::Approx(100).epsilon(1e-15));
     CHECK(spring.stored == doctest::Approx(0.005).epsilon(1e-15));
     CHECK(spring.lost == 0);
@@ -64,15 +64,17 @@ TEST_CASE("a contact has lasted for the share of the step since it began") {
 
 TEST_CASE("normal spring: never pulls; what the clamp holds back is lost") {
     const Real k = 1e6, c = 500, dt = 1e-5;
-    const auto spring = NormalSpring<Real>::at(1e-5, -1, k, c, dt);  // push 10 N, dashpot -500 N
+    const auto spring =
+        NormalSpring<Real>::pushing(k * 1e-5, 0.5 * k * 1e-10, c, -1, dt);  // push 10 N, dashpot -500 N
     CHECK(spring.force == 0);
     CHECK(spring.lost == doctest::Approx(10 * 1 * dt));  // the spring relaxes at 1 m/s against nothing
 
     Random random;
     for (int n = 0; n < 100'000; ++n) {
         const Real overlap = random.size(-12, -2), approach = random.uniform(-1, 1) * random.size(-6, 2);
-        const auto s = NormalSpring<Real>::at(overlap, approach, random.size(3, 9), random.size(-3, 5),
-                                              random.size(-8, -3));
+        const Real push = random.size(3, 9) * overlap;
+        const auto s = NormalSpring<Real>::pushing(push, 0.5 * push * overlap, random.size(-3, 5), approach,
+                                                   random.size(-8, -3));
         REQUIRE(s.force >= 0);
         REQUIRE(s.lost >= 0);
         REQUIRE(s.stored >= 0);

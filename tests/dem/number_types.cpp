@@ -1,9 +1,11 @@
 // One source of the contact law for several number types.
+#include <abrade/core/simd.hpp>
 #include <abrade/dem/linear_spring.hpp>
 
 #include <doctest/doctest.h>
 
 #include <random>
+#include <vector>
 
 using namespace abrade;
 
@@ -21,11 +23,11 @@ TEST_CASE("float answers as double does, to float's precision") {
                    velocity(u(random), u(random), u(random));
         const Vec3 held = 1e-6 * Vec3(u(random), u(random), u(random));
         const Real overlap = 5e-4 + 4e-4 * u(random);
-        const auto wide = law.respond(ContactKinematics<Real>{normal, overlap, velocity, 0.01, 0.005, 1e-5},
+        const auto wide = law.respond(ContactKinematics<Real>{normal, overlap, velocity, 100, 200, 1e-5},
                                       LinearSpring::Memory<Real>{held});
         const auto narrow =
             law.respond(ContactKinematics<float>{normal.cast<float>(), static_cast<float>(overlap),
-                                                 velocity.cast<float>(), 0.01f, 0.005f, 1e-5},
+                                                 velocity.cast<float>(), 100, 200, 1e-5},
                         LinearSpring::Memory<float>{held.cast<float>()});
         const Real size = 1e6 * overlap;
         // Float's 6e-8, times what is cancelled: the tangential part of a velocity, a root of a difference.
@@ -37,9 +39,61 @@ TEST_CASE("float answers as double does, to float's precision") {
 }
 
 TEST_CASE("at rest float's smaller range makes no 0/0") {
-    const auto still = law.respond(ContactKinematics<float>{{0, 0, 1}, 1e-4f, {0, 0, 0}, 0.01f, 0.005f, 1e-5},
+    const auto still = law.respond(ContactKinematics<float>{{0, 0, 1}, 1e-4f, {0, 0, 0}, 100, 200, 1e-5},
                                    LinearSpring::Memory<float>{});
     CHECK(static_cast<Real>(still.load.force.z()) == doctest::Approx(100).epsilon(1e-5));
     CHECK(still.load.force.head<2>().norm() == 0.0f);
     CHECK(still.load.lost_tangential == 0.0f);
+}
+
+TEST_CASE("a pack of contacts answers as its contacts do one by one") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<Real> u(-1, 1);
+    const auto anything = [&] { return Vec3(u(random), u(random), u(random)); };
+    int sliding = 0, apart = 0;
+    for (int n = 0; n < 2000; ++n) {
+        std::vector<ContactKinematics<Real>> one;
+        std::vector<LinearSpring::Memory<Real>> held;
+        ContactKinematics<Pack> all{};
+        LinearSpring::Memory<Pack> held_by_all{};
+        all.time_step = 1e-6;
+        // Every other pack sticks in all lanes, and so stays out of the rarer branches.
+        const Real speed = n % 2 ? 1 : 1e-3;
+        for (int lane = 0; lane < pack_lanes; ++lane) {
+            const Vec3 normal = anything().normalized();
+            // Some contacts have just begun, some are apart.
+            const Real overlap = n % 2 ? 5e-5 * u(random) * u(random) : 5e-5;
+            one.push_back({normal, overlap, speed * anything(), 100, 200, 1e-6, speed * 1e-6 * anything()});
+            held.push_back({1e-6 * anything()});
+            for (int a = 0; a < 3; ++a) {
+                all.normal[a].set(lane, normal[a]);
+                all.velocity[a].set(lane, one.back().velocity[a]);
+                all.travel[a].set(lane, one.back().travel[a]);
+                held_by_all.spring[a].set(lane, held.back().spring[a]);
+            }
+            all.overlap.set(lane, overlap), all.inverse_mass.set(lane, 100), all.curvature.set(lane, 200);
+        }
+        const auto answer = law.respond(all, held_by_all);
+        for (int lane = 0; lane < pack_lanes; ++lane) {
+            const auto k = static_cast<std::size_t>(lane);
+            const auto alone = law.respond(one[k], held[k]);
+            const Real push = 1e6 * std::abs(one[k].overlap) + 10 * speed;
+            // rsqrt and reciprocal are good to 2 units in the last place; a root of a difference loses half.
+            for (int a = 0; a < 3; ++a) {
+                REQUIRE(answer.load.force[a][lane] ==
+                        doctest::Approx(alone.load.force[a]).scale(push).epsilon(1e-9));
+                REQUIRE(answer.memory.spring[a][lane] ==
+                        doctest::Approx(alone.memory.spring[a]).scale(1e-6).epsilon(1e-9));
+            }
+            REQUIRE(answer.load.stored[lane] ==
+                    doctest::Approx(alone.load.stored).scale(push * 5e-5).epsilon(1e-9));
+            REQUIRE(answer.load.lost_normal[lane] ==
+                    doctest::Approx(alone.load.lost_normal).scale(push * speed * 1e-6).epsilon(1e-9));
+            REQUIRE(answer.load.lost_tangential[lane] ==
+                    doctest::Approx(alone.load.lost_tangential).scale(push * 1e-6).epsilon(1e-9));
+            sliding += alone.load.lost_tangential > 0, apart += one[k].overlap <= 0;
+        }
+    }
+    CHECK(sliding > 1000);
+    CHECK(apart > 1000);
 }

@@ -26,9 +26,7 @@ struct Faulty {
         return {{force * c.normal, 0, 0, 0}, {}};
     }
     Real stable_dt(Real, Real) const noexcept { return 1e-3; }
-    Real stiffness() const noexcept { return 1e6; }
-    Real tangential_stiffness() const noexcept { return 0; }
-    Real damping_ratio() const noexcept { return 0; }
+    ContactRigidity rigidity(Real) const noexcept { return {1e6, 0, 0}; }
 };
 static_assert(ContactLaw<Faulty>);
 

@@ -9,12 +9,22 @@
 #include <string>
 #include <vector>
 
-/// Rows of tests/verification/data/NAME by column name; what is no number is left out of its row.
-inline std::vector<std::map<std::string, double>> reference_table(const std::string& name) {
+/// One row by column name: what is a number, and every cell as it stands.
+struct ReferenceRow {
+    std::map<std::string, double> numbers;
+    std::map<std::string, std::string> texts;
+
+    double at(const std::string& column) const { return numbers.at(column); }
+    bool contains(const std::string& column) const { return numbers.contains(column); }
+    bool is(const std::string& column, const std::string& text) const { return texts.at(column) == text; }
+};
+
+/// Rows of tests/verification/data/NAME.
+inline std::vector<ReferenceRow> reference_table(const std::string& name) {
     std::ifstream file(std::string(ABRADE_TEST_DATA) + "/" + name);
     REQUIRE_MESSAGE(file.good(), "cannot read ", name);
     std::vector<std::string> columns;
-    std::vector<std::map<std::string, double>> rows;
+    std::vector<ReferenceRow> rows;
     for (std::string line; std::getline(file, line);) {
         if (line.empty() || line[0] == '#') continue;
         std::vector<std::string> cells;
@@ -27,9 +37,10 @@ inline std::vector<std::map<std::string, double>> reference_table(const std::str
         REQUIRE(cells.size() == columns.size());
         auto& row = rows.emplace_back();
         for (std::size_t c = 0; c < cells.size(); ++c) {
+            row.texts[columns[c]] = cells[c];
             char* end = nullptr;
             const double value = std::strtod(cells[c].c_str(), &end);
-            if (end != cells[c].c_str() && value == value) row[columns[c]] = value;
+            if (end != cells[c].c_str() && value == value) row.numbers[columns[c]] = value;
         }
     }
     REQUIRE(!rows.empty());

@@ -117,8 +117,8 @@ private:
                                Real cs) const noexcept {
         const Real dt = bond.time_step, approach = -bond.velocity.dot(bond.normal);
         const Vec3 slip = bond.velocity + approach * bond.normal;
-        const auto normal =
-            NormalSpring<Real>::at(std::max(bond.compression, 0.0), approach, stiffness(), cn, dt);
+        const Real depth = std::max(bond.compression, 0.0), push = stiffness() * depth;
+        const auto normal = NormalSpring<Real>::pushing(push, 0.5 * push * depth, cn, approach, dt);
         const auto tangential = SlidingSpring<Real>::at(before, shear, slip, tan_phi_ * normal.force,
                                                         tangential_stiffness(), cs, dt);
         const Vec3 force = normal.force * bond.normal + tangential.force;

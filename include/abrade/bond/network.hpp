@@ -172,8 +172,8 @@ private:
             const ContactKinematics<Real> contact{.normal = bond.normal,
                                                   .overlap = bond.compression,
                                                   .velocity = bond.velocity,
-                                                  .effective_mass = bond.effective_mass,
-                                                  .effective_radius = 0.5 * bond.radius,
+                                                  .inverse_mass = 1 / bond.effective_mass,
+                                                  .curvature = 2 / bond.radius,
                                                   .time_step = dt,
                                                   .travel = bond.travel};
             const auto worn = wear.increment(

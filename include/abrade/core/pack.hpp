@@ -1,6 +1,6 @@
 #pragma once
 // The few operations beside arithmetic that a law's source needs, so that one source serves a plain
-// number and, where a type offers its own overloads, a SIMD pack of contacts or a dual number.
+// number, a SIMD pack of contacts (core/simd.hpp), or a dual number.
 
 #include <abrade/core/types.hpp>
 
@@ -19,6 +19,22 @@ using std::sqrt;
 template <std::floating_point Number>
 constexpr Number select(bool condition, Number yes, Number no) noexcept {
     return condition ? yes : no;
+}
+
+/// Whether a condition holds in any lane: what `if` asks before the rarer branch of a law. Lanes that do not
+/// need that branch must come out of it unchanged, by `select`.
+constexpr bool any(bool condition) noexcept { return condition; }
+
+/// 1 / sqrt(x).
+template <std::floating_point Number>
+Number rsqrt(Number x) noexcept {
+    return 1 / std::sqrt(x);
+}
+
+/// 1 / x.
+template <std::floating_point Number>
+constexpr Number reciprocal(Number x) noexcept {
+    return 1 / x;
 }
 
 /// The smallest positive normal number: what a divisor is kept above.

@@ -15,8 +15,8 @@ struct ContactKinematics {
     Vec3Of<Number> normal;    ///< unit, from j to i
     Number overlap;           ///< [m], > 0 in contact
     Vec3Of<Number> velocity;  ///< of i relative to j at the contact point [m/s]
-    Number effective_mass;    ///< m_i m_j / (m_i + m_j) [kg]
-    Number effective_radius;  ///< r_i r_j / (r_i + r_j) [m]
+    Number inverse_mass;      ///< 1/m_i + 1/m_j, one over the effective mass [1/kg]
+    Number curvature;         ///< 1/r_i + 1/r_j, one over the effective radius [1/m]
     Real time_step;           ///< [s]
     /// Of i relative to j at the contact point, over the step that led here [m]: dt times the velocity
     /// halfway, which is what the positions really did. A spring fed with anything else gains or loses
@@ -39,14 +39,34 @@ struct ContactResponse {
     Memory memory;  ///< to be handed back at the next step; committed by the engine
 };
 
+/// How stiff a contact of a sphere is at most, for what has to be sized beforehand.
+struct ContactRigidity {
+    Real normal = 0, tangential = 0;  ///< [N/m]
+    Real damping_ratio = 0;           ///< share of critical damping [-]
+};
+
+/// Stable step [s] of a sphere in the midst of twelve others, the most that can touch it, three of them
+/// damping at a time. With k_n, k_t the springs, m the mass and dashpots c = 2 zeta sqrt(k m/2):
+///   dt = 2 / (sqrt(omega^2 + c^2) + c),
+///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(2 (c_n + 2 c_t), 10 c_t) / m.
+/// omega^2: twice the stiffness of twelve contacts, of which four point along any axis (8 k_n) while all
+/// twelve hold it from turning, against the inertia 0.4 m r^2. c counts in full, not by half: dashpots see a
+/// velocity predicted from the last acceleration.
+inline Real stable_dt_among_twelve(const ContactRigidity& contact, Real mass) noexcept {
+    const Real kn = contact.normal, kt = contact.tangential;
+    const Real root = 2 * contact.damping_ratio * std::sqrt(0.5 * mass);
+    const Real cn = root * std::sqrt(kn), ct = root * std::sqrt(kt);
+    const Real omega2 = std::max(8 * (kn + 2 * kt), 40 * kt) / mass;
+    const Real c = std::max(2 * (cn + 2 * ct), 10 * ct) / mass;
+    return 2 / (std::sqrt(omega2 + c * c) + c);
+}
+
 /// A contact law is a pure function of kinematics and memory.
 /// - `Memory<Number>` value-initialises to "no contact yet";
 /// - `respond` handles overlap <= 0 too: no force, the memory cleared, what it still stored booked as lost;
 /// - `stable_dt(mass, radius)` is a time step [s] that is safe for a sphere of that mass and radius in the
 ///   densest surroundings;
-/// - `stiffness()`, `tangential_stiffness()` [N/m] and `damping_ratio()` [-] let the engine sum up what acts
-/// on
-///   one body.
+/// - `rigidity(radius)` lets the engine sum up what acts on one body.
 // clang-format off
 template <class L>
 concept RemembersContacts = requires { typename L::template Memory<Real>; } &&
@@ -57,9 +77,7 @@ concept ContactLaw = Law<L> && RemembersContacts<L> && requires(const L& law, co
                                         const typename L::template Memory<Real>& memory) {
     { law.respond(contact, memory) } noexcept -> std::same_as<ContactResponse<Real, typename L::template Memory<Real>>>;
     { law.stable_dt(Real{}, Real{}) } -> std::same_as<Real>;
-    { law.stiffness() } -> std::same_as<Real>;
-    { law.tangential_stiffness() } -> std::same_as<Real>;
-    { law.damping_ratio() } -> std::same_as<Real>;
+    { law.rigidity(Real{}) } -> std::same_as<ContactRigidity>;
 };
 // clang-format on
 
@@ -71,9 +89,8 @@ template <class Number>
 Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number>& normal) noexcept {
     const Number length2 = spring.dot(spring);
     const Vec3Of<Number> flat = spring - spring.dot(normal) * normal;
-    const Number flat2 = flat.dot(flat);
-    const Number scale = select(flat2 > tiny<Number>, sqrt(length2 / max(flat2, tiny<Number>)), Number(0));
-    return scale * flat;
+    const Number product = length2 * flat.dot(flat), least = Number(tiny<Number>);
+    return select(product > least, length2 * rsqrt(max(product, least)), Number(0)) * flat;
 }
 
 /// How much of the step that led to t_n a contact has lasted: 1, but for the step in which it begins, tau =
@@ -82,23 +99,30 @@ Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number
 template <class Number>
 Number begun_share(Number overlap, Number approach, Real dt) noexcept {
     const Number way = approach * Number(dt);
-    return select(overlap < way, overlap / max(way, tiny<Number>), Number(1));
+    const auto begins = overlap < way;
+    if (!any(begins)) return Number(1);
+    return select(begins, overlap / max(way, Number(tiny<Number>)), Number(1));
 }
 
-/// Spring and dashpot along the normal, without tension.
+/// A spring that pushes with `push` and holds `stored`, and a dashpot beside it, along the normal.
 template <class Number>
 struct NormalSpring {
-    Number force;   ///< >= 0 [N]
+    Number force;   ///< [N]
     Number stored;  ///< [J]
-    Number lost;    ///< over the step [J]
+    Number lost;    ///< over the step [J], >= 0
 
-    /// f = max(k overlap + c v, 0), v the speed of approach; what the clamp holds back of the spring's
-    /// push while it relaxes is lost, like what the dashpot takes.
-    static NormalSpring at(Number overlap, Number approach, Number stiffness, Number dashpot,
-                           Real dt) noexcept {
-        const Number push = stiffness * overlap;
+    /// Without tension: f = max(push + c v, 0), v the speed of approach. What the clamp holds back of the
+    /// spring's push while it relaxes is lost, like what the dashpot takes.
+    static NormalSpring pushing(Number push, Number stored, Number dashpot, Number approach,
+                                Real dt) noexcept {
         const Number force = max(push + dashpot * approach, Number(0));
-        return {force, Number(0.5) * push * overlap, max((force - push) * approach, Number(0)) * Number(dt)};
+        return {force, stored, max((force - push) * approach, Number(0)) * Number(dt)};
+    }
+    /// With tension: f = push + c v.
+    static NormalSpring pulling(Number push, Number stored, Number dashpot, Number approach,
+                                Real dt) noexcept {
+        const Number damping = dashpot * approach;
+        return {push + damping, stored, damping * approach * Number(dt)};
     }
 };
 
@@ -118,18 +142,29 @@ struct SlidingSpring {
     static SlidingSpring at(const Vec3Of<Number>& before, const Vec3Of<Number>& trial,
                             const Vec3Of<Number>& slip, Number limit, Number stiffness, Number dashpot,
                             Real dt) noexcept {
-        const Number length = sqrt(trial.dot(trial)), kept = min(length, limit / stiffness);
-        const Vec3Of<Number> spring = (kept / max(length, tiny<Number>)) * trial;
+        const Number trial2 = trial.dot(trial), slip2 = slip.dot(slip), least = Number(tiny<Number>);
+        SlidingSpring sticks{-stiffness * trial - dashpot * slip, trial, Number(0.5) * stiffness * trial2,
+                             dashpot * slip2 * Number(dt)};
+        const Number limit2 = limit * limit;
+        const auto slides =
+            (sticks.force.dot(sticks.force) > limit2) | (stiffness * stiffness * trial2 > limit2);
+        if (!any(slides)) return sticks;
+
+        const Number length = sqrt(trial2), kept = min(length, limit / stiffness);
+        const Vec3Of<Number> spring = (kept / max(length, least)) * trial;
         const Number start = sqrt(before.dot(before));
         // Largest share c <= 1 of the dashpot with |k s + c g v| <= limit: a quadratic in c.
-        const Number a = dashpot * dashpot * slip.dot(slip);
-        const Number b = stiffness * dashpot * spring.dot(slip);
-        const Number room = max(limit * limit - stiffness * stiffness * kept * kept, Number(0));
-        const Number share = select(
-            a > tiny<Number>, min(Number(1), (sqrt(b * b + a * room) - b) / max(a, tiny<Number>)), Number(0));
-        return {-stiffness * spring - share * dashpot * slip, spring, Number(0.5) * stiffness * kept * kept,
-                Number(0.5) * stiffness * (start + kept) * (length - kept) +
-                    share * dashpot * slip.dot(slip) * Number(dt)};
+        const Number a = dashpot * dashpot * slip2, b = stiffness * dashpot * spring.dot(slip);
+        const Number room = max(limit2 - stiffness * stiffness * kept * kept, Number(0));
+        const Number share =
+            select(a > least, min(Number(1), (sqrt(b * b + a * room) - b) / max(a, least)), Number(0));
+        return {select(slides, Vec3Of<Number>(-stiffness * spring - share * dashpot * slip), sticks.force),
+                select(slides, spring, sticks.spring),
+                select(slides, Number(0.5) * stiffness * kept * kept, sticks.stored),
+                select(slides,
+                       Number(0.5) * stiffness * (start + kept) * (length - kept) +
+                           share * dashpot * slip2 * Number(dt),
+                       sticks.lost)};
     }
 };
 

@@ -173,7 +173,7 @@ private:
             contact.overlap = reach - distance;
             if (contact.overlap <= 0 && !load.active) return {};
             contact.normal = plane.normal;
-            contact.effective_radius = a.radius[i];
+            contact.curvature = 1 / a.radius[i];
             load.arm_first = a.radius[i] - 0.5 * contact.overlap;
             contact.velocity = a.centre_velocity[i] - load.arm_first * a.spin[i].cross(contact.normal);
             contact.travel =
@@ -189,7 +189,7 @@ private:
             contact.normal = apart / std::max(distance, 1e-300);
             contact.overlap = reach - distance;
             smaller = std::min(a.radius[i], a.radius[j]);
-            contact.effective_radius = a.radius[i] * a.radius[j] / reach;
+            contact.curvature = 1 / a.radius[i] + 1 / a.radius[j];
             load.arm_first = a.radius[i] - 0.5 * contact.overlap;
             arm_second = a.radius[j] - 0.5 * contact.overlap;
             contact.velocity = a.centre_velocity[i] - a.centre_velocity[j] -
@@ -201,7 +201,7 @@ private:
             inverse_mass += a.inverse_mass[body_j];
             concrete_sides += a.site[body_j] >= 0 ? 1 : 0;
         }
-        contact.effective_mass = 1 / inverse_mass;
+        contact.inverse_mass = inverse_mass;
 
         const auto [answer, memory] = law.respond(contact, memory_[p]);
         memory_[p] = memory;

@@ -2,31 +2,9 @@
 // The linear spring-dashpot-slider contact.
 
 #include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/damping.hpp>
 
 namespace abrade {
-
-/// Ratio of critical damping zeta that gives restitution e when the contact cannot pull.
-/// A contact that ends when its force falls to zero has
-///   e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),             zeta < 1,
-///   e = exp(-2 zeta acosh(zeta) / sqrt(zeta^2 - 1)),            zeta > 1,
-/// inverted here by bisection. Throws InputError for a restitution outside (0, 1]. T. Schwager, T. Poeschel,
-/// Granular Matter 9 (2007) 465, doi:10.1007/s10035-007-0065-z.
-inline Real damping_ratio_without_tension(Real restitution) {
-    require(restitution > 0 && restitution <= 1, {"restitution", "in (0, 1]"}, restitution);
-    const auto restitution_of = [](Real zeta) {
-        const Real s2 = 1 - zeta * zeta;
-        if (std::abs(s2) < 1e-12) return std::exp(-2.0);
-        const Real angle = s2 > 0 ? std::acos(zeta) : std::acosh(zeta);
-        return std::exp(-2 * zeta * angle / std::sqrt(std::abs(s2)));
-    };
-    Real low = 0, high = 1;
-    while (restitution_of(high) > restitution) high *= 2;
-    for (int i = 0; i < 200 && high - low > 1e-16 * high; ++i) {
-        const Real middle = 0.5 * (low + high);
-        (restitution_of(middle) > restitution ? low : high) = middle;
-    }
-    return restitution == 1 ? 0 : 0.5 * (low + high);
-}
 
 /// Linear spring, dashpot and Coulomb slider (P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47,
 /// doi:10.1680/geot.1979.29.1.47):
@@ -80,18 +58,22 @@ public:
         const auto touching = contact.overlap > Number(0);
         const Number approach = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
-        const Number begun = begun_share(contact.overlap, approach, contact.time_step);
+        // What does not touch must not send a pack into the rarer branches: deep, and held by any friction.
+        const Number far = Number(std::numeric_limits<float>::max());
+        const Number begun = begun_share(select(touching, contact.overlap, far), approach, contact.time_step);
         const Number acting = select(begun < Number(1), Number(0.5) + begun, Number(1));
-        const Number root_mass = acting * sqrt(contact.effective_mass);
+        const Number root_mass = acting * rsqrt(contact.inverse_mass);
 
-        const auto normal = NormalSpring<Number>::at(max(contact.overlap, Number(0)), approach, kn,
-                                                     root_mass * Number(dashpot_normal_), contact.time_step);
+        const Number overlap = max(contact.overlap, Number(0)), push = kn * overlap;
+        const auto normal =
+            NormalSpring<Number>::pushing(push, Number(0.5) * push * overlap,
+                                          root_mass * Number(dashpot_normal_), approach, contact.time_step);
         const Vec3Of<Number> before = turn_into_plane(memory.spring, contact.normal);
         const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
         const Vec3Of<Number> trial = before + begun * way;
-        const auto tangential =
-            SlidingSpring<Number>::at(before, trial, slip, Number(params_.friction) * normal.force, kt,
-                                      root_mass * Number(dashpot_tangential_), contact.time_step);
+        const Number limit = select(touching, Number(params_.friction) * normal.force, far);
+        const auto tangential = SlidingSpring<Number>::at(
+            before, trial, slip, limit, kt, root_mass * Number(dashpot_tangential_), contact.time_step);
 
         const Vec3Of<Number> none = Vec3Of<Number>::Zero();
         const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
@@ -107,17 +89,11 @@ public:
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
     Real damping_ratio() const noexcept { return damping_ratio_; }
 
-    /// For a sphere in the midst of twelve others, the most that can touch it, three of them damping at a
-    /// time:
-    ///   dt = 2 / (sqrt(omega^2 + c^2) + c),
-    ///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(2 (c_n + 2 c_t), 10 c_t) / m.
-    /// c counts in full, not by half: dashpots see a velocity predicted from the last acceleration.
-    Real stable_dt(Real mass, Real /*radius*/) const noexcept {
-        const Real kn = stiffness(), kt = tangential_stiffness(), root = std::sqrt(0.5 * mass);
-        const Real cn = root * dashpot_normal_, ct = root * dashpot_tangential_;
-        const Real omega2 = std::max(8 * (kn + 2 * kt), 40 * kt) / mass;
-        const Real c = std::max(2 * (cn + 2 * ct), 10 * ct) / mass;
-        return 2 / (std::sqrt(omega2 + c * c) + c);
+    ContactRigidity rigidity(Real /*radius*/) const noexcept {
+        return {stiffness(), tangential_stiffness(), damping_ratio_};
+    }
+    Real stable_dt(Real mass, Real radius) const noexcept {
+        return stable_dt_among_twelve(rigidity(radius), mass);
     }
 
 private:

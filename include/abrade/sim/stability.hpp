@@ -104,13 +104,13 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
             c.add(n, dashpot(bond.damping_ratio(), bond.stiffness(), effective),
                   dashpot(bond.damping_ratio(), bond.tangential_stiffness(), effective));
         }
-        k.add_anywhere(2, contact.stiffness(), contact.tangential_stiffness());
-        c.add_anywhere(2, dashpot(contact.damping_ratio(), contact.stiffness(), mass),
-                       dashpot(contact.damping_ratio(), contact.tangential_stiffness(), mass));
+        const Real radius = particles.radius[static_cast<std::size_t>(particles.first_sphere[i])];
+        const ContactRigidity touch = contact.rigidity(radius);
+        k.add_anywhere(2, touch.normal, touch.tangential);
+        c.add_anywhere(2, dashpot(touch.damping_ratio, touch.normal, mass),
+                       dashpot(touch.damping_ratio, touch.tangential, mass));
         step.lower(detail::damped_step(k.bound(), c.bound()), "bonded concrete");
-        step.lower(
-            contact.stable_dt(mass, particles.radius[static_cast<std::size_t>(particles.first_sphere[i])]),
-            "contacts of loose concrete");
+        step.lower(contact.stable_dt(mass, radius), "contacts of loose concrete");
     }
     if (feed)
         for (const StoneClass& stones : feed->classes) {

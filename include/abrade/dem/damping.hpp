@@ -1,0 +1,41 @@
+#pragma once
+// From a restitution to the damping that brings it about.
+
+#include <abrade/core/require.hpp>
+
+#include <cmath>
+
+namespace abrade {
+
+/// Ratio of critical damping zeta that gives restitution e when the contact cannot pull.
+/// A contact that ends when its force falls to zero has
+///   e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),             zeta < 1,
+///   e = exp(-2 zeta acosh(zeta) / sqrt(zeta^2 - 1)),            zeta > 1,
+/// inverted here by bisection. Throws InputError for a restitution outside (0, 1]. T. Schwager, T. Poeschel,
+/// Granular Matter 9 (2007) 465, doi:10.1007/s10035-007-0065-z.
+inline Real damping_ratio_without_tension(Real restitution) {
+    require(restitution > 0 && restitution <= 1, {"restitution", "in (0, 1]"}, restitution);
+    const auto restitution_of = [](Real zeta) {
+        const Real s2 = 1 - zeta * zeta;
+        if (std::abs(s2) < 1e-12) return std::exp(-2.0);
+        const Real angle = s2 > 0 ? std::acos(zeta) : std::acosh(zeta);
+        return std::exp(-2 * zeta * angle / std::sqrt(std::abs(s2)));
+    };
+    Real low = 0, high = 1;
+    while (restitution_of(high) > restitution) high *= 2;
+    for (int i = 0; i < 200 && high - low > 1e-16 * high; ++i) {
+        const Real middle = 0.5 * (low + high);
+        (restitution_of(middle) > restitution ? low : high) = middle;
+    }
+    return restitution == 1 ? 0 : 0.5 * (low + high);
+}
+
+/// The same for a contact that may pull until its overlap ends: zeta = -ln e / sqrt(pi^2 + ln^2 e). Throws
+/// InputError for a restitution outside (0, 1].
+inline Real damping_ratio_with_tension(Real restitution) {
+    require(restitution > 0 && restitution <= 1, {"restitution", "in (0, 1]"}, restitution);
+    const Real log_e = std::log(restitution);
+    return -log_e / std::sqrt(square(pi) + square(log_e));
+}
+
+}  // namespace abrade

@@ -1,0 +1,147 @@
+#pragma once
+// The contact of elastic spheres: Hertz along the normal, Mindlin without slip along the tangent.
+
+#include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/damping.hpp>
+
+namespace abrade {
+
+/// Hertz-Mindlin with Coulomb's slider. delta overlap [m], R effective radius [m], m effective mass [kg]:
+///   f_n = 4/3 E* sqrt(R delta) delta + c_n v_n,    stored 2/5 of f_elastic delta
+///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,       k_t = 8 G* sqrt(R delta)
+///   1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2,     1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2,  G = E / (2 (1 +
+///   nu)) c = 2 sqrt(5/6) zeta sqrt(S m),  S_n = 2 E* sqrt(R delta),  S_t = k_t
+/// The damping makes restitution independent of speed (Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71
+/// (1992) 239, doi:10.1016/0032-5910(92)88030-L); zeta follows from e by the closed form of the linear
+/// spring, which holds here too, with or without tension.
+///
+/// The tangential spring is incremental: while k_t grows its force stays, while k_t falls the force falls
+/// with it (C. Thornton, S. Cummins, P. Cleary, Powder Technol. 233 (2013) 30,
+/// doi:10.1016/j.powtec.2012.08.012). A spring of total form makes energy as it is loaded. What the spring
+/// gives up as k_t changes counts as lost to sliding: in a real contact it is lost to slip at the rim of the
+/// area of contact. Valid while the area of contact is small: delta below some 2 % of the radius.
+class HertzMindlin {
+public:
+    static constexpr std::string_view name = "HertzMindlin";
+
+    struct Params {
+        Real youngs = 0;        ///< E of the spheres [Pa]
+        Real poisson = 0.25;    ///< nu of the spheres, in (-1, 0.5] [-]
+        Real restitution = 1;   ///< of a normal impact, in (0, 1] [-]
+        Real friction = 0;      ///< mu [-]
+        bool tension = false;   ///< whether damping may pull; e is met either way
+        Real youngs_other = 0;  ///< E of the other partner [Pa]; 0: the same material
+        Real poisson_other = 0.25;
+        /// Overlap over radius up to which `stable_dt` is stable [-]. Contacts stiffen as they are pressed.
+        Real largest_overlap = 0.01;
+
+        void validate() const {
+            require_positive(youngs, "HertzMindlin.youngs", "Pa", "1e7 Pa is soft, stone is near 5e10 Pa");
+            require(poisson > -1 && poisson <= 0.5, {"HertzMindlin.poisson", "in (-1, 0.5]"}, poisson);
+            require(restitution > 0 && restitution <= 1, {"HertzMindlin.restitution", "in (0, 1]"},
+                    restitution);
+            require_not_negative(friction, "HertzMindlin.friction");
+            require_not_negative(youngs_other, "HertzMindlin.youngs_other", "Pa");
+            require(poisson_other > -1 && poisson_other <= 0.5,
+                    {"HertzMindlin.poisson_other", "in (-1, 0.5]"}, poisson_other);
+            require(largest_overlap > 0 && largest_overlap <= 0.2,
+                    {"HertzMindlin.largest_overlap", "in (0, 0.2]"}, largest_overlap);
+        }
+        void visit(auto&& f) const {
+            f("youngs", youngs, "Pa");
+            f("poisson", poisson, "-");
+            f("restitution", restitution, "-");
+            f("friction", friction, "-");
+            f("tension", tension ? 1 : 0, "-");
+            f("youngs_other", youngs_other, "Pa");
+            f("poisson_other", poisson_other, "-");
+            f("largest_overlap", largest_overlap, "-");
+        }
+    };
+
+    template <class Number>
+    struct Memory {
+        Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< f_t / k_t [m]
+        Number stiffness = Number(0);                    ///< k_t when it was stored [N/m]
+    };
+
+    explicit HertzMindlin(Params params) : params_(params) {
+        params_.validate();
+        const bool same = params_.youngs_other == 0;
+        const Real e1 = params_.youngs, nu1 = params_.poisson, e2 = same ? e1 : params_.youngs_other,
+                   nu2 = same ? nu1 : params_.poisson_other;
+        effective_youngs_ = 1 / ((1 - square(nu1)) / e1 + (1 - square(nu2)) / e2);
+        effective_shear_ = 1 / (2 * (2 - nu1) * (1 + nu1) / e1 + 2 * (2 - nu2) * (1 + nu2) / e2);
+        damping_ratio_ = params_.tension ? damping_ratio_with_tension(params_.restitution)
+                                         : damping_ratio_without_tension(params_.restitution);
+    }
+    const Params& params() const noexcept { return params_; }
+
+    template <class Number>
+    ContactResponse<Number, Memory<Number>> respond(const ContactKinematics<Number>& contact,
+                                                    const Memory<Number>& memory) const noexcept {
+        const auto touching = contact.overlap > Number(0);
+        const Number least = Number(tiny<Number>), far = Number(std::numeric_limits<float>::max());
+        const Number overlap = max(contact.overlap, Number(0));
+        const Number half_width2 = overlap * reciprocal(contact.curvature);  // R delta
+        const Number half_width = half_width2 * rsqrt(max(half_width2, least));
+        const Number sn = Number(2 * effective_youngs_) * half_width,
+                     kt = Number(8 * effective_shear_) * half_width;
+
+        const Number approach = -contact.velocity.dot(contact.normal);
+        const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
+        const Number begun = begun_share(select(touching, contact.overlap, far), approach, contact.time_step);
+        const Number acting = select(begun < Number(1), Number(0.5) + begun, Number(1));
+        // 2 sqrt(5/6) zeta sqrt(S_n m); S_t differs from S_n by a constant.
+        const Number dashpot = acting * Number(2 * std::sqrt(5.0 / 6) * damping_ratio_) * sn *
+                               rsqrt(max(sn * contact.inverse_mass, least));
+
+        const Number push = Number(2.0 / 3) * sn * overlap, held = Number(0.4) * push * overlap;
+        const auto normal =
+            params_.tension ? NormalSpring<Number>::pulling(push, held, dashpot, approach, contact.time_step)
+                            : NormalSpring<Number>::pushing(push, held, dashpot, approach, contact.time_step);
+
+        // As k_t grows the spring shortens so that its force stays; as k_t falls the spring stays.
+        const Number stiffer = min(Number(1), memory.stiffness / max(kt, least));
+        const Vec3Of<Number> before = stiffer * turn_into_plane(memory.spring, contact.normal);
+        const Number held_before = Number(0.5) * memory.stiffness * memory.spring.dot(memory.spring);
+        const Number given_up = max(held_before - Number(0.5) * kt * before.dot(before), Number(0));
+        const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
+        const Vec3Of<Number> trial = before + begun * way;
+        const Number limit = select(touching, Number(params_.friction) * max(normal.force, Number(0)), far);
+        const auto tangential = SlidingSpring<Number>::at(
+            before, trial, slip, limit, max(kt, least),
+            dashpot * Number(std::sqrt(4 * effective_shear_ / effective_youngs_)), contact.time_step);
+
+        const Vec3Of<Number> none = Vec3Of<Number>::Zero();
+        const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
+        return {
+            {select(touching, force, none), select(touching, normal.stored + tangential.stored, Number(0)),
+             select(touching, normal.lost, Number(0)),
+             select(touching, tangential.lost + given_up, held_before)},
+            {select(touching, tangential.spring, none), select(touching, kt, Number(0))}};
+    }
+
+    Real effective_youngs() const noexcept { return effective_youngs_; }  ///< E* [Pa]
+    Real effective_shear() const noexcept { return effective_shear_; }    ///< G* [Pa]
+    Real damping_ratio() const noexcept { return damping_ratio_; }
+
+    /// Tangents of the force at the largest overlap, against an equal sphere.
+    ContactRigidity rigidity(Real radius) const noexcept {
+        const Real half_width = radius * std::sqrt(0.5 * params_.largest_overlap);
+        return {2 * effective_youngs_ * half_width, 8 * effective_shear_ * half_width,
+                std::sqrt(5.0 / 6) * damping_ratio_};
+    }
+    Real stable_dt(Real mass, Real radius) const noexcept {
+        return stable_dt_among_twelve(rigidity(radius), mass);
+    }
+
+private:
+    Params params_;
+    Real effective_youngs_ = 0, effective_shear_ = 0, damping_ratio_ = 0;
+};
+
+static_assert(ContactLaw<HertzMindlin>);
+static_assert(!ContactLaw<HertzMindlin::Params>);
+
+}  // namespace abrade
