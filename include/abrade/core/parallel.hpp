@@ -48,6 +48,16 @@ void parallel_blocks(Index items, Body&& body) {
     }
 }
 
+/// Calls `body(task)` for each of a few large tasks, in parallel; the same thread gets the same tasks each
+/// time, so that what they work on stays in its cache. `body` must not throw.
+template <class Body>
+void parallel_tasks(Index tasks, Body&& body) {
+#if defined(_OPENMP)
+#pragma omp parallel for schedule(static) if (tasks > 1)
+#endif
+    for (Index task = 0; task < tasks; ++task) body(task);
+}
+
 /// Calls `body(i)` for each i in [0, items), in parallel. `body` must not throw.
 template <class Body>
 void parallel_for(Index items, Body&& body) {

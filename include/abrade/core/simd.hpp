@@ -7,6 +7,7 @@
 #include <abrade/core/pack.hpp>
 
 #include <array>
+#include <cstring>
 #include <string_view>
 
 #if defined(__SSE2__)
@@ -53,6 +54,11 @@ struct Pack {
     Real operator[](int lane) const noexcept { return lanes[lane]; }
     void set(int lane, Real value) noexcept { lanes[lane] = value; }
     static Pack load(const Real* aligned) noexcept { return *reinterpret_cast<const Native*>(aligned); }
+    static Pack load_from_anywhere(const Real* values) noexcept {
+        Pack pack;
+        std::memcpy(&pack.lanes, values, sizeof(Native));
+        return pack;
+    }
     void store(Real* aligned) const noexcept { *reinterpret_cast<Native*>(aligned) = lanes; }
 
     friend Pack operator+(Pack a, Pack b) noexcept { return a.lanes + b.lanes; }
@@ -98,6 +104,19 @@ inline bool any(PackMask mask) noexcept {
     return _mm_movemask_pd(reinterpret_cast<__m128d>(mask.bits)) != 0;
 #else
     return (mask.bits[0] | mask.bits[1]) != 0;
+#endif
+}
+
+/// Bit k is set where lane k holds.
+inline unsigned lanes_of(PackMask mask) noexcept {
+#if defined(__AVX512DQ__)
+    return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask.bits));
+#elif defined(__AVX2__) && defined(__FMA__)
+    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask.bits)));
+#else
+    unsigned lanes = 0;
+    for (int lane = 0; lane < pack_lanes; ++lane) lanes |= static_cast<unsigned>(mask[lane]) << lane;
+    return lanes;
 #endif
 }
 
@@ -158,6 +177,12 @@ struct alignas(4 * sizeof(Real)) Quad {
 
     friend Quad operator+(const Quad& a, const Quad& b) noexcept { return {a.value + b.value}; }
     friend Quad operator*(const Quad& a, const Quad& b) noexcept { return {a.value * b.value}; }
+    friend Quad least(const Quad& a, const Quad& b) noexcept {
+        return {b.value < a.value ? b.value : a.value};
+    }
+    friend Quad most(const Quad& a, const Quad& b) noexcept {
+        return {a.value < b.value ? b.value : a.value};
+    }
 };
 
 /// One quad of each lane, and its four components as packs.

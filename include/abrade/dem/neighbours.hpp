@@ -1,62 +1,84 @@
 #pragma once
-// Which spheres are near each other: a cell list for spheres of several sizes, and its brute-force twin.
+// Which spheres are near each other: cell lists for spheres of several sizes, and their brute-force twin.
 
-#include <abrade/core/types.hpp>
+#include <abrade/core/parallel.hpp>
+#include <abrade/core/simd.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
+#include <bit>
 #include <compare>
+#include <limits>
 #include <span>
-#include <vector>
 
 namespace abrade {
 
-/// Two spheres, first < second.
-struct Pair {
+/// How many periods an image is away along each axis: -1, 0 or 1.
+using ImageShift = std::array<std::int8_t, 3>;
+
+/// Two spheres that are near each other. The second is meant where its image stands: at its centre plus
+/// shift times period.
+struct NearPair {
     Index first = 0, second = 0;
-    auto operator<=>(const Pair&) const = default;
+    ImageShift shift{};
+    auto operator<=>(const NearPair&) const = default;
 };
 
 /// The spheres to search. `passive` spheres do not look for each other (bonded concrete, a fixed bed).
 struct NeighbourQuery {
-    std::span<const Vec3> centre;  ///< [m]
+    std::span<const Vec3> centre;  ///< [m], within one period
     std::span<const Real> radius;  ///< [m]
     std::span<const Index> body;   ///< spheres of one body are never a pair
     std::span<const char> passive;
-    Real skin = 0;  ///< pairs whose surfaces are nearer than this [m]
+    Real skin = 0;               ///< pairs whose surfaces are nearer than this [m]
+    Vec3 period = Vec3::Zero();  ///< of space along each axis [m]; 0 where it is open
+
+    Vec3 image(std::size_t sphere, const ImageShift& shift) const noexcept {
+        return centre[sphere] + Vec3(shift[0] * period.x(), shift[1] * period.y(), shift[2] * period.z());
+    }
 };
 
 namespace detail {
 
-inline bool is_candidate(const NeighbourQuery& q, std::size_t i, std::size_t j) noexcept {
-    return q.body[i] != q.body[j] && !(q.passive[i] && q.passive[j]);
+/// The shifts that a sphere's images may have: 1 for open space, 3 per periodic axis.
+inline std::vector<ImageShift> image_shifts(const Vec3& period) {
+    std::vector<ImageShift> shifts;
+    const auto range = [&](int axis) { return period[axis] > 0 ? 1 : 0; };
+    for (int i = -range(0); i <= range(0); ++i)
+        for (int j = -range(1); j <= range(1); ++j)
+            for (int k = -range(2); k <= range(2); ++k)
+                shifts.push_back(
+                    {static_cast<std::int8_t>(i), static_cast<std::int8_t>(j), static_cast<std::int8_t>(k)});
+    return shifts;
 }
 
-inline bool is_near(const NeighbourQuery& q, std::size_t i, std::size_t j) noexcept {
-    return (q.centre[i] - q.centre[j]).squaredNorm() < square(q.radius[i] + q.radius[j] + q.skin);
+/// Every pair once, whichever of the two found it.
+inline NearPair ordered(std::size_t i, std::size_t j, ImageShift shift) noexcept {
+    if (i < j) return {static_cast<Index>(i), static_cast<Index>(j), shift};
+    for (std::int8_t& s : shift) s = static_cast<std::int8_t>(-s);
+    return {static_cast<Index>(j), static_cast<Index>(i), shift};
 }
 
-inline Pair ordered(std::size_t i, std::size_t j) noexcept {
-    return {static_cast<Index>(std::min(i, j)), static_cast<Index>(std::max(i, j))};
-}
-
-/// Spheres of one size class, sorted into cells.
+/// Spheres of one size class and one kind, and images of theirs, sorted into cells.
 class CellGrid {
 public:
-    CellGrid(const NeighbourQuery& q, std::span<const Index> members, Real largest_radius)
-        : largest_radius_(largest_radius) {
-        Vec3 low = q.centre[static_cast<std::size_t>(members[0])], high = low;
-        for (const Index m : members) {
-            low = low.cwiseMin(q.centre[static_cast<std::size_t>(m)]);
-            high = high.cwiseMax(q.centre[static_cast<std::size_t>(m)]);
+    struct Member {
+        Index sphere;
+        ImageShift shift;
+    };
+
+    CellGrid(const NeighbourQuery& q, std::span<const Member> members, std::size_t level_, bool passive_)
+        : level(level_), passive(passive_) {
+        low_ = Vec3::Constant(std::numeric_limits<Real>::infinity());
+        Vec3 high = -low_;
+        for (const Member& m : members) {
+            const auto s = static_cast<std::size_t>(m.sphere);
+            low_ = low_.cwiseMin(q.image(s, m.shift)), high = high.cwiseMax(q.image(s, m.shift));
+            largest_radius = std::max(largest_radius, q.radius[s]);
         }
-        low_ = low;
         cell_ = 2 * largest_radius + q.skin;
         // Far-flung spheres must not blow the grid up: coarser cells are slower, never wrong.
-        const Real most_cells = 4.0 * static_cast<Real>(members.size()) + 1e5;
-        const Vec3 size = high - low;
-        while ((size / cell_ + Vec3::Ones()).prod() > most_cells) cell_ *= 1.5;
+        const Real most_cells = 4.0 * static_cast<Real>(members.size()) + 1000;
+        const Vec3 size = high - low_;
+        while ((size / cell_ + Vec3::Ones()).prod() > most_cells) cell_ *= 1.25;
         for (int a = 0; a < 3; ++a)
             count_[static_cast<std::size_t>(a)] = static_cast<Index>(size[a] / cell_) + 1;
         start_.assign(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
@@ -65,34 +87,61 @@ public:
                       0);
         std::vector<std::size_t> cell_of(members.size());
         for (std::size_t k = 0; k < members.size(); ++k) {
-            const Vec3 at = (q.centre[static_cast<std::size_t>(members[k])] - low_) / cell_;
+            const Vec3 at =
+                (q.image(static_cast<std::size_t>(members[k].sphere), members[k].shift) - low_) / cell_;
             cell_of[k] = index(clamp(at.x(), 0), clamp(at.y(), 1), clamp(at.z(), 2));
             ++start_[cell_of[k] + 1];
         }
         for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
         std::vector<Index> fill(start_.begin(), start_.end() - 1);
         members_.resize(members.size());
-        for (std::size_t k = 0; k < members.size(); ++k)
-            members_[static_cast<std::size_t>(fill[cell_of[k]]++)] = members[k];
+        // A whole pack may be loaded from any place: what lies beyond the end is never near.
+        for (auto& column : columns_) column.assign(members.size() + pack_lanes, 1e100);
+        for (std::size_t k = 0; k < members.size(); ++k) {
+            const auto to = static_cast<std::size_t>(fill[cell_of[k]]++);
+            const auto s = static_cast<std::size_t>(members[k].sphere);
+            members_[to] = members[k];
+            const Vec3 at = q.image(s, members[k].shift);
+            for (int a = 0; a < 3; ++a) columns_[static_cast<std::size_t>(a)][to] = at[a];
+            columns_[3][to] = q.radius[s];
+        }
     }
 
-    /// Calls `visit(j)` for every member that a sphere of `radius` at x may be near to.
+    Index size() const noexcept { return static_cast<Index>(members_.size()); }
+    const Member& member(Index m) const noexcept { return members_[static_cast<std::size_t>(m)]; }
+
+    /// Calls `visit(member)` for the members after `after` in the grid's order that are nearer than `skin`
+    /// to a sphere of `radius` at x.
     template <class Visit>
-    void around(const Vec3& x, Real radius, Real skin, Visit&& visit) const {
-        const Real reach = radius + largest_radius_ + skin;
+    void visit_near(const Vec3& x, Real radius, Real skin, Index after, Visit&& visit) const {
+        const Real reach = radius + largest_radius + skin;
         const Vec3 from = ((x.array() - reach).matrix() - low_) / cell_,
                    to = ((x.array() + reach).matrix() - low_) / cell_;
         for (int a = 0; a < 3; ++a)
             if (to[a] < 0 || from[a] >= static_cast<Real>(count_[static_cast<std::size_t>(a)])) return;
+        const Index j_first = clamp(from.y(), 1), j_last = clamp(to.y(), 1);
+        const Index k_first = clamp(from.z(), 2), k_last = clamp(to.z(), 2);
         for (Index i = clamp(from.x(), 0); i <= clamp(to.x(), 0); ++i)
-            for (Index j = clamp(from.y(), 1); j <= clamp(to.y(), 1); ++j) {
+            for (Index j = j_first; j <= j_last; ++j) {
                 // Cells of one row along z are contiguous.
-                const Index first = start_[index(i, j, clamp(from.z(), 2))],
-                            last = start_[index(i, j, clamp(to.z(), 2)) + 1];
-                for (Index m = first; m < last; ++m)
-                    visit(static_cast<std::size_t>(members_[static_cast<std::size_t>(m)]));
+                const Index last = start_[index(i, j, k_last) + 1];
+                for (Index m = std::max(start_[index(i, j, k_first)], after + 1); m < last; m += pack_lanes) {
+                    const auto load = [&](std::size_t c) {
+                        return Pack::load_from_anywhere(columns_[c].data() + m);
+                    };
+                    const Pack dx = load(0) - Pack(x.x()), dy = load(1) - Pack(x.y()),
+                               dz = load(2) - Pack(x.z()), near = load(3) + Pack(radius + skin);
+                    unsigned lanes = lanes_of(dx * dx + dy * dy + dz * dz < near * near);
+                    if (last - m < pack_lanes) lanes &= (1u << (last - m)) - 1;
+                    for (; lanes != 0; lanes &= lanes - 1)
+                        visit(members_[static_cast<std::size_t>(m + std::countr_zero(lanes))]);
+                }
             }
     }
+
+    std::size_t level;
+    bool passive;
+    Real largest_radius = 0;
 
 private:
     Index clamp(Real at, std::size_t axis) const noexcept {
@@ -105,58 +154,100 @@ private:
                static_cast<std::size_t>(k);
     }
 
-    Vec3 low_ = Vec3::Zero();
-    Real cell_ = 0, largest_radius_ = 0;
+    Vec3 low_;
+    Real cell_ = 0;
     std::array<Index, 3> count_{};
-    std::vector<Index> start_, members_;
+    std::vector<Index> start_;
+    std::vector<Member> members_;
+    std::array<std::vector<Real>, 4> columns_;  ///< x, y, z, radius of the members [m]
 };
+
+/// One grid for each power of two in radius, for active and for passive spheres apart, so that a boulder
+/// among sand costs no more than the sand that it covers.
+inline std::vector<CellGrid> cell_grids(const NeighbourQuery& q, std::span<const std::size_t> level) {
+    const std::size_t levels = *std::max_element(level.begin(), level.end()) + 1;
+    const Real largest = *std::max_element(q.radius.begin(), q.radius.end());
+    Vec3 low = q.centre[0], high = low;
+    for (const Vec3& x : q.centre) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    std::vector<std::vector<CellGrid::Member>> members(2 * levels);
+    const auto of = [&](std::size_t s) -> auto& { return members[2 * level[s] + (q.passive[s] ? 1 : 0)]; };
+    const std::vector<ImageShift> shifts = image_shifts(q.period);
+    for (std::size_t s = 0; s < q.centre.size(); ++s) {
+        of(s).push_back({static_cast<Index>(s), {}});
+        const Real reach = q.radius[s] + largest + q.skin;
+        for (const ImageShift& shift : shifts) {
+            const Vec3 at = q.image(s, shift);
+            const bool within = ((at - low).array() > -reach).all() && ((high - at).array() > -reach).all();
+            if (shift != ImageShift{} && within) of(s).push_back({static_cast<Index>(s), shift});
+        }
+    }
+    std::vector<CellGrid> grids;
+    for (std::size_t m = 0; m < members.size(); ++m)
+        if (!members[m].empty()) grids.emplace_back(q, members[m], m / 2, m % 2 == 1);
+    return grids;
+}
 
 }  // namespace detail
 
-/// All pairs nearer than the skin, sorted. Tests every pair: the twin that `near_pairs` is held against.
-inline std::vector<Pair> near_pairs_brute_force(const NeighbourQuery& q) {
-    std::vector<Pair> pairs;
+/// All pairs nearer than the skin, first < second. Tests every pair: the twin that `near_pairs` is held
+/// against.
+inline std::vector<NearPair> near_pairs_brute_force(const NeighbourQuery& q) {
+    std::vector<NearPair> pairs;
     for (std::size_t i = 0; i < q.centre.size(); ++i)
         for (std::size_t j = i + 1; j < q.centre.size(); ++j)
-            if (detail::is_candidate(q, i, j) && detail::is_near(q, i, j))
-                pairs.push_back(detail::ordered(i, j));
+            for (const ImageShift& shift : detail::image_shifts(q.period)) {
+                const bool candidate = q.body[i] != q.body[j] && !(q.passive[i] && q.passive[j]);
+                const Real near = q.radius[i] + q.radius[j] + q.skin;
+                if (candidate && (q.centre[i] - q.image(j, shift)).squaredNorm() < square(near))
+                    pairs.push_back({static_cast<Index>(i), static_cast<Index>(j), shift});
+            }
     return pairs;
 }
 
-/// All pairs nearer than the skin, sorted. Spheres are put into one grid per power of two in radius, so
-/// that a boulder among sand costs no more than the sand that it covers.
-inline std::vector<Pair> near_pairs(const NeighbourQuery& q) {
-    std::vector<Pair> pairs;
-    if (q.centre.empty()) return pairs;
+/// The same, by cells; in an order that depends on the spheres alone.
+inline std::vector<NearPair> near_pairs(const NeighbourQuery& q) {
+    if (q.centre.empty()) return {};
     const Real smallest = *std::min_element(q.radius.begin(), q.radius.end());
-    const auto level_of = [&](Real radius) { return static_cast<std::size_t>(std::log2(radius / smallest)); };
+    std::vector<std::size_t> level(q.radius.size());
+    for (std::size_t s = 0; s < level.size(); ++s)
+        level[s] = static_cast<std::size_t>(std::log2(q.radius[s] / smallest));
+    const std::vector<detail::CellGrid> grids = detail::cell_grids(q, level);
 
-    std::vector<std::vector<Index>> members;
-    std::vector<Real> largest;
-    for (std::size_t i = 0; i < q.centre.size(); ++i) {
-        const std::size_t level = level_of(q.radius[i]);
-        if (level >= members.size()) members.resize(level + 1), largest.resize(level + 1, 0);
-        members[level].push_back(static_cast<Index>(i));
-        largest[level] = std::max(largest[level], q.radius[i]);
+    std::vector<NearPair> pairs;
+    std::vector<std::vector<NearPair>> found;
+    for (const detail::CellGrid& own : grids) {
+        if (own.passive) continue;
+        found.assign(static_cast<std::size_t>(block_count(own.size())), {});
+        parallel_blocks(own.size(), [&](Index block, Index first, Index last) {
+            std::vector<NearPair>& here = found[static_cast<std::size_t>(block)];
+            for (Index m = first; m < last; ++m) {
+                const auto seeker = own.member(m);
+                const auto i = static_cast<std::size_t>(seeker.sphere);
+                for (const detail::CellGrid& other : grids) {
+                    // Two seekers find each other twice: the larger level, then the earlier member, reports.
+                    const bool same = &other == &own;
+                    if (!other.passive && other.level > own.level) continue;
+                    if (!same && seeker.shift != ImageShift{}) continue;
+                    const Vec3 x = q.image(i, seeker.shift);
+                    other.visit_near(x, q.radius[i], q.skin, same ? m : -1, [&](const auto& found_member) {
+                        const auto j = static_cast<std::size_t>(found_member.sphere);
+                        if (q.body[i] == q.body[j]) return;
+                        const bool seeker_is_image = seeker.shift != ImageShift{},
+                                   found_is_image = found_member.shift != ImageShift{};
+                        if (seeker_is_image && found_is_image) return;
+                        ImageShift shift = found_member.shift;
+                        if (same && (seeker_is_image || found_is_image)) {
+                            // First with an image of the second, second with an image of the first: one pair.
+                            if ((seeker_is_image ? j : i) > (seeker_is_image ? i : j)) return;
+                            if (seeker_is_image) return here.push_back(detail::ordered(j, i, seeker.shift));
+                        }
+                        here.push_back(detail::ordered(i, j, shift));
+                    });
+                }
+            }
+        });
+        for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());
     }
-    std::vector<detail::CellGrid> grids;
-    std::vector<std::size_t> grid_level;
-    for (std::size_t level = 0; level < members.size(); ++level)
-        if (!members[level].empty())
-            grids.emplace_back(q, members[level], largest[level]), grid_level.push_back(level);
-
-    for (std::size_t i = 0; i < q.centre.size(); ++i) {
-        if (q.passive[i]) continue;
-        const std::size_t own = level_of(q.radius[i]);
-        for (std::size_t g = 0; g < grids.size(); ++g)
-            grids[g].around(q.centre[i], q.radius[i], q.skin, [&](std::size_t j) {
-                // Two searchers find each other twice: the larger level, then the larger index, reports.
-                const bool mine = q.passive[j] || grid_level[g] < own || (grid_level[g] == own && j < i);
-                if (mine && detail::is_candidate(q, i, j) && detail::is_near(q, i, j))
-                    pairs.push_back(detail::ordered(i, j));
-            });
-    }
-    std::sort(pairs.begin(), pairs.end());
     return pairs;
 }
 

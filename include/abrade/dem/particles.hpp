@@ -19,7 +19,8 @@ struct BodyState {
 };
 
 /// Columns over bodies and over their member spheres. Member spheres of a body stand next to each other.
-/// `velocity` and `angular_momentum` belong to the same time as `position` between steps.
+/// In a simulation they are as of the last observation; `velocity` and `angular_momentum` belong to the same
+/// time as `position`.
 struct Particles {
     // [body]
     std::vector<Vec3> position;           ///< [m]
@@ -38,12 +39,9 @@ struct Particles {
 
     // [sphere]
     std::vector<Index> body;
-    std::vector<Vec3> offset;                    ///< from the body's centroid, principal frame [m]
-    std::vector<Real> radius;                    ///< [m]
-    std::vector<Vec3> centre;                    ///< world frame [m]
-    std::vector<Vec3> centre_velocity;           ///< as predicted for the force pass [m/s]
-    std::vector<Vec3> spin;                      ///< the body's angular velocity, as predicted [rad/s]
-    std::vector<Vec3> centre_drift, spin_drift;  ///< the same halfway through the step that led here
+    std::vector<Vec3> offset;  ///< from the body's centroid, principal frame [m]
+    std::vector<Real> radius;  ///< [m]
+    std::vector<Vec3> centre;  ///< world frame [m]
 
     Index next_id = 0;
 
@@ -110,41 +108,9 @@ struct Particles {
             body.push_back(b);
             offset.push_back(member.centre);
             radius.push_back(member.radius);
-            centre.push_back(Vec3::Zero());
-            centre_velocity.push_back(Vec3::Zero());
-            spin.push_back(Vec3::Zero());
-            centre_drift.push_back(Vec3::Zero());
-            spin_drift.push_back(Vec3::Zero());
+            centre.push_back(state.position + orientation.back() * member.centre);
         }
-        place_spheres(b, velocity.back(), angular_velocity(b));
         return b;
-    }
-
-    /// Puts the member spheres of body b where its position and orientation say.
-    void place_spheres(Index b, const Vec3& body_velocity, const Vec3& body_spin) noexcept {
-        place_spheres(b, body_velocity, body_spin, body_velocity, body_spin);
-    }
-    void place_spheres(Index b, const Vec3& body_velocity, const Vec3& body_spin, const Vec3& drift_velocity,
-                       const Vec3& drift_spin) noexcept {
-        const auto i = static_cast<std::size_t>(b);
-        const auto first = static_cast<std::size_t>(first_sphere[i]);
-        if (sphere_count[i] == 1) {
-            centre[first] = position[i];
-            centre_velocity[first] = body_velocity;
-            spin[first] = body_spin;
-            centre_drift[first] = drift_velocity;
-            spin_drift[first] = drift_spin;
-            return;
-        }
-        const Mat3 rotation = orientation[i].toRotationMatrix();
-        for (std::size_t s = first; s < first + static_cast<std::size_t>(sphere_count[i]); ++s) {
-            const Vec3 arm = rotation * offset[s];
-            centre[s] = position[i] + arm;
-            centre_velocity[s] = body_velocity + body_spin.cross(arm);
-            spin[s] = body_spin;
-            centre_drift[s] = drift_velocity + drift_spin.cross(arm);
-            spin_drift[s] = drift_spin;
-        }
     }
 
     /// Takes out the bodies marked in `gone` [body]; the order of the rest stays. Returns where each old
@@ -176,9 +142,7 @@ private:
             f(inverse_mass);
         f(inverse_inertia), f(volume), f(kind), f(id), f(site), f(first_sphere), f(sphere_count);
     }
-    void for_each_sphere_column(auto&& f) {
-        f(body), f(offset), f(radius), f(centre), f(centre_velocity), f(spin), f(centre_drift), f(spin_drift);
-    }
+    void for_each_sphere_column(auto&& f) { f(body), f(offset), f(radius), f(centre); }
 };
 
 }  // namespace abrade

@@ -33,4 +33,10 @@ struct Box {
     }
 };
 
+/// Space that repeats itself.
+struct Periodic {
+    Vec3 low = Vec3::Zero();     ///< of the piece that is meant [m]
+    Vec3 period = Vec3::Zero();  ///< its size along each axis [m]; 0 where space is open
+};
+
 }  // namespace abrade

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <span>
 
 namespace abrade {
 
@@ -80,10 +81,10 @@ public:
 
     /// Adds the stones that are due at time t and find a place. Calls `added(body)` for each.
     template <class Added>
-    void supply(Particles& particles, Real t, Added&& added) {
+    void supply(Particles& particles, std::span<const Plane> walls, Real t, Added&& added) {
         const Real due = params_.volume_rate * std::max(0.0, t - params_.start);
         while (supplied_ + templates_[next_].volume <= due) {
-            const auto state = free_place(particles);
+            const auto state = free_place(particles, walls);
             if (!state) return;
             added(particles.add(templates_[next_], params_.density, *state, Kind::stone));
             supplied_ += templates_[next_].volume;
@@ -101,8 +102,8 @@ private:
         while (next_ + 1 < cumulative_.size() && cumulative_[next_] <= at) ++next_;
     }
 
-    /// A random place whose bounding sphere touches no stone; nothing after some tries.
-    std::optional<BodyState> free_place(const Particles& particles) {
+    /// A random place whose bounding sphere touches neither a stone nor a wall; nothing after some tries.
+    std::optional<BodyState> free_place(const Particles& particles, std::span<const Plane> walls) {
         constexpr int tries = 20;
         const Real reach = templates_[next_].bounding_radius;
         for (int attempt = 0; attempt < tries; ++attempt) {
@@ -117,7 +118,10 @@ private:
             state.orientation = random_orientation();
             state.position.z() =
                 std::max(state.position.z(), height_above_concrete(particles, state.position, reach));
-            if (is_free(particles, state.position, reach)) return state;
+            const bool clear = std::all_of(walls.begin(), walls.end(), [&](const Plane& wall) {
+                return wall.distance(state.position) >= reach;
+            });
+            if (clear && is_free(particles, state.position, reach)) return state;
         }
         return std::nullopt;
     }

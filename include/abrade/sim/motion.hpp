@@ -1,96 +1,125 @@
 #pragma once
-// One body's share of a step: half a kick with the works it does, and the drift.
+// One body's share of a step: the kick with the works it does, and the drift.
 
 #include <abrade/coupling/drag.hpp>
-#include <abrade/dem/particles.hpp>
 #include <abrade/dem/rotation.hpp>
+#include <abrade/dem/sphere_store.hpp>
 
-#include <algorithm>
+#include <limits>
 
 namespace abrade {
 
-/// Works done in a kick [J], and the first body whose velocity went wrong.
-struct KickSums {
-    Real interaction = 0, gravity = 0, drag = 0, drag_input = 0, buoyancy = 0;
-    Index bad = -1;
+/// What moving bodies adds up to [J], and what it notices.
+struct MotionSums {
+    Quad interaction{};  ///< work of contacts and bonds; its first three numbers are to be added up [J]
+    Quad path{};         ///< sum of mass times path [kg m]; times gravity: its work
+    Real drag = 0, drag_input = 0, buoyancy = 0;  ///< [J]
+    Real fastest2 = 0;                            ///< of spheres' centres [m2/s2]
+    Quad low{{1e300, 1e300, 1e300, 1e300}}, high{{-1e300, -1e300, -1e300, -1e300}};  ///< of positions [m]
+    Quad finite{};  ///< sum of velocities: not finite where one is not
 
-    KickSums& operator+=(const KickSums& other) noexcept {
-        interaction += other.interaction, gravity += other.gravity;
-        drag += other.drag, drag_input += other.drag_input, buoyancy += other.buoyancy;
-        if (bad < 0) bad = other.bad;
+    /// What the fluid did over a `path` [m] and for `time` [s].
+    void add(const FluidLoad& fluid, const Vec3& way, Real time) noexcept {
+        drag += fluid.drag.dot(way), drag_input += time * fluid.drag.dot(fluid.fluid_velocity);
+        buoyancy += fluid.buoyancy.dot(way);
+    }
+    /// A sphere that has moved: where it is, its velocity, and the speed of its rim.
+    void notice(const Quad& place, const Quad& velocity, const Quad& rim) noexcept {
+        const Quad squares = velocity * velocity;
+        fastest2 = std::max(fastest2, squares.value[0] + squares.value[1] + squares.value[2]);
+        low = least(low, place), high = most(high, place);
+        finite = finite + velocity + rim;
+    }
+
+    MotionSums& operator+=(const MotionSums& o) noexcept {
+        interaction = interaction + o.interaction, path = path + o.path;
+        drag += o.drag, drag_input += o.drag_input, buoyancy += o.buoyancy;
+        fastest2 = std::max(fastest2, o.fastest2);
+        low = least(low, o.low), high = most(high, o.high), finite = finite + o.finite;
         return *this;
     }
-};
-
-/// What a drift notices: displacement since the list of pairs was made, speed, volume past the gauge, and the
-/// first body outside the bounds.
-struct DriftSums {
-    Real furthest2 = 0, fastest2 = 0;  ///< [m2], [m2/s2]
-    Real gauge = 0;                    ///< [m3]
-    Index lost = -1;
-};
-
-/// Both, for a pass that kicks and drifts.
-struct MoveSums {
-    KickSums kick;
-    DriftSums drift;
-    MoveSums& operator+=(const MoveSums& other) noexcept {
-        kick += other.kick;
-        drift.furthest2 = std::max(drift.furthest2, other.drift.furthest2);
-        drift.fastest2 = std::max(drift.fastest2, other.drift.fastest2);
-        drift.gauge += other.drift.gauge;
-        if (drift.lost < 0) drift.lost = other.drift.lost;
-        return *this;
+    Real interaction_work() const noexcept {
+        return interaction.value[0] + interaction.value[1] + interaction.value[2];
+    }
+    Real gravity_work(const Vec3& gravity) const noexcept {
+        return gravity.dot(Vec3(path.value[0], path.value[1], path.value[2]));
     }
 };
 
-/// What the engine finds wrong with a step.
-struct Trouble {
-    enum class Cause : std::uint8_t { none, not_finite, lost, overlap } cause = Cause::none;
-    Index body = -1, other = -1;  ///< bodies; `other` is negative for a boundary
-    Real measure = 0;             ///< overlap over the smaller radius [-]
+namespace detail {
+
+inline constexpr Quad three_ones{{1, 1, 1, 0}};
+inline Quad quad(const Vec3& v) noexcept { return {Quad::Native{v.x(), v.y(), v.z(), 0}}; }
+inline Quad same(Real x) noexcept { return {Quad::Native{x, x, x, x}}; }
+
+}  // namespace detail
+
+/// What a kick does to a single sphere, and the works it does: a force is paired with the mean of the
+/// velocities before and after, so works add up to the change in kinetic energy exactly.
+struct KickedSphere {
+    Quad velocity, rim;      ///< after; the fourth numbers are those of the lines
+    Quad interaction, path;  ///< as in MotionSums
 };
 
-/// v += dt F/m, L += dt tau for body b. Each force is paired with (v_before + v_after)/2 dt, so the works
-/// add up to the change in kinetic energy exactly. `interaction` is the force of contacts and bonds, which
-/// alone turn bodies; `fluid` is null where there is none.
-inline KickSums kick_body(Particles& p, Index body, const Vec3& interaction, const FluidLoad* fluid,
-                          const Vec3& gravity, Real dt) noexcept {
-    // (10 km/s)^2: no speed of this field. Infinities exceed it, and NaN fails the comparison.
-    constexpr Real too_fast2 = 1e8;
-    const auto b = static_cast<std::size_t>(body);
-    KickSums work;
-    if (p.inverse_mass[b] == 0) return work;
-    Vec3& v = p.velocity[b];
-    const Vec3 before = v;
-    v += dt * p.inverse_mass[b] * p.force[b];
-    const Vec3 path = 0.5 * dt * (before + v);
-    const Vec3 spin_before = p.angular_velocity(body);
-    p.angular_momentum[b] += dt * p.torque[b];
-    const Vec3 turn = 0.5 * dt * (spin_before + p.angular_velocity(body));
-    work.interaction = interaction.dot(path) + p.torque[b].dot(turn);
-    work.gravity = p.mass[b] * gravity.dot(path);
-    if (fluid) {
-        work.drag = fluid->drag.dot(path);
-        work.drag_input = dt * fluid->drag.dot(fluid->fluid_velocity);
-        work.buoyancy = fluid->buoyancy.dot(path);
-    }
-    if (!(v.squaredNorm() < too_fast2 && p.angular_momentum[b].allFinite())) work.bad = body;
-    return work;
+/// v += dt (f/m + g), r omega += dt 5/2 lever/m: a solid sphere has I = 2/5 m r^2. `other` is what the fluid
+/// does [N].
+inline KickedSphere kick(const SphereMotion& motion, const SphereLoad& load, const Quad& other,
+                         const Quad& gravity, Real dt) noexcept {
+    const Quad& before = detail::quad(motion, 0);
+    const Quad& rim = detail::quad(motion, 1);
+    const Quad force = detail::three_ones * detail::quad(load, 0),
+               lever = detail::three_ones * detail::quad(load, 1);
+    const Quad mass = detail::same(load.mass), per_mass = detail::same(dt * motion.inverse_mass);
+    KickedSphere after;
+    after.velocity = before + per_mass * (force + mass * gravity + other);
+    after.rim = rim + detail::same(2.5) * per_mass * lever;
+    const Quad way = detail::same(0.5 * dt) * (before + after.velocity);
+    after.interaction = force * way + lever * (detail::same(0.5 * dt) * (rim + after.rim));
+    after.path = detail::three_ones * mass * way;
+    return after;
 }
 
-/// x += dt v, the orientation likewise. Then the spheres are placed, with the velocities that half a step of
-/// the present acceleration promises: the force pass sees velocities of its own time.
-inline void drift_body(Particles& p, Index body, Real dt) noexcept {
-    const auto b = static_cast<std::size_t>(body);
-    if (p.inverse_mass[b] == 0) return;
-    p.position[b] += dt * p.velocity[b];
-    if (p.sphere_count[b] > 1)  // how a sphere is turned nobody sees
-        p.orientation[b] = turn_freely(p.orientation[b], p.angular_momentum[b], p.inverse_inertia[b], dt);
-    const Vec3 velocity = p.velocity[b] + 0.5 * dt * p.inverse_mass[b] * p.force[b];
-    const Vec3 momentum = p.angular_momentum[b] + 0.5 * dt * p.torque[b];
-    p.place_spheres(body, velocity, p.angular_velocity(body, momentum), p.velocity[b],
-                    p.angular_velocity(body, p.angular_momentum[b]));
+/// Force and torque of contacts and bonds on a clump [N], [N m].
+struct ClumpLoad {
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+};
+
+inline ClumpLoad load_of(const MovingClump& clump, const SphereLines& lines) noexcept {
+    ClumpLoad sum;
+    for (std::size_t m = 0; m < static_cast<std::size_t>(clump.count); ++m) {
+        const std::size_t slot = static_cast<std::size_t>(clump.first_slot) + m;
+        const SphereLoad& load = lines.load[slot];
+        sum.force += load.force;
+        sum.torque += (lines.place[slot].centre - clump.position).cross(load.force) +
+                      lines.place[slot].radius * load.lever;
+    }
+    return sum;
+}
+
+/// What a kick does to a clump, likewise.
+struct KickedClump {
+    Vec3 velocity, angular_momentum;
+    Vec3 path;         ///< [m]
+    Real interaction;  ///< [J]
+};
+
+inline KickedClump kick(MovingClump clump, const ClumpLoad& load, const Vec3& other, const Vec3& gravity,
+                        Real dt) noexcept {
+    const Vec3 before = clump.velocity, spin_before = clump.angular_velocity(clump.orientation);
+    clump.velocity += dt * clump.inverse_mass * (load.force + clump.mass * gravity + other);
+    clump.angular_momentum += dt * load.torque;
+    const Vec3 path = 0.5 * dt * (before + clump.velocity);
+    const Vec3 turn = 0.5 * dt * (spin_before + clump.angular_velocity(clump.orientation));
+    return {clump.velocity, clump.angular_momentum, path, load.force.dot(path) + load.torque.dot(turn)};
+}
+
+/// Turns and moves a clump and its member spheres over dt.
+inline void drift(MovingClump& clump, Real dt, SphereStore& store, const Particles& particles) noexcept {
+    const Quaternion before = clump.orientation;
+    clump.position += dt * clump.velocity;
+    clump.orientation = turn_freely(before, clump.angular_momentum, clump.inverse_inertia, dt);
+    const Vec3 spin = 0.5 * (clump.angular_velocity(before) + clump.angular_velocity(clump.orientation));
+    store.place_members(clump, particles, spin, dt);
 }
 
 }  // namespace abrade

@@ -31,9 +31,10 @@ struct Scene {
     std::vector<Plane> walls;
     std::optional<ConcreteBlock> concrete;
     std::optional<FeedParams> feed;
-    Box bounds;                  ///< leaving it is an error
-    std::optional<Real> outlet;  ///< bodies that pass this x leave the simulation [m]
-    std::optional<Real> gauge;   ///< sediment passing this x is counted [m]
+    Box bounds;                            ///< leaving it is an error, unless it is periodic
+    std::array<bool, 3> periodic_along{};  ///< x, y, z: what leaves the bounds here comes in again there
+    std::optional<Real> outlet;            ///< bodies that pass this x leave the simulation [m]
+    std::optional<Real> gauge;             ///< sediment passing this x is counted [m]
 
     /// A single sphere; returns the scene so that calls can be chained.
     Scene& add_sphere(Real radius, const BodyState& state, Real density = 2650) {
@@ -48,6 +49,14 @@ struct Scene {
         require(normal.norm() > 0, {"Scene.add_wall.normal", "longer than 0"}, normal.norm());
         walls.push_back({point, normal.normalized()});
         return *this;
+    }
+
+    Periodic periodic() const {
+        Periodic space;
+        for (int a = 0; a < 3; ++a)
+            if (periodic_along[static_cast<std::size_t>(a)])
+                space.low[a] = bounds.low[a], space.period[a] = bounds.high[a] - bounds.low[a];
+        return space;
     }
 
     void validate() const {
@@ -65,6 +74,11 @@ struct Scene {
         }
         require((bounds.high - bounds.low).minCoeff() > 0, {"Scene.bounds", "low < high", "m"},
                 (bounds.high - bounds.low).minCoeff());
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Real size = bounds.high[static_cast<int>(a)] - bounds.low[static_cast<int>(a)];
+            require(!periodic_along[a] || std::isfinite(size),
+                    {"Scene.bounds along a periodic axis", "finite", "m"}, size);
+        }
         for (const auto& [place, name] : {std::pair(outlet, "Scene.outlet"), std::pair(gauge, "Scene.gauge")})
             require(!place || std::isfinite(*place), {name, "finite", "m"}, place.value_or(0));
         if (concrete) {

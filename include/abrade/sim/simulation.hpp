@@ -2,7 +2,6 @@
 // One simulation from four policies: the builder, the loop and its guards.
 
 #include <abrade/dem/linear_spring.hpp>
-#include <abrade/dem/stepper.hpp>
 #include <abrade/sim/snapshot.hpp>
 #include <abrade/sim/stability.hpp>
 #include <abrade/sim/world.hpp>
@@ -130,22 +129,30 @@ public:
     // These throw std::logic_error before the first run: there is nothing to show yet.
     const Particles& particles() const { return world().particles(); }
     const Concrete& concrete() const { return world().concrete(); }
-    Index bonds_broken() const { return world().broken_tension() + world().broken_shear(); }
+    Index bonds_broken() const { return world().state().broken_tension + world().state().broken_shear; }
     Real sediment_passed() const { return world().gauge_volume(); }  ///< the gauge, solid [m3]
     const auto& world() const {
         if (!world_) throw std::logic_error("Simulation: run it before asking for its state");
         return *world_;
     }
-    const Feed* feed() const noexcept { return feed_ ? &*feed_ : nullptr; }
+    const Feed* feed() const noexcept {
+        return world_ && world_->state().feed ? &*world_->state().feed : nullptr;
+    }
     const Snapshot& last_good() const noexcept { return last_good_; }
 
-    /// Shares of wall time [-]: laws of contacts and bonds; motion with gathering of loads; renewal of lists.
+    /// Shares of wall time [-]: laws of contacts and bonds; motion; renewal of lists.
     struct Shares {
         Real forces = 0, motion = 0, renewal = 0;
     };
     Shares wall_shares() const noexcept {
-        const Real total = std::max(1e-300, step_seconds_ + renewal_seconds_);
-        return {forces_seconds_ / total, (step_seconds_ - forces_seconds_) / total, renewal_seconds_ / total};
+        if (!world_) return {};
+        const StepSeconds step = world_->timed();
+        const Real renewal = world_->renewal_seconds();
+        // Timed steps stand for all; what is left of the wall time goes by their shares.
+        const Real steps = std::max(0.0, wall_seconds_ - renewal), timed = step.forces + step.motion;
+        if (!(timed > 0 && wall_seconds_ > 0)) return {};
+        return {steps * step.forces / timed / wall_seconds_, steps * step.motion / timed / wall_seconds_,
+                renewal / wall_seconds_};
     }
 
     template <class X, class Y, class Z, class U, class V>
@@ -159,9 +166,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    static constexpr Index steps_between_checks = 64;
-    /// A list is renewed at least this often, so that supply and departures are not left waiting.
-    static constexpr Index longest_list_life = 400;
+    static constexpr Index steps_between_checks = 64, steps_between_snapshots = 400;
 
     static Real seconds_since(Clock::time_point start) {
         return std::chrono::duration<Real>(Clock::now() - start).count();
@@ -239,14 +244,13 @@ private:
 
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
-        if (scene_.feed) feed_.emplace(*scene_.feed);
         world_.emplace(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_});
         stable_ = stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
     }
 
     /// Finds the forces at the start, and what is wrong with it.
     void open() {
-        world_->renew(time_, 0, nullptr);
+        world_->open(time_);
         if (const Trouble trouble = world_->take_trouble(); trouble.cause == Trouble::Cause::overlap) {
             const std::string what =
                 "Scene: overlap of " + name_of(trouble.body) + " with " + name_of(trouble.other);
@@ -256,32 +260,13 @@ private:
                      "move them apart"},
                     100 * trouble.measure);
         }
-        world_->open_ledger();
         remember();
         opened_ = true;
     }
 
     void do_step(Real t) {
-        world_->free_loose_concrete();
-        if (world_->list_is_stale(time_step_) || step_ - list_made_ >= longest_list_life) {
-            const auto start = Clock::now();
-            world_->renew(t, time_step_, feed_ ? &*feed_ : nullptr);
-            list_made_ = step_;
-            if (step_ - remembered_ >= longest_list_life) remember();
-            renewal_seconds_ += seconds_since(start);
-        }
-        // Asking the clock in every step would cost small scenes dear: every 64th stands for all.
-        const bool timed = step_ % steps_between_checks == 0;
-        const auto now = [timed] { return timed ? Clock::now() : Clock::time_point{}; };
-        const auto begin = now();
-        stepper_.do_step(
-            [&](World& world, Real at, Real dt) {
-                const auto start = now();
-                world.evaluate(at, dt);
-                if (timed) forces_seconds_ += steps_between_checks * seconds_since(start);
-            },
-            *world_, t, time_step_);
-        if (timed) step_seconds_ += steps_between_checks * seconds_since(begin);
+        if (step_ - remembered_ >= steps_between_snapshots) remember();
+        world_->step(t, time_step_, step_ % steps_between_checks == 0);
         ++step_;
         time_ = t + time_step_;
         if (const Trouble trouble = world_->take_trouble(); trouble.cause != Trouble::Cause::none)
@@ -299,6 +284,7 @@ private:
     }
 
     [[noreturn]] void raise(const Trouble& trouble) {
+        world_->publish_places();
         const Particles& p = world_->particles();
         const auto b = static_cast<std::size_t>(trouble.body);
         const auto place = [&] {
@@ -326,8 +312,9 @@ private:
         throw RunError(text, step_, time_, p.id[b]);
     }
 
-    void balance() { ledger_ = world_->balance(); }
+    void balance() { ledger_ = world_->publish(); }
     void remember() {
+        world_->publish();
         last_good_ = take_snapshot(world_->particles(), world_->concrete(), time_, step_);
         remembered_ = step_;
     }
@@ -342,15 +329,13 @@ private:
     [[no_unique_address]] F fluid_;
     [[no_unique_address]] D drag_;
     std::optional<World> world_;
-    std::optional<Feed> feed_;
-    VelocityVerlet<World> stepper_;
     Ledger ledger_;
     StableStep stable_;
     Snapshot last_good_;
     Real time_ = 0, time_step_ = 0;
-    Index step_ = 0, list_made_ = 0, remembered_ = 0;
+    Index step_ = 0, remembered_ = 0;
     bool opened_ = false, stopped_ = false;
-    Real wall_seconds_ = 0, forces_seconds_ = 0, step_seconds_ = 0, renewal_seconds_ = 0;
+    Real wall_seconds_ = 0;
 };
 
 /// Starts a simulation; fill the slots, then run.
@@ -372,7 +357,7 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
     out << "\ntime     " << short_text(sim.time_) << " s in " << sim.step_ << " steps of "
         << short_text(sim.time_step_) << " s (stable: " << short_text(sim.stable_.seconds) << " s, set by "
         << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
-        << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().pairs().size() << "\n";
+        << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().near_count() << "\n";
     if (sim.concrete().sites() > 0)
         out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken()
             << " bonds broken, worn volume " << short_text(sim.concrete().worn_volume()) << " m3\n";

@@ -73,39 +73,44 @@ template <ContactLaw C, BondLaw B>
 StableStep stable_step(const C& contact, const B& bond, const Particles& particles, const Network<B>& network,
                        const std::optional<FeedParams>& feed) {
     StableStep step;
-    std::vector<detail::SphereStiffness> stiffness, damping;
+    const auto at = [](Index i) { return static_cast<std::size_t>(i); };
     const auto dashpot = [](Real ratio, Real k, Real mass) { return 2 * ratio * std::sqrt(k * mass); };
+    std::vector<Index> held(at(particles.bodies()), -1);  // [body] its place among those below
+    std::vector<detail::SphereStiffness> stiffness, damping;
+    for (const auto& bonded : network.bonds()) {
+        const Vec3 n =
+            (particles.centre[at(bonded.spheres.first)] - particles.centre[at(bonded.spheres.second)])
+                .normalized();
+        for (const Index body : {bonded.bodies.first, bonded.bodies.second}) {
+            if (particles.inverse_mass[at(body)] == 0) continue;
+            if (held[at(body)] < 0) {
+                held[at(body)] = static_cast<Index>(stiffness.size());
+                stiffness.emplace_back(particles.mass[at(body)]),
+                    damping.emplace_back(particles.mass[at(body)]);
+            }
+            stiffness[at(held[at(body)])].add(n, bond.stiffness(), bond.tangential_stiffness());
+            damping[at(held[at(body)])].add(
+                n, dashpot(bond.damping_ratio(), bond.stiffness(), bonded.effective_mass),
+                dashpot(bond.damping_ratio(), bond.tangential_stiffness(), bonded.effective_mass));
+        }
+    }
     for (Index b = 0; b < particles.bodies(); ++b) {
-        const auto i = static_cast<std::size_t>(b);
+        const auto i = at(b);
         if (particles.inverse_mass[i] == 0) continue;
         const Real mass = particles.mass[i];
-        const auto bonds = network.incidence().of(particles.first_sphere[i]);
-        if (bonds.empty()) {
+        if (held[i] < 0) {
             Real reach = 0;
             for (Index s = particles.first_sphere[i];
                  s < particles.first_sphere[i] + particles.sphere_count[i]; ++s)
-                reach = std::max(reach, particles.offset[static_cast<std::size_t>(s)].norm() +
-                                            particles.radius[static_cast<std::size_t>(s)]);
+                reach = std::max(reach, particles.offset[at(s)].norm() + particles.radius[at(s)]);
             step.lower(contact.stable_dt(
                            stability_mass(mass, 1 / particles.inverse_inertia[i].maxCoeff(), reach), reach),
                        "contacts of the lightest stone");
             continue;
         }
-        detail::SphereStiffness k(mass), c(mass);
-        for (const auto side : bonds) {
-            const Pair& pair = network.pairs()[static_cast<std::size_t>(side.pair)];
-            const Vec3 n = (particles.centre[static_cast<std::size_t>(pair.first)] -
-                            particles.centre[static_cast<std::size_t>(pair.second)])
-                               .normalized();
-            const Real other = particles.inverse_mass[static_cast<std::size_t>(
-                particles.body[static_cast<std::size_t>(side.first ? pair.second : pair.first)])];
-            const Real effective = 1 / (1 / mass + other);
-            k.add(n, bond.stiffness(), bond.tangential_stiffness());
-            c.add(n, dashpot(bond.damping_ratio(), bond.stiffness(), effective),
-                  dashpot(bond.damping_ratio(), bond.tangential_stiffness(), effective));
-        }
-        const Real radius = particles.radius[static_cast<std::size_t>(particles.first_sphere[i])];
+        const Real radius = particles.radius[at(particles.first_sphere[i])];
         const ContactRigidity touch = contact.rigidity(radius);
+        detail::SphereStiffness &k = stiffness[at(held[i])], &c = damping[at(held[i])];
         k.add_anywhere(2, touch.normal, touch.tangential);
         c.add_anywhere(2, dashpot(touch.damping_ratio, touch.normal, mass),
                        dashpot(touch.damping_ratio, touch.tangential, mass));

@@ -47,10 +47,12 @@ public:
     explicit SubParticleAbrasion(Params params) : params_(params) { params_.validate(); }
     const Params& params() const noexcept { return params_; }
 
-    WearIncrement increment(const ContactKinematics<Real>&, const ContactLoad<Real>& load) const noexcept {
+    template <class Number>
+    WearIncrement<Number> increment(const ContactKinematics<Number>&,
+                                    const ContactLoad<Number>& load) const noexcept {
         const Real per_joule = 0.5 * params_.coefficient * params_.acceleration;
-        return {per_joule * params_.normal_weight * load.lost_normal,
-                per_joule * params_.tangential_weight * load.lost_tangential};
+        return {Number(per_joule * params_.normal_weight) * load.lost_normal,
+                Number(per_joule * params_.tangential_weight) * load.lost_tangential};
     }
     Real strength_left(Real fracture) const noexcept { return 1 - fracture; }
 

@@ -6,19 +6,21 @@
 namespace abrade {
 
 /// Concrete worn off one body by one contact in one step.
+template <class Number>
 struct WearIncrement {
-    Real normal = 0;      ///< by normal loss (impact) [m3]
-    Real tangential = 0;  ///< by tangential loss (sliding) [m3]
+    Number normal;      ///< by normal loss (impact) [m3]
+    Number tangential;  ///< by tangential loss (sliding) [m3]
 };
 
 /// A wear law is a pure function of what the contact law lost in a step.
-/// - `increment` gives the volume worn off *one* of the two bodies; it is never negative;
+/// - `increment` gives the volume worn off *one* of the two bodies; it is never negative; a template on the
+///   number type, as contact laws are;
 /// - `strength_left(fracture)` says what a sphere that is worn to `fracture` in [0, 1] still holds.
 // clang-format off
 template <class W>
 concept WearLaw = Law<W> &&
     requires(const W& law, const ContactKinematics<Real>& contact, const ContactLoad<Real>& load) {
-    { law.increment(contact, load) } noexcept -> std::same_as<WearIncrement>;
+    { law.increment(contact, load) } noexcept -> std::same_as<WearIncrement<Real>>;
     { law.strength_left(Real{}) } noexcept -> std::same_as<Real>;
 };
 // clang-format on
@@ -34,8 +36,10 @@ struct NoWear {
         static constexpr Params none{};
         return none;
     }
-    WearIncrement increment(const ContactKinematics<Real>&, const ContactLoad<Real>&) const noexcept {
-        return {};
+    template <class Number>
+    WearIncrement<Number> increment(const ContactKinematics<Number>&,
+                                    const ContactLoad<Number>&) const noexcept {
+        return {Number(0), Number(0)};
     }
     Real strength_left(Real) const noexcept { return 1; }
 };

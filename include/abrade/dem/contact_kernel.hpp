@@ -1,0 +1,200 @@
+#pragma once
+// One pack of contacts: lines in, the law's answer, lines out. The hottest code of the library.
+
+#include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/sphere_lines.hpp>
+#include <abrade/geometry/surfaces.hpp>
+
+#include <cstring>
+#include <span>
+
+namespace abrade {
+
+/// What all contacts of one evaluation share.
+struct ContactStep {
+    Real time_step = 0;  ///< that led here [s]
+    /// How far dashpots look ahead of the velocities that the lines hold, as a share of the last change: 0.5
+    /// where these are half a step old and the ones before were a whole step older.
+    Real ahead = 0.5;
+};
+
+/// `pack_lanes` pairs of spheres, or spheres on one plane, and what their contacts remember.
+template <class Law>
+struct alignas(64) ContactPack {
+    std::array<Index, pack_lanes> first{}, second{};  ///< slots; phantoms in lanes that are left over
+    typename Law::template Memory<Pack> memory{};
+    Vec3Of<Pack> before = Vec3Of<Pack>::Zero();  ///< velocity at the contact point, as last seen [m/s]
+    PackMask touched{};                          ///< when last seen
+};
+
+/// Sums over packs, lane by lane.
+struct PackSums {
+    Pack lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
+    Pack concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< once for each side of concrete [J]
+    Pack deepest = 0;                                             ///< overlap times (1/r_i + 1/r_j) [-]
+
+    PackSums& operator+=(const PackSums& other) noexcept {
+        lost_normal += other.lost_normal, lost_tangential += other.lost_tangential, stored += other.stored;
+        concrete_lost_normal += other.concrete_lost_normal;
+        concrete_lost_tangential += other.concrete_lost_tangential;
+        deepest = max(deepest, other.deepest);
+        return *this;
+    }
+};
+
+namespace detail {
+
+/// Lane k of a pack's memory. Memory<Number> is made of Numbers and vectors of them alone.
+template <class Memory, class PackedMemory>
+Memory memory_of_lane(const PackedMemory& all, int lane) noexcept {
+    constexpr std::size_t numbers = sizeof(PackedMemory) / sizeof(Pack);
+    static_assert(sizeof(Memory) == numbers * sizeof(Real), "a contact's memory must be made of its Number");
+    Memory one;
+    for (std::size_t n = 0; n < numbers; ++n)
+        std::memcpy(reinterpret_cast<std::byte*>(&one) + n * sizeof(Real),
+                    reinterpret_cast<const std::byte*>(&all) + n * sizeof(Pack) +
+                        static_cast<std::size_t>(lane) * sizeof(Real),
+                    sizeof(Real));
+    return one;
+}
+
+template <class PackedMemory, class Memory>
+void set_memory_of_lane(PackedMemory& all, int lane, const Memory& one) noexcept {
+    constexpr std::size_t numbers = sizeof(PackedMemory) / sizeof(Pack);
+    for (std::size_t n = 0; n < numbers; ++n)
+        std::memcpy(reinterpret_cast<std::byte*>(&all) + n * sizeof(Pack) +
+                        static_cast<std::size_t>(lane) * sizeof(Real),
+                    reinterpret_cast<const std::byte*>(&one) + n * sizeof(Real), sizeof(Real));
+}
+
+/// combine(first slot, second slot) of each lane, as columns.
+template <class Law, class Combine>
+QuadColumns gather(const ContactPack<Law>& pack, const Combine& combine) noexcept {
+    QuadRows row;
+    for (std::size_t k = 0; k < row.size(); ++k)
+        row[k] = combine(static_cast<std::size_t>(pack.first[k]), static_cast<std::size_t>(pack.second[k]));
+    return columns(row);
+}
+
+}  // namespace detail
+
+/// What sets packs apart when the program is compiled, so that none has to ask.
+struct KernelKind {
+    bool on_plane = false;  ///< spheres on one plane, which neither moves nor feels
+    bool wears = false;     ///< concrete is among them
+};
+
+/// What the packs of one run share beside the step.
+struct PackRun {
+    const Plane* plane = nullptr;                  ///< for kinds on a plane, where lambda = 1 - overlap / 2r
+    const std::uint8_t* concrete_sides = nullptr;  ///< [pack x lane] of the two, for kinds that wear
+};
+
+/// Evaluates the law for packs of contacts, commits their memory and adds the answers to the spheres' loads.
+/// The loop stands inside so that the law's constants stay in registers.
+///
+/// Dashpots see a velocity extrapolated to the present from the two half steps before, which is of second
+/// order and needs no acceleration.
+template <KernelKind kind, ContactLaw Law, class Wear>
+[[gnu::flatten]] PackSums respond(const Law& law, const Wear& wear, std::span<ContactPack<Law>> packs,
+                                  const PackRun& run, SphereLines& lines, const ContactStep step) noexcept {
+    const SpherePlace* place = lines.place.data();
+    const SphereMotion* motion = lines.motion.data();
+    SphereLoad* load = lines.load.data();
+    constexpr Quad difference{{-1, -1, -1, 1}}, reaction{{-1, -1, -1, 1}};
+    [[maybe_unused]] const Plane plane = kind.on_plane ? *run.plane : Plane{};
+
+    PackSums sums;
+    for (std::size_t p = 0; p < packs.size(); ++p) {
+        ContactPack<Law>& pack = packs[p];
+        ContactKinematics<Pack> contact;
+        Pack lambda;
+        PackMask touching;
+        const auto [x, y, z, reach] = detail::gather(pack, [&](std::size_t i, std::size_t j) {
+            if constexpr (kind.on_plane)
+                return detail::quad(place[i]);
+            else
+                return detail::quad(place[i]) + difference * detail::quad(place[j]);
+        });
+        Pack distance2 = 0;
+        if constexpr (kind.on_plane) {
+            contact.normal = {plane.normal.x(), plane.normal.y(), plane.normal.z()};
+            const Pack height = (x - Pack(plane.point.x())) * contact.normal.x() +
+                                (y - Pack(plane.point.y())) * contact.normal.y() +
+                                (z - Pack(plane.point.z())) * contact.normal.z();
+            contact.overlap = reach - height;
+            touching = contact.overlap > Pack(0);
+        } else {
+            distance2 = x * x + y * y + z * z;
+            touching = distance2 < reach * reach;
+        }
+        if (!any(touching | pack.touched)) continue;
+
+        const auto [vx, vy, vz, inverse_mass] = detail::gather(pack, [&](std::size_t i, std::size_t j) {
+            if constexpr (kind.on_plane)
+                return detail::quad(motion[i], 0);
+            else
+                return detail::quad(motion[i], 0) + difference * detail::quad(motion[j], 0);
+        });
+        const auto [rim_x, rim_y, rim_z, curvature] = detail::gather(pack, [&](std::size_t i, std::size_t j) {
+            if constexpr (kind.on_plane)
+                return detail::quad(motion[i], 1);
+            else
+                return detail::quad(motion[i], 1) + detail::quad(motion[j], 1);
+        });
+        if constexpr (kind.on_plane) {
+            lambda = Pack(1) - Pack(0.5) * contact.overlap * curvature;
+        } else {
+            const Pack inverse_distance = rsqrt(max(distance2, Pack(tiny<Pack>)));
+            const Pack distance = distance2 * inverse_distance;
+            lambda = distance * reciprocal(reach);
+            contact.normal = {x * inverse_distance, y * inverse_distance, z * inverse_distance};
+            contact.overlap = reach - distance;
+        }
+        contact.inverse_mass = inverse_mass;
+        contact.curvature = curvature;
+        contact.time_step = step.time_step;
+        const Vec3Of<Pack> rim(lambda * rim_x, lambda * rim_y, lambda * rim_z);
+        const Vec3Of<Pack> velocity = Vec3Of<Pack>(vx, vy, vz) - rim.cross(contact.normal);
+        const Pack ahead = select(pack.touched, Pack(step.ahead), Pack(0));
+        contact.travel = Pack(step.time_step) * velocity;
+        contact.velocity = velocity + ahead * (velocity - pack.before);
+
+        const auto [answer, memory] = law.respond(contact, pack.memory);
+        pack.memory = memory;
+        pack.before = velocity;
+        pack.touched = touching;
+        sums.lost_normal += answer.lost_normal;
+        sums.lost_tangential += answer.lost_tangential;
+        sums.stored += answer.stored;
+        sums.deepest = max(sums.deepest, contact.overlap * curvature);
+        Pack worn = 0;
+        if constexpr (kind.wears) {
+            Pack sides = 0;
+            for (int k = 0; k < pack_lanes; ++k)
+                sides.set(k, run.concrete_sides[p * pack_lanes + static_cast<std::size_t>(k)]);
+            const auto increment = wear.increment(contact, answer);
+            worn = increment.normal + increment.tangential;
+            sums.concrete_lost_normal += sides * answer.lost_normal;
+            sums.concrete_lost_tangential += sides * answer.lost_tangential;
+        }
+
+        const Vec3Of<Pack> lever = lambda * answer.force.cross(contact.normal);
+        const QuadRows forces = rows({answer.force.x(), answer.force.y(), answer.force.z(), worn});
+        const QuadRows levers = rows({lever.x(), lever.y(), lever.z(), Pack(0)});
+        for (std::size_t k = 0; k < forces.size(); ++k) {
+            SphereLoad& line = load[pack.first[k]];
+            detail::quad(line, 0) = detail::quad(line, 0) + forces[k];
+            detail::quad(line, 1) = detail::quad(line, 1) + levers[k];
+        }
+        if constexpr (!kind.on_plane)
+            for (std::size_t k = 0; k < forces.size(); ++k) {
+                SphereLoad& line = load[pack.second[k]];
+                detail::quad(line, 0) = detail::quad(line, 0) + reaction * forces[k];
+                detail::quad(line, 1) = detail::quad(line, 1) + levers[k];
+            }
+    }
+    return sums;
+}
+
+}  // namespace abrade

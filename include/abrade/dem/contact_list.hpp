@@ -1,0 +1,239 @@
+#pragma once
+// All contacts: from near pairs to sections, and what pairs remember while lists are renewed.
+
+#include <abrade/dem/contact_section.hpp>
+#include <abrade/dem/sphere_store.hpp>
+
+#include <tuple>
+
+namespace abrade {
+
+/// A contact as it stands, seen one by one.
+inline ContactKinematics<Real> contact_between(const SphereLines& lines, std::span<const Plane> planes,
+                                               const SlotPair& pair, Real dt) noexcept {
+    const auto i = static_cast<std::size_t>(pair.first);
+    const SpherePlace& place = lines.place[i];
+    const SphereMotion& motion = lines.motion[i];
+    ContactKinematics<Real> contact{};
+    contact.time_step = dt;
+    contact.inverse_mass = motion.inverse_mass;
+    contact.curvature = motion.curvature;
+    Vec3 velocity = motion.velocity, rim = motion.rim;
+    Real lambda = 1;
+    if (pair.second < 0) {
+        const Plane& plane = planes[static_cast<std::size_t>(-1 - pair.second)];
+        contact.normal = plane.normal;
+        contact.overlap = place.radius - plane.distance(place.centre);
+        lambda = 1 - 0.5 * contact.overlap * contact.curvature;
+    } else {
+        const auto j = static_cast<std::size_t>(pair.second);
+        const Vec3 apart = place.centre - lines.place[j].centre;
+        const Real distance = apart.norm(), reach = place.radius + lines.place[j].radius;
+        contact.normal = apart / std::max(distance, tiny<Real>);
+        contact.overlap = reach - distance;
+        contact.inverse_mass += lines.motion[j].inverse_mass;
+        contact.curvature += lines.motion[j].curvature;
+        velocity -= lines.motion[j].velocity, rim += lines.motion[j].rim;
+        lambda = distance / reach;
+    }
+    contact.velocity = velocity - lambda * rim.cross(contact.normal);
+    contact.travel = dt * contact.velocity;
+    return contact;
+}
+
+/// The contacts of all slabs.
+template <ContactLaw Law>
+class ContactList {
+public:
+    using Memory = typename Law::template Memory<Real>;
+
+    struct Build {
+        const Particles& particles;
+        std::span<const Plane> planes;
+        std::span<const char> passive;  ///< [sphere]
+        Real skin = 0;                  ///< [m]
+        Vec3 period = Vec3::Zero();     ///< [m]; 0 where space is open
+    };
+
+    /// Puts aside what touching pairs remember, before the store is arranged anew. `moved` [sphere] says
+    /// where spheres will be (-1: gone). Returns the elastic energy of pairs that go with them [J].
+    Real keep(const Law& law, const SphereStore& store, std::span<const Plane> planes,
+              std::span<const Index> moved) {
+        kept_.clear();
+        Real gone = 0;
+        for (const ContactSection<Law>& section : sections_)
+            section.each_touching([&](const SlotPair& pair, const Memory& memory, const Vec3& before) {
+                const auto lasting = [&](Index slot) {
+                    return moved[at(store.sphere_of(store.owner_of(slot)))];
+                };
+                const Index first = lasting(pair.first),
+                            second = pair.second < 0 ? pair.second : lasting(pair.second);
+                if (first < 0 || (pair.second >= 0 && second < 0))
+                    gone += law.respond(contact_between(store.lines, planes, pair, 0), memory).load.stored;
+                else
+                    kept_.push_back({first, second, memory, before});
+            });
+        std::sort(kept_.begin(), kept_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        return gone;
+    }
+
+    /// Finds near pairs in a store that has just been arranged; makes the images that they and `requests`
+    /// need. `holds(first, second)` [sphere] says which pairs are looked after elsewhere.
+    template <class Holds>
+    void rebuild(SphereStore& store, const Build& build, std::vector<SphereStore::ImageRequest> requests,
+                 Holds&& holds) {
+        const std::vector<NearPair> near = find(store, build);
+        std::vector<Listed> listed;
+        listed.reserve(near.size());
+        for (const NearPair& pair : near)
+            if (const Listed one = in_charge(store, pair); !holds(one.spheres_low, one.spheres_high)) {
+                listed.push_back(one);
+                if (one.needs_image) requests.push_back(one.image());
+            }
+        store.make_images(std::move(requests), build.period);
+        for (Listed& one : listed) {
+            if (one.needs_image) one.other = store.image_slot(one.image());
+            if (one.own_is_high) std::swap(one.own, one.other);  // from here on: first, second
+        }
+        add_planes(store, build, listed);
+        const std::vector<Index> first_kept = kept_by_sphere(build.particles.spheres());
+        share_out(store, listed, first_kept);
+    }
+
+    /// Picks the candidates of all sections: what may touch before surfaces have come `skin` [m] nearer.
+    void refine(const SphereLines& lines, std::span<const Plane> planes, Real skin) {
+        parallel_tasks(static_cast<Index>(sections_.size()),
+                       [&](Index s) { sections_[at(s)].refine(lines, planes, skin); });
+    }
+
+    ContactSection<Law>& section(Index slab) noexcept { return sections_[at(slab)]; }
+
+    /// Calls `visit(pair, memory, before)` for each contact that touched when last evaluated.
+    template <class Visit>
+    void each_touching(Visit&& visit) const {
+        for (const ContactSection<Law>& section : sections_) section.each_touching(visit);
+    }
+    template <class Visit>
+    void each_candidate(Visit&& visit) const {
+        for (const ContactSection<Law>& section : sections_) section.each_candidate(visit);
+    }
+    std::size_t near_count() const noexcept {
+        std::size_t count = 0;
+        for (const ContactSection<Law>& section : sections_) count += section.near_count();
+        return count;
+    }
+
+private:
+    static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// A near pair on its way into a section: `own` lies in the section's slab, `other` there or in the next.
+    struct Listed {
+        Index section = 0, chunk = 0, own = 0, other = 0;  ///< slots
+        Index spheres_low = 0, spheres_high = 0;           ///< lasting indices
+        ImageShift shift{};                                ///< of the other
+        bool needs_image = false, own_is_high = false;
+        std::uint8_t concrete_sides = 0;
+        SphereStore::ImageRequest image() const noexcept { return {other, chunk, shift}; }
+    };
+
+    std::vector<NearPair> find(const SphereStore& store, const Build& build) {
+        const auto count = at(store.spheres());
+        std::vector<Vec3> centre(count);
+        std::vector<Real> radius(count);
+        std::vector<Index> body(count);
+        std::vector<char> passive(count);
+        for (std::size_t s = 0; s < count; ++s) {
+            const auto sphere = at(store.sphere_of(static_cast<Index>(s)));
+            centre[s] = store.lines.place[s].centre, radius[s] = store.lines.place[s].radius;
+            body[s] = build.particles.body[sphere], passive[s] = build.passive[sphere];
+        }
+        slab_.resize(count), concrete_.resize(count);
+        for (Index slab = 0; slab < store.slabs.count(); ++slab)
+            std::fill(slab_.begin() + store.first_slot(slab), slab_.begin() + store.first_slot(slab + 1),
+                      slab);
+        for (std::size_t s = 0; s < count; ++s) concrete_[s] = build.particles.site[at(body[s])] >= 0 ? 1 : 0;
+        return near_pairs({centre, radius, body, passive, build.skin, build.period});
+    }
+
+    /// Which slab a pair belongs to: the first of its two, across the edge of a periodic axis the last slab.
+    Listed in_charge(const SphereStore& store, const NearPair& pair) const noexcept {
+        const std::int8_t across = pair.shift[static_cast<std::size_t>(store.slabs.axis())];
+        Listed one;
+        one.own = pair.first, one.other = pair.second, one.shift = pair.shift;
+        if (across < 0 || (across == 0 && slab_[at(pair.second)] < slab_[at(pair.first)])) {
+            std::swap(one.own, one.other);
+            for (std::int8_t& s : one.shift) s = static_cast<std::int8_t>(-s);
+        }
+        one.section = slab_[at(one.own)];
+        one.chunk = store.slabs.chunk_of(one.section);
+        one.needs_image =
+            one.shift != ImageShift{} || store.slabs.chunk_of(slab_[at(one.other)]) != one.chunk;
+        one.spheres_low = store.sphere_of(one.own), one.spheres_high = store.sphere_of(one.other);
+        // A pair keeps its direction, whatever slots its spheres get: what it remembers has a sign.
+        one.own_is_high = one.spheres_low > one.spheres_high;
+        if (one.own_is_high) std::swap(one.spheres_low, one.spheres_high);
+        one.concrete_sides = static_cast<std::uint8_t>(concrete_[at(one.own)] + concrete_[at(one.other)]);
+        return one;
+    }
+
+    void add_planes(const SphereStore& store, const Build& build, std::vector<Listed>& listed) const {
+        for (Index slot = 0; slot < store.spheres(); ++slot) {
+            const Index sphere = store.sphere_of(slot);
+            if (build.passive[at(sphere)]) continue;
+            const SpherePlace& place = store.lines.place[at(slot)];
+            for (Index p = 0; p < static_cast<Index>(build.planes.size()); ++p) {
+                if (!(build.planes[at(p)].distance(place.centre) < place.radius + build.skin)) continue;
+                Listed one;
+                one.section = slab_[at(slot)];
+                one.own = slot, one.other = -1 - p;
+                one.spheres_low = sphere, one.spheres_high = -1 - p;
+                one.concrete_sides = concrete_[at(slot)];
+                listed.push_back(one);
+            }
+        }
+    }
+
+    /// Where in `kept_` each sphere's contacts as the first begin.
+    std::vector<Index> kept_by_sphere(Index spheres) const {
+        std::vector<Index> first(at(spheres) + 1, 0);
+        for (const auto& k : kept_) ++first[at(k.first) + 1];
+        for (std::size_t s = 1; s < first.size(); ++s) first[s] += first[s - 1];
+        return first;
+    }
+
+    void share_out(const SphereStore& store, const std::vector<Listed>& listed,
+                   std::span<const Index> first_kept) {
+        const auto kind_of = [](const Listed& one) {
+            return ContactKind{one.other < 0 ? -1 - one.other : -1, one.concrete_sides > 0};
+        };
+        std::vector<std::vector<const Listed*>> of_slab(at(store.slabs.count()));
+        for (const Listed& one : listed) of_slab[at(one.section)].push_back(&one);
+        sections_.resize(of_slab.size());
+        parallel_tasks(static_cast<Index>(of_slab.size()), [&](Index slab) {
+            auto& mine = of_slab[at(slab)];
+            std::sort(mine.begin(), mine.end(), [&](const Listed* a, const Listed* b) {
+                return std::tuple(kind_of(*a), std::min(a->own, a->other), a->own, a->other) <
+                       std::tuple(kind_of(*b), std::min(b->own, b->other), b->own, b->other);
+            });
+            std::vector<typename ContactSection<Law>::Near> near;
+            std::vector<ContactKind> kinds;
+            near.reserve(mine.size());
+            for (const Listed* one : mine) {
+                if (kinds.empty() || kinds.back() != kind_of(*one)) kinds.push_back(kind_of(*one));
+                Index kept = -1;
+                const auto first = at(one->spheres_low);
+                for (Index k = first_kept[first]; k < first_kept[first + 1]; ++k)
+                    if (kept_[at(k)].second == one->spheres_high) kept = k;
+                near.push_back({{one->own, one->other}, one->concrete_sides, kept});
+            }
+            sections_[at(slab)].set_near(near, kinds, kept_, store.phantom());
+        });
+    }
+
+    std::vector<ContactSection<Law>> sections_;  ///< [slab]
+    std::vector<KeptContact<Memory>> kept_;      ///< sorted by first sphere
+    std::vector<Index> slab_;                    ///< [slot]
+    std::vector<std::uint8_t> concrete_;         ///< [slot] 1 where its body is concrete
+};
+
+}  // namespace abrade

@@ -1,0 +1,207 @@
+#pragma once
+// The contacts of a step: near pairs slab by slab, those of them that may touch soon in packs, and what they
+// remember.
+
+#include <abrade/dem/contact_kernel.hpp>
+
+#include <algorithm>
+#include <compare>
+#include <span>
+
+namespace abrade {
+
+/// Sums over the contacts of one evaluation. `concrete_*` count a loss once for each of the two bodies that
+/// is concrete.
+struct ContactSums {
+    Real lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
+    Real concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< [J]
+    Real deepest = 0;  ///< overlap times (1/r_i + 1/r_j): at least overlap over the smaller radius [-]
+
+    ContactSums& operator+=(const ContactSums& other) noexcept {
+        lost_normal += other.lost_normal, lost_tangential += other.lost_tangential;
+        stored += other.stored;
+        concrete_lost_normal += other.concrete_lost_normal;
+        concrete_lost_tangential += other.concrete_lost_tangential;
+        deepest = std::max(deepest, other.deepest);
+        return *this;
+    }
+};
+
+/// What sets packs apart: each kind has packs of its own, so that none has to ask.
+struct ContactKind {
+    Index plane = -1;    ///< -1: spheres with each other
+    bool wears = false;  ///< concrete is among them
+    auto operator<=>(const ContactKind&) const = default;
+};
+
+/// What one pair of spheres remembers while lists are renewed. Spheres by their lasting index, planes as in
+/// SlotPair.
+template <class Memory>
+struct KeptContact {
+    Index first = 0, second = 0;
+    Memory memory{};
+    Vec3 before = Vec3::Zero();  ///< [m/s]
+};
+
+/// The contacts that one slab is in charge of. `near` pairs are those within the skin of the list; of them
+/// `refine` picks candidates, those that may touch before it is called again, and only they are evaluated.
+template <ContactLaw Law>
+class ContactSection {
+public:
+    using Memory = typename Law::template Memory<Real>;
+
+    struct Near {
+        SlotPair pair;
+        std::uint8_t concrete_sides = 0;
+        Index kept = -1;  ///< into what contacts of the last list remember, -1: nothing
+    };
+
+    /// Takes a new list of pairs, which stand in the order of their kinds, and what they remember.
+    void set_near(std::span<const Near> near, std::span<const ContactKind> kinds,
+                  std::span<const KeptContact<Memory>> kept, Index phantom) {
+        near_.assign(near.begin(), near.end());
+        kinds_.assign(kinds.begin(), kinds.end());
+        phantom_ = phantom;
+        begin_packs();
+        for (std::size_t n = 0; n < near_.size(); ++n) {
+            if (near_[n].kept < 0) continue;
+            const KeptContact<Memory>& k = kept[static_cast<std::size_t>(near_[n].kept)];
+            add_lane(n, k.memory, k.before, true);
+        }
+    }
+
+    /// Picks the pairs whose surfaces are nearer than `skin` [m], and those that touch.
+    void refine(const SphereLines& lines, std::span<const Plane> planes, Real skin) {
+        where_.assign(near_.size(), -1);
+        for (std::size_t l = 0; l < lane_.size(); ++l)
+            if (lane_[l] >= 0 && packs_[l / lanes].touched[static_cast<int>(l % lanes)])
+                where_[static_cast<std::size_t>(lane_[l])] = static_cast<Index>(l);
+        std::swap(packs_, old_packs_);
+        begin_packs();
+        for (std::size_t n = 0; n < near_.size(); ++n) {
+            const Index old = where_[n];
+            if (old < 0 && !(gap(lines, planes, n) < skin)) continue;
+            if (old < 0) {
+                add_lane(n, Memory{}, Vec3::Zero(), false);
+                continue;
+            }
+            const ContactPack<Law>& from = old_packs_[static_cast<std::size_t>(old) / lanes];
+            const int lane = static_cast<int>(static_cast<std::size_t>(old) % lanes);
+            add_lane(n, detail::memory_of_lane<Memory>(from.memory, lane), before_of_lane(from, lane), true);
+        }
+    }
+
+    /// Evaluates the law once for each candidate, commits its memory and adds its answer to the loads.
+    template <class Wear>
+    ContactSums respond(const Law& law, const Wear& wear, std::span<const Plane> planes, SphereLines& lines,
+                        const ContactStep& step) noexcept {
+        PackSums sums;
+        for (const Run& run : runs_) {
+            const ContactKind kind = kinds_[run.kind];
+            const auto packs = std::span(packs_).subspan(run.first, run.last - run.first);
+            const PackRun shared{kind.plane < 0 ? nullptr : &planes[static_cast<std::size_t>(kind.plane)],
+                                 concrete_sides_.data() + run.first * lanes};
+            if (kind.plane < 0 && kind.wears)
+                sums += abrade::respond<KernelKind{false, true}>(law, wear, packs, shared, lines, step);
+            else if (kind.plane < 0)
+                sums += abrade::respond<KernelKind{false, false}>(law, wear, packs, shared, lines, step);
+            else if (kind.wears)
+                sums += abrade::respond<KernelKind{true, true}>(law, wear, packs, shared, lines, step);
+            else
+                sums += abrade::respond<KernelKind{true, false}>(law, wear, packs, shared, lines, step);
+        }
+        return {sum(sums.lost_normal),          sum(sums.lost_tangential),          sum(sums.stored),
+                sum(sums.concrete_lost_normal), sum(sums.concrete_lost_tangential), largest(sums.deepest)};
+    }
+
+    /// Calls `visit(pair, memory, before)` for each contact that touched when last evaluated.
+    template <class Visit>
+    void each_touching(Visit&& visit) const {
+        for (std::size_t l = 0; l < lane_.size(); ++l) {
+            const ContactPack<Law>& pack = packs_[l / lanes];
+            const int lane = static_cast<int>(l % lanes);
+            if (lane_[l] < 0 || !pack.touched[lane]) continue;
+            visit(near_[static_cast<std::size_t>(lane_[l])].pair,
+                  detail::memory_of_lane<Memory>(pack.memory, lane), before_of_lane(pack, lane));
+        }
+    }
+    /// Calls `visit(pair)` for each candidate.
+    template <class Visit>
+    void each_candidate(Visit&& visit) const {
+        for (const Index n : lane_)
+            if (n >= 0) visit(near_[static_cast<std::size_t>(n)].pair);
+    }
+
+    std::size_t near_count() const noexcept { return near_.size(); }
+    std::size_t pack_count() const noexcept { return packs_.size(); }
+
+private:
+    static constexpr auto lanes = static_cast<std::size_t>(pack_lanes);
+    /// Packs of one kind, next to each other.
+    struct Run {
+        std::size_t kind, first, last;
+    };
+
+    static Vec3 before_of_lane(const ContactPack<Law>& pack, int lane) noexcept {
+        return {pack.before.x()[lane], pack.before.y()[lane], pack.before.z()[lane]};
+    }
+
+    Real gap(const SphereLines& lines, std::span<const Plane> planes, std::size_t n) const noexcept {
+        const auto [first, second] = near_[n].pair;
+        const SpherePlace& a = lines.place[static_cast<std::size_t>(first)];
+        if (second < 0) return planes[static_cast<std::size_t>(-1 - second)].distance(a.centre) - a.radius;
+        const SpherePlace& b = lines.place[static_cast<std::size_t>(second)];
+        return (a.centre - b.centre).norm() - a.radius - b.radius;
+    }
+
+    void begin_packs() {
+        packs_.clear(), lane_.clear(), runs_.clear(), concrete_sides_.clear();
+        filled_ = lanes;
+    }
+
+    /// Puts near pair n into the next lane; pairs come in the order of their kinds.
+    void add_lane(std::size_t n, const Memory& memory, const Vec3& before, bool touched) {
+        std::size_t kind = runs_.empty() ? 0 : runs_.back().kind;
+        while (!is_of(near_[n], kinds_[kind])) ++kind;
+        if (runs_.empty() || runs_.back().kind != kind) {
+            runs_.push_back({kind, packs_.size(), packs_.size()});
+            filled_ = lanes;
+        }
+        if (filled_ == lanes) {
+            ContactPack<Law>& fresh = packs_.emplace_back();
+            fresh.first.fill(kinds_[kind].plane < 0 ? phantom_ : phantom_ + 2);
+            fresh.second.fill(phantom_ + 1);
+            lane_.resize(lane_.size() + lanes, -1), concrete_sides_.resize(lane_.size(), 0);
+            ++runs_.back().last;
+            filled_ = 0;
+        }
+        ContactPack<Law>& pack = packs_.back();
+        const int lane = static_cast<int>(filled_);
+        pack.first[filled_] = near_[n].pair.first;
+        if (near_[n].pair.second >= 0) pack.second[filled_] = near_[n].pair.second;
+        const std::size_t place = (packs_.size() - 1) * lanes + filled_;
+        lane_[place] = static_cast<Index>(n), concrete_sides_[place] = near_[n].concrete_sides;
+        ++filled_;
+        if (!touched) return;
+        detail::set_memory_of_lane(pack.memory, lane, memory);
+        for (int a = 0; a < 3; ++a) pack.before[a].set(lane, before[a]);
+        pack.touched.bits[lane] = -1;
+    }
+
+    static bool is_of(const Near& near, const ContactKind& kind) noexcept {
+        return kind ==
+               ContactKind{near.pair.second < 0 ? -1 - near.pair.second : -1, near.concrete_sides > 0};
+    }
+
+    std::vector<Near> near_;
+    std::vector<ContactKind> kinds_;  ///< of the near pairs, in their order
+    std::vector<ContactPack<Law>> packs_, old_packs_;
+    std::vector<Index> lane_;                   ///< [pack x lane] into near_, -1: left over
+    std::vector<std::uint8_t> concrete_sides_;  ///< [pack x lane]
+    std::vector<Run> runs_;
+    std::vector<Index> where_;  ///< [near] its lane before, while lists are refined
+    std::size_t filled_ = lanes;
+    Index phantom_ = 0;
+};
+
+}  // namespace abrade

@@ -1,0 +1,83 @@
+#pragma once
+// What a step reads and writes of each sphere, in whole cache lines: a contact touches one line of place, one
+// of motion and one of load on either side, and packs of contacts load them whole.
+
+#include <abrade/core/simd.hpp>
+
+#include <vector>
+
+namespace abrade {
+
+/// Where a sphere is.
+struct alignas(32) SpherePlace {
+    Vec3 centre = Vec3::Zero();  ///< [m]
+    Real radius = 0;             ///< [m]
+};
+
+/// How it moves, halfway through the step that led to its place.
+struct alignas(64) SphereMotion {
+    Vec3 velocity = Vec3::Zero();  ///< of the centre [m/s]
+    Real inverse_mass = 0;         ///< of its body, 0 where that is fixed [1/kg]
+    Vec3 rim = Vec3::Zero();       ///< radius times angular velocity [m/s]
+    Real curvature = 0;            ///< 1/radius [1/m]
+};
+
+/// What acts on it. Contact points lie at arms that share the distance of the centres in proportion to the
+/// radii, arm = lambda r, lambda = distance / (r_i + r_j): both spheres of a contact feel the same lever.
+struct alignas(64) SphereLoad {
+    Vec3 force = Vec3::Zero();  ///< [N]
+    Real worn = 0;              ///< volume worn off in this step [m3]
+    Vec3 lever = Vec3::Zero();  ///< sum of lambda f x n; times the radius: the torque about the centre [N]
+    Real mass = 0;              ///< of its body: no load, but its place is free [kg]
+};
+
+/// The lines of all spheres, in slots: first every sphere, then images of some of them (of periodic
+/// boundaries, of the slab next door), at the end three phantoms that fill up packs: two that are far from
+/// each other and one that no plane touches.
+struct SphereLines {
+    std::vector<SpherePlace> place;
+    std::vector<SphereMotion> motion;
+    std::vector<SphereLoad> load;
+
+    void resize(std::size_t slots) { place.resize(slots), motion.resize(slots), load.resize(slots); }
+
+    /// Adds the phantoms; returns the slot of the first.
+    Index add_phantoms() {
+        const std::size_t first = place.size();
+        resize(first + 3);
+        // Far, yet so near that squares of distances stay finite.
+        place[first] = {Vec3::Constant(1e100), 1}, place[first + 1] = {Vec3::Constant(-1e100), 1};
+        place[first + 2] = {Vec3::Zero(), -1e100};
+        for (std::size_t s = first; s < first + 3; ++s) motion[s].inverse_mass = motion[s].curvature = 1;
+        return static_cast<Index>(first);
+    }
+};
+
+/// A pair of spheres in slots, or a sphere near plane -1 - second.
+struct SlotPair {
+    Index first = 0, second = 0;
+};
+
+namespace detail {
+
+static_assert(sizeof(SpherePlace) == sizeof(Quad) && sizeof(SphereMotion) == 2 * sizeof(Quad) &&
+              sizeof(SphereLoad) == 2 * sizeof(Quad));
+
+inline Quad& quad(SpherePlace& line) noexcept { return reinterpret_cast<Quad&>(line); }
+inline const Quad& quad(const SpherePlace& line) noexcept { return reinterpret_cast<const Quad&>(line); }
+inline Quad& quad(SphereMotion& line, std::size_t half) noexcept {
+    return reinterpret_cast<Quad*>(&line)[half];
+}
+inline const Quad& quad(const SphereMotion& line, std::size_t half) noexcept {
+    return reinterpret_cast<const Quad*>(&line)[half];
+}
+inline Quad& quad(SphereLoad& line, std::size_t half) noexcept {
+    return reinterpret_cast<Quad*>(&line)[half];
+}
+inline const Quad& quad(const SphereLoad& line, std::size_t half) noexcept {
+    return reinterpret_cast<const Quad*>(&line)[half];
+}
+
+}  // namespace detail
+
+}  // namespace abrade

@@ -1,0 +1,137 @@
+#pragma once
+// Bodies of a simulation moved on, and written back.
+
+#include <abrade/sim/motion.hpp>
+#include <abrade/sim/state.hpp>
+
+namespace abrade {
+
+/// One move of all bodies.
+struct Move {
+    Real kick = 0, drift = 0;  ///< how far [s]
+    bool keeps_loads = false;  ///< they are wanted again
+    Real time = 0;             ///< of the loads [s]
+    /// How far drag looks ahead of the velocities that the lines hold, as a share of their last change.
+    Real ahead_in_fluid = 0;
+};
+
+namespace detail {
+
+inline Vec3 first_three(const Quad& q) noexcept { return {q.value[0], q.value[1], q.value[2]}; }
+
+}  // namespace detail
+
+/// Kicks and drifts a single sphere, and takes its loads off it.
+template <class P>
+void move_sphere(State<P>& state, Index slot, const Move& move, MotionSums& sums) noexcept {
+    const auto s = static_cast<std::size_t>(slot);
+    SphereMotion& motion = state.store.lines.motion[s];
+    SphereLoad& load = state.store.lines.load[s];
+    SpherePlace& place = state.store.lines.place[s];
+    const Real mass = load.mass;
+    if (motion.inverse_mass > 0) {
+        FluidLoad fluid;
+        Quad other{};
+        if constexpr (P::has_fluid) {
+            const auto body = state.particles.body[static_cast<std::size_t>(state.store.sphere_of(slot))];
+            if (state.feels_fluid(body)) {
+                fluid = state.fluid_on(body, place.centre, motion.velocity, move.time, move.ahead_in_fluid);
+                state.velocity_in_fluid[static_cast<std::size_t>(body)] = motion.velocity;
+                other = detail::quad(Vec3(fluid.drag + fluid.buoyancy));
+            }
+        }
+        const KickedSphere after = kick(motion, load, other, detail::quad(state.scene.gravity), move.kick);
+        sums.interaction = sums.interaction + after.interaction;
+        sums.path = sums.path + after.path;
+        if constexpr (P::has_fluid)
+            sums.add(fluid, 0.5 * move.kick * (motion.velocity + detail::first_three(after.velocity)),
+                     move.kick);
+        detail::quad(motion, 0) = after.velocity, detail::quad(motion, 1) = after.rim;
+        const Quad velocity = detail::three_ones * after.velocity;
+        detail::quad(place) = detail::quad(place) + detail::same(move.drift) * velocity;
+        sums.notice(detail::quad(place), velocity, after.rim);
+    }
+    if (move.keeps_loads) return;
+    detail::quad(load, 0) = Quad{}, detail::quad(load, 1) = Quad{Quad::Native{0, 0, 0, mass}};
+}
+
+/// The same for a clump and its member spheres.
+template <class P>
+void move_clump(State<P>& state, MovingClump& clump, const Move& move, MotionSums& sums) noexcept {
+    SphereLines& lines = state.store.lines;
+    const auto first = static_cast<std::size_t>(clump.first_slot),
+               last = first + static_cast<std::size_t>(clump.count);
+    if (clump.inverse_mass > 0) {
+        FluidLoad fluid;
+        if constexpr (P::has_fluid)
+            if (state.feels_fluid(clump.body)) {
+                fluid = state.fluid_on(clump.body, clump.position, clump.velocity, move.time,
+                                       move.ahead_in_fluid);
+                state.velocity_in_fluid[static_cast<std::size_t>(clump.body)] = clump.velocity;
+            }
+        const KickedClump after = kick(clump, load_of(clump, lines), Vec3(fluid.drag + fluid.buoyancy),
+                                       state.scene.gravity, move.kick);
+        sums.interaction.value[0] += after.interaction;
+        sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
+        if constexpr (P::has_fluid) sums.add(fluid, after.path, move.kick);
+        clump.velocity = after.velocity, clump.angular_momentum = after.angular_momentum;
+        if (move.drift > 0) drift(clump, move.drift, state.store, state.particles);
+        for (std::size_t m = first; m < last; ++m)
+            sums.notice(detail::quad(lines.place[m]), detail::three_ones * detail::quad(lines.motion[m], 0),
+                        detail::quad(lines.motion[m], 1));
+    }
+    if (move.keeps_loads) return;
+    for (std::size_t m = first; m < last; ++m) lines.load[m].force.setZero(), lines.load[m].lever.setZero();
+}
+
+/// Writes a body back into `particles`, its velocity `move.kick` further on; books the works of that kick,
+/// but moves nothing.
+template <class P>
+void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sums) noexcept {
+    const auto b = static_cast<std::size_t>(body);
+    Particles& p = state.particles;
+    const SphereLines& lines = state.store.lines;
+    const auto first = static_cast<std::size_t>(p.first_sphere[b]);
+    const Index clump_index = state.store.clump_of(body);
+    FluidLoad fluid;
+    const auto sample = [&](const Vec3& position, const Vec3& velocity) {
+        if constexpr (P::has_fluid)
+            if (state.feels_fluid(body))
+                fluid = state.fluid_on(body, position, velocity, move.time, move.ahead_in_fluid);
+        return Vec3(fluid.drag + fluid.buoyancy);
+    };
+    if (clump_index >= 0) {
+        const MovingClump& clump = state.store.clumps[static_cast<std::size_t>(clump_index)];
+        for (std::size_t m = 0; m < static_cast<std::size_t>(clump.count); ++m)
+            p.centre[first + m] = lines.place[static_cast<std::size_t>(clump.first_slot) + m].centre;
+        p.position[b] = clump.position, p.orientation[b] = clump.orientation;
+        if (p.inverse_mass[b] == 0) return;
+        const ClumpLoad load = load_of(clump, lines);
+        const Vec3 other = sample(clump.position, clump.velocity);
+        const KickedClump after = kick(clump, load, other, state.scene.gravity, move.kick);
+        p.velocity[b] = after.velocity, p.angular_momentum[b] = after.angular_momentum;
+        p.force[b] = load.force + p.mass[b] * state.scene.gravity + other, p.torque[b] = load.torque;
+        sums.interaction.value[0] += after.interaction;
+        sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
+        sums.add(fluid, after.path, move.kick);
+        return;
+    }
+    const auto slot = static_cast<std::size_t>(state.store.slot_of(static_cast<Index>(first)));
+    const SpherePlace& place = lines.place[slot];
+    const SphereMotion& motion = lines.motion[slot];
+    const SphereLoad& load = lines.load[slot];
+    p.centre[first] = p.position[b] = place.centre;
+    if (p.inverse_mass[b] == 0) return;
+    const Vec3 other = sample(place.centre, motion.velocity);
+    const KickedSphere after =
+        kick(motion, load, detail::quad(other), detail::quad(state.scene.gravity), move.kick);
+    p.velocity[b] = detail::first_three(after.velocity);
+    p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * detail::first_three(after.rim);
+    p.force[b] = load.force + p.mass[b] * state.scene.gravity + other;
+    p.torque[b] = place.radius * load.lever;
+    sums.interaction = sums.interaction + after.interaction;
+    sums.path = sums.path + after.path;
+    sums.add(fluid, 0.5 * move.kick * (motion.velocity + p.velocity[b]), move.kick);
+}
+
+}  // namespace abrade

@@ -1,0 +1,240 @@
+#pragma once
+// The lists of near pairs and of candidates: how long they last, and what happens when they are renewed.
+
+#include <abrade/sim/state.hpp>
+
+#include <chrono>
+
+namespace abrade {
+
+/// Near pairs are found within a skin and last until bodies may have crossed it; of them, candidates within a
+/// thinner, inner skin are picked anew every few dozen steps, and only candidates are looked at in a step.
+template <class P>
+class Lists {
+public:
+    /// The time after which lists are renewed although nothing outran them, so that supply and departures are
+    /// not left waiting [steps].
+    static constexpr Index longest_life = 400;
+
+    void set_skin(Real skin) noexcept { skin_ = skin; }
+
+    /// Tells of a step done: nothing moved further than `way` [m] in it.
+    void note_step(Real way) noexcept { moved_ += way, ++age_; }
+
+    /// Makes the lists good for the places of now. Steps are of dt.
+    void freshen(State<P>& state, Real t, Real dt) {
+        if (age_ >= longest_life || state.loosened)
+            renew(state, t, dt);
+        else if (2 * moved_ > inner_skin_ && !refine(state, dt))
+            renew(state, t, dt);
+    }
+
+    /// Renews what changes seldom: bodies that left, supply, near pairs.
+    void renew(State<P>& state, Real t, Real dt) {
+        const auto start = std::chrono::steady_clock::now();
+        wrap(state);
+        const Departure departure = departing(state, dt);
+        state.accounts.left_stored +=
+            state.contacts.keep(state.policies.contact, state.store, state.scene.walls, departure.moved);
+        const bool bonds_broke = P::has_bonds && state.broken_tension + state.broken_shear > 0;
+        if (state.feed || bonds_broke) state.publish_places();
+        if (departure.any) remove(state, departure);
+        if (bonds_broke)
+            state.accounts.left_stored +=
+                state.network.prune(state.particles, departure.moved, state.particles.centre);
+        supply(state, t, dt);
+        const Real fastest = std::sqrt(fastest2(state));
+        list_skin_ = std::max(skin_, 2 * shortest_life * dt * fastest);
+        state.store.arrange(state.particles, departure.moved, list_skin_, state.scene.periodic());
+        find_pairs(state);
+        built_at_.clear();
+        for (Index s = 0; s < state.store.spheres(); ++s)
+            built_at_.push_back(state.store.lines.place[at(s)].centre);
+        state.loosened = false;
+        age_ = 0;
+        refine(state, dt);
+        seconds_ += std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
+    }
+    Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
+
+private:
+    /// Steps that lists last at least, and that candidates are meant to last.
+    static constexpr Real shortest_life = 8, inner_life = 32;
+
+    struct Departure {
+        std::vector<char> gone;    ///< [body]
+        std::vector<Index> moved;  ///< [sphere] where each will be
+        bool any = false;
+    };
+
+    static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+
+    static Real fastest2(const State<P>& state) noexcept {
+        Real fastest = 0;
+        for (Index s = 0; s < state.store.spheres(); ++s)
+            fastest = std::max(fastest, state.store.lines.motion[at(s)].velocity.squaredNorm());
+        if (state.store.spheres() < state.particles.spheres())  // new ones are not in the store yet
+            for (const Vec3& v : state.particles.velocity) fastest = std::max(fastest, v.squaredNorm());
+        return fastest;
+    }
+
+    /// Picks candidates; false where the list of near pairs would not last.
+    bool refine(State<P>& state, Real dt) {
+        Real furthest2 = 0;
+        for (std::size_t s = 0; s < built_at_.size(); ++s)
+            furthest2 = std::max(furthest2, (state.store.lines.place[s].centre - built_at_[s]).squaredNorm());
+        const Real left = list_skin_ - 2 * std::sqrt(furthest2);
+        const Real way = 2 * dt * std::sqrt(fastest2(state));
+        if (left < shortest_life * way && age_ > 0) return false;
+        inner_skin_ = std::min(left, std::max(inner_life * way, 0.01 * skin_));
+        moved_ = 0;
+        state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_);
+        return true;
+    }
+
+    /// Brings bodies that crossed a periodic edge back in; what that does to their potential energy is booked
+    /// as if they had been fed there.
+    static void wrap(State<P>& state) {
+        const Periodic space = state.scene.periodic();
+        if (space.period.isZero()) return;
+        SphereStore& store = state.store;
+        const auto back = [&](Vec3& x, Index body) {
+            Vec3 shift = Vec3::Zero();
+            for (int a = 0; a < 3; ++a)
+                if (space.period[a] > 0)
+                    shift[a] = -space.period[a] * std::floor((x[a] - space.low[a]) / space.period[a]);
+            if (shift.isZero(0)) return shift;
+            state.accounts.fed_potential -= state.potential_energy(body, x);
+            x += shift;
+            state.accounts.fed_potential += state.potential_energy(body, x);
+            return shift;
+        };
+        for (Index slot = 0; slot < store.spheres(); ++slot) {
+            const Index body = state.particles.body[at(store.sphere_of(slot))];
+            if (store.clump_of(body) < 0) back(store.lines.place[at(slot)].centre, body);
+        }
+        for (MovingClump& clump : store.clumps) {
+            const Vec3 shift = back(clump.position, clump.body);
+            for (Index m = 0; m < clump.count; ++m)
+                store.lines.place[at(clump.first_slot + m)].centre += shift;
+        }
+    }
+
+    Departure departing(State<P>& state, Real dt) const {
+        Departure d;
+        const Particles& p = state.particles;
+        d.gone.assign(at(p.bodies()), 0);
+        d.moved.assign(at(state.store.spheres()), 0);
+        Index to = 0;
+        for (Index b = 0; b < p.bodies(); ++b) {
+            const bool known = state.store.spheres() > p.first_sphere[at(b)];
+            const bool may_go =
+                state.scene.outlet && known && p.inverse_mass[at(b)] > 0 && p.kind[at(b)] != Kind::concrete;
+            if (may_go) {
+                const Vec3 x = state.store.position_of(p, b);
+                if (x.x() > *state.scene.outlet) {
+                    d.gone[at(b)] = 1, d.any = true;
+                    leave(state, b, x, dt);
+                }
+            }
+            if (known)
+                for (Index s = p.first_sphere[at(b)]; s < p.first_sphere[at(b)] + p.sphere_count[at(b)]; ++s)
+                    d.moved[at(s)] = d.gone[at(b)] ? -1 : to++;
+        }
+        return d;
+    }
+
+    /// Books what a body takes along. Its velocity is half a step old, so its place is taken back as far.
+    static void leave(State<P>& state, Index body, const Vec3& x, Real dt) {
+        const SphereStore& store = state.store;
+        const Vec3 v = store.velocity_of(state.particles, body);
+        Real turning = 0;
+        if (const Index c = store.clump_of(body); c >= 0) {
+            const MovingClump& clump = store.clumps[at(c)];
+            turning = 0.5 * clump.angular_momentum.dot(clump.angular_velocity(clump.orientation));
+        } else {
+            const Index slot = store.slot_of(state.particles.first_sphere[at(body)]);
+            turning = 0.2 * state.particles.mass[at(body)] * store.lines.motion[at(slot)].rim.squaredNorm();
+        }
+        state.accounts.left_kinetic += 0.5 * state.particles.mass[at(body)] * v.squaredNorm() + turning;
+        state.accounts.left_potential += state.potential_energy(body, x - 0.5 * dt * v);
+        if (state.scene.gauge && state.particles.kind[at(body)] == Kind::stone)
+            state.gauge_volume += state.particles.volume[at(body)] *
+                                  ((x.x() >= *state.scene.gauge) - state.past_gauge[at(body)]);
+    }
+
+    static void remove(State<P>& state, const Departure& departure) {
+        state.particles.remove(departure.gone);
+        const auto compact = [&](auto& column) {
+            std::size_t to = 0;
+            for (std::size_t from = 0; from < column.size(); ++from)
+                if (!departure.gone[from]) column[to++] = column[from];
+            column.resize(to);
+        };
+        if constexpr (P::has_fluid) compact(state.velocity_in_fluid);
+        compact(state.past_gauge);
+    }
+
+    /// Fed bodies have their velocity half a step ago, as all others.
+    static void supply(State<P>& state, Real t, Real dt) {
+        if (state.feed)
+            state.feed->supply(state.particles, state.scene.walls, t, [&](Index body) {
+                const Vec3 before =
+                    state.particles.position[at(body)] - 0.5 * dt * state.particles.velocity[at(body)];
+                state.accounts.fed_kinetic += state.particles.kinetic_energy(body);
+                state.accounts.fed_potential += state.potential_energy(body, before);
+            });
+        const Particles& p = state.particles;
+        if constexpr (P::has_fluid)
+            for (std::size_t b = state.velocity_in_fluid.size(); b < p.velocity.size(); ++b)
+                state.velocity_in_fluid.push_back(p.velocity[b]);
+        for (std::size_t b = state.past_gauge.size(); b < p.position.size(); ++b)
+            state.past_gauge.push_back(state.scene.gauge && p.position[b].x() >= *state.scene.gauge);
+    }
+
+    void find_pairs(State<P>& state) {
+        const Particles& p = state.particles;
+        std::vector<char> passive(at(p.spheres()));
+        for (Index s = 0; s < p.spheres(); ++s) {
+            const Kind kind = p.kind[at(p.body[at(s)])];
+            passive[at(s)] = kind == Kind::concrete || kind == Kind::fixed;
+        }
+        std::vector<SphereStore::ImageRequest> requests;
+        if constexpr (P::has_bonds) {
+            state.network.arrange(state.store);
+            state.network.each_bond([&](auto& bond, Index slab) {
+                for (const Index sphere : {bond.spheres.first, bond.spheres.second})
+                    if (const auto image = image_for(state.store, sphere, slab)) requests.push_back(*image);
+            });
+        }
+        state.contacts.rebuild(state.store,
+                               {p, state.scene.walls, passive, list_skin_, state.scene.periodic().period},
+                               std::move(requests), [&](Index first, Index second) {
+                                   return P::has_bonds && state.network.holds({first, second});
+                               });
+        if constexpr (P::has_bonds)
+            state.network.each_bond([&](auto& bond, Index slab) {
+                const auto slot = [&](Index sphere) {
+                    const auto image = image_for(state.store, sphere, slab);
+                    return image ? state.store.image_slot(*image) : state.store.slot_of(sphere);
+                };
+                bond.slots = {slot(bond.spheres.first), slot(bond.spheres.second)};
+            });
+    }
+
+    /// The image of a sphere that a bond of `slab` needs where the sphere belongs to another chunk.
+    static std::optional<SphereStore::ImageRequest> image_for(const SphereStore& store, Index sphere,
+                                                              Index slab) {
+        const Index slot = store.slot_of(sphere), chunk = store.slabs.chunk_of(slab);
+        if (store.slabs.chunk_of(store.slab_of_slot(slot)) == chunk) return std::nullopt;
+        return SphereStore::ImageRequest{slot, chunk, {}};
+    }
+
+    Real skin_ = 0, list_skin_ = 0;    ///< asked for, of the present list [m]
+    Real inner_skin_ = 0, moved_ = 0;  ///< of the candidates; how far anything may have come since [m]
+    Real seconds_ = 0;
+    Index age_ = 0;               ///< steps since the last renewal
+    std::vector<Vec3> built_at_;  ///< [slot] where the list was made [m]
+};
+
+}  // namespace abrade

@@ -1,0 +1,125 @@
+#pragma once
+// What a simulation consists of: policies, scene, bodies, contacts, bonds, concrete, supply, accounts.
+
+#include <abrade/bond/network.hpp>
+#include <abrade/dem/contact_list.hpp>
+#include <abrade/sim/ledger.hpp>
+#include <abrade/sim/policies.hpp>
+#include <abrade/sim/scene.hpp>
+
+namespace abrade {
+
+/// Everything that lasts from step to step. `particles` is as of the last publication; what moves is in
+/// `store`.
+template <class P>
+struct State {
+    State(Scene from, P chosen) : policies(std::move(chosen)), scene(std::move(from)) {
+        scene.validate();
+        if (scene.feed) feed.emplace(*scene.feed);
+        if (scene.concrete) add_concrete(*scene.concrete);
+        for (const Scene::Stone& stone : scene.stones)
+            particles.add(stone.clump, stone.density, stone.state, Kind::stone);
+    }
+
+    P policies;
+    Scene scene;  ///< its lattice has moved into `concrete`
+    Particles particles;
+    SphereStore store;
+    ContactList<decltype(P::contact)> contacts;
+    Network<decltype(P::bond)> network;
+    Concrete concrete;
+    std::optional<Feed> feed;
+    Ledger accounts;  ///< works and losses up to the velocities that the lines hold
+    std::vector<Vec3>
+        velocity_in_fluid;  ///< [body] that drag was last reckoned with [m/s]; empty without a fluid
+    Index broken_tension = 0, broken_shear = 0;
+    bool pattern_changed = false;  ///< a bond broke
+    bool loosened = false;         ///< concrete came loose
+    Real gauge_volume = 0;         ///< solid, net downstream [m3]
+    std::vector<char> past_gauge;  ///< [body]
+
+    static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// Of gravity, from the origin [J]; 0 for what is fixed.
+    Real potential_energy(Index body, const Vec3& position) const noexcept {
+        return particles.inverse_mass[at(body)] == 0
+                   ? 0
+                   : -particles.mass[at(body)] * scene.gravity.dot(position);
+    }
+
+    /// What is left of the strength of a body of concrete, for bonds.
+    auto strength_left() const noexcept {
+        if constexpr (P::has_wear)
+            return [this](Index body) {
+                return policies.wear.strength_left(concrete.fracture(particles.site[at(body)]));
+            };
+        else
+            return [](Index) { return 1.0; };
+    }
+
+    bool feels_fluid(Index body) const noexcept {
+        const Kind kind = particles.kind[at(body)];
+        return P::has_fluid && (kind == Kind::stone || kind == Kind::grain);
+    }
+    /// What the fluid does to a body at time t; `ahead` as in ContactStep.
+    FluidLoad fluid_on(Index body, const Vec3& position, const Vec3& velocity, Real t,
+                       Real ahead) const noexcept {
+        const Vec3 now = velocity + ahead * (velocity - velocity_in_fluid[at(body)]);
+        return fluid_load(policies.drag, policies.fluid.sample(position, t),
+                          {position, now, particles.volume[at(body)]}, scene.gravity);
+    }
+
+    /// Positions, and velocities as the lines have them.
+    void publish_places() {
+        for (std::size_t b = 0; b < particles.position.size(); ++b) {
+            const auto body = static_cast<Index>(b);
+            particles.position[b] = store.position_of(particles, body);
+            particles.velocity[b] = store.velocity_of(particles, body);
+            const auto first = at(particles.first_sphere[b]);
+            for (std::size_t s = first; s < first + at(particles.sphere_count[b]); ++s)
+                particles.centre[s] = store.lines.place[at(store.slot_of(static_cast<Index>(s)))].centre;
+        }
+    }
+
+    /// Lets concrete go whose last bond to the ground broke.
+    void free_loose_concrete() {
+        if constexpr (P::has_bonds) {
+            if (!std::exchange(pattern_changed, false)) return;
+            const std::vector<char> tied = network.tied_to_ground(particles);
+            for (Index b = 0; b < particles.bodies(); ++b)
+                if (particles.kind[at(b)] == Kind::concrete && !tied[at(b)]) {
+                    particles.kind[at(b)] = Kind::grain;
+                    concrete.set_gone(particles.site[at(b)]);
+                    loosened = true;
+                }
+        }
+    }
+
+private:
+    void add_concrete(ConcreteBlock& block) {
+        const Lattice& lattice = block.lattice;
+        const Clump sphere = make_clump("concrete", {{Vec3::Zero(), lattice.radius}});
+        for (Index s = 0; s < static_cast<Index>(lattice.sites.size()); ++s) {
+            const LatticeSite& site = lattice.sites[at(s)];
+            // What a wall passes through stands in that wall: set free, it would be shot out of it.
+            const bool in_wall = std::any_of(scene.walls.begin(), scene.walls.end(), [&](const Plane& wall) {
+                return wall.distance(site.centre) < (1 - 1e-6) * lattice.radius;
+            });
+            // Without bonds there is nothing to hold the spheres together: they stand as a rigid bed.
+            const bool held = !P::has_bonds || in_wall || site.layer + 1 == lattice.count_layers;
+            const Index body = particles.add(sphere, block.density, {.position = site.centre},
+                                             held ? Kind::fixed : Kind::concrete);
+            particles.site[at(body)] = s;
+        }
+        if constexpr (P::has_bonds) {
+            std::vector<BondedPair> bonded;
+            for (const auto& [i, j] : lattice.neighbours())
+                if (particles.inverse_mass[at(i)] + particles.inverse_mass[at(j)] > 0)
+                    bonded.push_back({i, j});
+            network.build(particles, std::move(bonded));
+        }
+        concrete = Concrete(std::move(block.lattice), block.fracture_volume);
+    }
+};
+
+}  // namespace abrade
