@@ -251,4 +251,20 @@ inline bool slides_throughout_6(const Impact& t) {
     return t.rim > 1.01 * 3.5 * t.friction * (1 + t.restitution) * t.normal;
 }
 
+/// C. Thornton, S. Cummins, P. Cleary, Powder Technol. 233 (2013) 30, doi:10.1016/j.powtec.2012.08.012.
+inline Impact impact_thornton(Real psi, Real restitution) {
+    const Real speed = 5, mu = 0.1;
+    return {.material = {7e10, 0.3, 2650},
+            .radius = 0.025,
+            .normal = speed,
+            .tangential = 0.5 * psi * mu * (1 + restitution) * speed,
+            .restitution = restitution,
+            .friction = mu,
+            .youngs_other = 7e10};
+}
+/// 2 V_st' and 2 R w', in units of mu (1 + e) V_n; psi is 2 V_t in that unit.
+inline Real figure_thornton(const std::string& quantity, const Impact& t, const Rebound& r) {
+    return 2 * (quantity == "patch" ? r.patch : r.rim) / (t.friction * (1 + t.restitution) * t.normal);
+}
+
 }  // namespace chung_ooi

@@ -14,7 +14,7 @@ using namespace chung_ooi;
 
 namespace {
 
-constexpr Real steps = 100, fine_steps = 4000;  ///< a contact
+constexpr Real steps = 100, fine_steps = 2000;  ///< a contact
 
 /// Greatest |value - reference|, over the range of the reference.
 struct Comparison {
@@ -48,6 +48,7 @@ struct Comparisons {
     }
 };
 
+/// The larger sphere takes what the smaller brings, to round-off.
 void check_momenta(const Momenta& before, const Momenta& after, const Impact& t) {
     const Real brought = sphere_mass(t.radius, t.material.density) * t.normal;
     CHECK((after.linear - before.linear).norm() <= 1e-12 * brought);
@@ -112,10 +113,15 @@ TEST_CASE("test 5, one normal speed, many tangential speeds: half Mindlin's stif
     // k_t is half of what E and nu give: (1 - nu)/(2 - nu) k_n, as if the plane, rigid to compression, were
     // as soft as the sphere to shear. The FEM series departs from both forms by up to 1.1 and is no gate.
     const OtherForm published{.spring = OtherHertzMindlin::Spring::unscaled, .shear = 0.5};
-    Comparisons curves, own_curves, refined, own_refined;
+    Comparisons curves, own_curves, refined, own_refined, elastic_half_space;
     for (const auto& row : reference_table("dem07_chung_ooi_T5_oblique_constant_vn.csv")) {
-        if (row.is("series", "FEM")) continue;
         const Real x = row.at("Vt_over_muVn");
+        if (row.is("series", "FEM")) {
+            const Impact t = impact_5(steel, x);
+            elastic_half_space.add(row, figure_5(row.texts.at("quantity"), t, off_plane(t, own_form, steps)),
+                                   row.at("value"));
+            continue;
+        }
         const Impact t = impact_5(material_of(row), x);
         const auto figure = [&](const auto& form, Real n) {
             return figure_5(row.texts.at("quantity"), t, off_plane(t, form, n));
@@ -137,20 +143,22 @@ TEST_CASE("test 5, one normal speed, many tangential speeds: half Mindlin's stif
     refined.gate("unscaled spring, k_t / 2, against a finer step", 0.02);
     own_refined.gate("incremental spring against a finer step", 0.02);
     own_curves.report("incremental spring against the curve (no gate)");
+    elastic_half_space.report("incremental spring against finite elements (no gate)");
 }
 
 namespace {
 
-/// Below this x, V_st / V_n > 0.35, aluminium's beta in tests 6 and 8 agrees with nylon's, with that of case
-/// B and with the recoil of the same impacts. Above, at the three smallest spins, it falls to -0.34 while
-/// those stay near -0.11. That is no physics of Hertz and Mindlin: beta depends on x, mu, e and k_t/k_n
-/// alone, and k_t/k_n is the same in cases A and B.
+/// Above this x, at the three smallest spins, aluminium's beta in test 6 and in case A of test 8 falls to
+/// -0.34, where nylon's and that of case B stay at -0.11. No form of Hertz' and Mindlin's laws can do both:
+/// beta depends on x, mu, e and k_t/k_n alone, and k_t/k_n is the same in cases A and B. Below, the series
+/// agree.
 constexpr Real largest_consistent_x = 6;
 
 bool consistent(const ReferenceRow& row) {
-    return !row.is("quantity", "beta_tangential_restitution") && !row.is("quantity", "beta_Al_alloy")
-               ? true
-               : row.is("series", "Nylon") || row.is("series", "caseB") || row.at("x") < largest_consistent_x;
+    const bool aluminium_beta =
+        (row.is("quantity", "beta_tangential_restitution") && row.is("series", "Al_alloy")) ||
+        (row.is("quantity", "beta_Al_alloy") && row.is("series", "caseA"));
+    return !aluminium_beta || row.at("x") < largest_consistent_x;
 }
 
 /// Tests 6 and 8: `throw_it(row, impact, form, steps)`.
@@ -195,19 +203,24 @@ void spinning_sphere(const std::string& table, ThrowIt&& throw_it) {
 }
 
 /// The whole of aluminium's beta, with the three smallest spins: a slider whose spring takes the whole limit
-/// as soon as spring and dashpot together exceed it, which they do as a contact begins.
-const OtherForm aluminium_form{
-    .spring = OtherHertzMindlin::Spring::total, .shear = 1.12, .limit_by_push = true, .tension = true};
-
+/// as soon as spring and dashpot together exceed it, which they do as a contact begins. k_t is fitted.
 template <class ThrowIt>
 void aluminium_beta(const std::string& table, const std::string& series, ThrowIt&& throw_it) {
-    Comparisons curve;
-    for (const auto& row : reference_table(table)) {
-        if (!row.texts.at("quantity").starts_with("beta") || !row.is("series", series)) continue;
-        const Impact t = impact_6(aluminium_alloy, "beta", row.at("x"));
-        curve.add(row, figure_6("beta", t, throw_it(t, aluminium_form, 4 * steps)), row.at("value"));
-    }
-    curve.gate("a spring that takes the whole limit, k_t + 12 %, against the curve", 0.05);
+    const auto compare = [&](Real shear) {
+        const OtherForm form{.spring = OtherHertzMindlin::Spring::total,
+                             .shear = shear,
+                             .limit_by_push = true,
+                             .tension = true};
+        Comparisons curve;
+        for (const auto& row : reference_table(table)) {
+            if (!row.texts.at("quantity").starts_with("beta") || !row.is("series", series)) continue;
+            const Impact t = impact_6(aluminium_alloy, "beta", row.at("x"));
+            curve.add(row, figure_6("beta", t, throw_it(t, form, 4 * steps)), row.at("value"));
+        }
+        return curve;
+    };
+    compare(1.12).gate("the limit in the spring, 1.12 k_t, against the curve", 0.05);
+    compare(1).report("the limit in the spring, k_t, against the curve (no gate)");
 }
 
 const auto on_plane = [](const Impact& t, const auto& form, Real n) { return off_plane(t, form, n); };
@@ -308,8 +321,23 @@ TEST_CASE(
                       << 100 * (own.kinetic + own.lost() - brought) / brought << " %");
             CHECK(-e.integration_residue() / brought == doctest::Approx(made).epsilon(1e-9));
             CHECK(made == doctest::Approx(t.restitution < 1 ? 9.7e-4 : -1.16e-2).epsilon(0.1));
-            // 100 steps: 1.5e-4 of what was brought in the worst case; 4000 steps: round that down by 40^1.5.
-            CHECK(std::abs(own.integration_residue()) < (n == steps ? 2e-4 : 1e-6) * brought);
+            // The worse is the sticking impact, of order 1.5: 1.5e-4 at 100 steps, 2.1e-6 at 2000.
+            CHECK(std::abs(own.integration_residue()) < (n == steps ? 2e-4 : 3e-6) * brought);
         }
+    }
+}
+
+TEST_CASE("the rebound of a sticking impact converges with order 1.5, for k_t begins as the root of time") {
+    // First order, with 1.4 % at 50 steps, where an incremental spring grows by k_t at the end of the step.
+    Impact t = impact_4(aluminium_alloy, 25);
+    t.restitution = 1, t.friction = 1e3;
+    const Real speed = 3.9, exact = off_plane(t, own_form, 20000).patch;
+    Real before = 0;
+    for (const Real n : {50., 100., 200.}) {
+        const Real error = std::abs(off_plane(t, own_form, n).patch - exact) / speed;
+        MESSAGE(n << " steps: the patch's velocity is off by " << 100 * error << " % of the speed");
+        if (n == 50) CHECK(error < 0.002);
+        if (n > 50) CHECK(before / error > 2.6);  // order 1.4
+        before = error;
     }
 }

@@ -8,29 +8,14 @@ using namespace chung_ooi;
 
 namespace {
 
-Impact impact_at(Real psi, Real restitution) {
-    const Real speed = 5, mu = 0.1;
-    return {.material = {7e10, 0.3, 2650},
-            .radius = 0.025,
-            .normal = speed,
-            .tangential = 0.5 * psi * mu * (1 + restitution) * speed,
-            .restitution = restitution,
-            .friction = mu,
-            .youngs_other = 7e10};
-}
-
-Real figure(const std::string& quantity, const Impact& t, const Rebound& r) {
-    return 2 * (quantity == "patch" ? r.patch : r.rim) / (t.friction * (1 + t.restitution) * t.normal);
-}
-
 /// Greatest departure from a series, over its range.
 template <class MakeLaw>
 Real departure(const std::string& quantity, Real restitution, const MakeLaw& form) {
     Real low = 1e300, high = -1e300, worst = 0;
     for (const auto& row : reference_table("dem15_thornton2013_oblique_hertz.csv")) {
         if (!row.is("quantity", quantity) || row.at("restitution") != restitution) continue;
-        const Impact t = impact_at(row.at("psi"), restitution);
-        const Real value = figure(quantity, t, off_plane(t, form, 100)), reference = row.at("value");
+        const Impact t = impact_thornton(row.at("psi"), restitution);
+        const Real value = figure_thornton(quantity, t, off_plane(t, form, 100)), reference = row.at("value");
         low = std::min(low, reference), high = std::max(high, reference);
         worst = std::max(worst, std::abs(value - reference));
     }
