@@ -1,5 +1,6 @@
 // One source of the contact law for several number types.
 #include <abrade/core/simd.hpp>
+#include <abrade/dem/hertz_mindlin.hpp>
 #include <abrade/dem/linear_spring.hpp>
 
 #include <doctest/doctest.h>
@@ -96,4 +97,70 @@ TEST_CASE("a pack of contacts answers as its contacts do one by one") {
     }
     CHECK(sliding > 1000);
     CHECK(apart > 1000);
+}
+
+TEST_CASE(
+    "Hertz-Mindlin in each of its forms: a pack answers as its contacts do, and loses nothing negative") {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<Real> u(-1, 1);
+    const auto anything = [&] { return Vec3(u(random), u(random), u(random)); };
+    for (const auto spring : {HertzMindlin::Spring::incremental, HertzMindlin::Spring::total})
+        for (const auto slider : {HertzMindlin::Slider::whole_force, HertzMindlin::Slider::springs})
+            for (const bool tension : {false, true}) {
+                const HertzMindlin hertz{{.youngs = 1e8,
+                                          .restitution = 0.6,
+                                          .friction = 0.5,
+                                          .tension = tension,
+                                          .spring = spring,
+                                          .slider = slider}};
+                const Real stiffness = 8 * hertz.effective_shear() * std::sqrt(5e-5 / 200);
+                int sliding = 0, apart = 0;
+                for (int n = 0; n < 400; ++n) {
+                    std::vector<ContactKinematics<Real>> one;
+                    std::vector<HertzMindlin::Memory<Real>> held;
+                    ContactKinematics<Pack> all{};
+                    HertzMindlin::Memory<Pack> held_by_all{};
+                    all.time_step = 1e-6;
+                    const Real speed = n % 2 ? 1 : 1e-3;
+                    for (int lane = 0; lane < pack_lanes; ++lane) {
+                        const Real overlap = n % 2 ? 5e-5 * u(random) * u(random) : 5e-5;
+                        one.push_back({anything().normalized(), overlap, speed * anything(), 100, 200, 1e-6,
+                                       speed * 1e-6 * anything()});
+                        held.push_back({1e-6 * anything(), stiffness * (1 + 0.5 * u(random))});
+                        for (int a = 0; a < 3; ++a) {
+                            all.normal[a].set(lane, one.back().normal[a]);
+                            all.velocity[a].set(lane, one.back().velocity[a]);
+                            all.travel[a].set(lane, one.back().travel[a]);
+                            held_by_all.spring[a].set(lane, held.back().spring[a]);
+                        }
+                        held_by_all.stiffness.set(lane, held.back().stiffness);
+                        all.overlap.set(lane, overlap), all.inverse_mass.set(lane, 100);
+                        all.curvature.set(lane, 200);
+                    }
+                    const auto answer = hertz.respond(all, held_by_all);
+                    for (int lane = 0; lane < pack_lanes; ++lane) {
+                        const auto k = static_cast<std::size_t>(lane);
+                        const auto alone = hertz.respond(one[k], held[k]);
+                        const Real push = stiffness * (5e-5 + 1e-6) + 10 * speed, energy = push * 1e-6;
+                        for (int a = 0; a < 3; ++a) {
+                            REQUIRE(answer.load.force[a][lane] ==
+                                    doctest::Approx(alone.load.force[a]).scale(push).epsilon(1e-9));
+                            REQUIRE(answer.memory.spring[a][lane] ==
+                                    doctest::Approx(alone.memory.spring[a]).scale(1e-6).epsilon(1e-9));
+                        }
+                        REQUIRE(answer.memory.stiffness[lane] ==
+                                doctest::Approx(alone.memory.stiffness).epsilon(1e-9));
+                        REQUIRE(answer.load.stored[lane] ==
+                                doctest::Approx(alone.load.stored).scale(energy).epsilon(1e-9));
+                        REQUIRE(answer.load.lost_tangential[lane] ==
+                                doctest::Approx(alone.load.lost_tangential).scale(energy).epsilon(1e-9));
+                        REQUIRE(alone.load.lost_tangential >= 0);
+                        REQUIRE(alone.load.lost_normal >= 0);
+                        REQUIRE(answer.load.lost_tangential[lane] >= 0);
+                        sliding += alone.load.lost_tangential > 0, apart += one[k].overlap <= 0;
+                    }
+                }
+                CHECK(sliding > 100);
+                CHECK(apart > 100);
+            }
 }

@@ -15,21 +15,41 @@ namespace abrade {
 /// (1992) 239, doi:10.1016/0032-5910(92)88030-L); zeta follows from e by the closed form of the linear
 /// spring, which holds here too, with or without tension.
 ///
-/// The tangential spring is incremental: while k_t grows its force stays, while k_t falls the force falls
-/// with it (C. Thornton, S. Cummins, P. Cleary, Powder Technol. 233 (2013) 30,
-/// doi:10.1016/j.powtec.2012.08.012). A spring of total form makes energy as it is loaded. What the spring
-/// gives up as k_t changes counts as lost to sliding: in a real contact it is lost to slip at the rim of the
-/// area of contact. Valid while the area of contact is small: delta below some 2 % of the radius.
+/// The tangential spring is incremental by default: while k_t grows its force stays, while k_t falls the
+/// force falls with it (C. Thornton, S. Cummins, P. Cleary, Powder Technol. 233 (2013) 30,
+/// doi:10.1016/j.powtec.2012.08.012), and it never makes energy. What the spring gives up as k_t changes
+/// counts as lost to sliding: in a real contact it is lost to slip at the rim of the area of contact.
+/// `Spring` and `Slider` offer what other codes do, to compare with them. Valid while the area of contact is
+/// small: delta below some 2 % of the radius.
 class HertzMindlin {
 public:
     static constexpr std::string_view name = "HertzMindlin";
 
+    /// How the tangential spring follows k_t.
+    enum class Spring {
+        incremental,  ///< the force stays while the contact stiffens, falls with k_t while it softens
+        /// The stretch stays: f_t = k_t s. Then 1/2 k_t s^2 rises as the contact stiffens, though nobody did
+        /// that work, and falls as it softens, though nobody received it. Neither is booked: what is made (or
+        /// vanishes) in the end shows as a negative (or positive) integration residue that no smaller time
+        /// step removes. For comparison with other codes, not for wear.
+        total
+    };
+    /// What Coulomb's limit holds.
+    enum class Slider {
+        whole_force,  ///< spring and dashpot together: |f_t| <= mu f_n
+        /// Springs only: |k_t s| <= mu 4/3 E* sqrt(R delta) delta. Dashpots act beside them, the tangential
+        /// one only while the contact sticks. |f_t| may exceed mu f_n, above all where damping may pull.
+        springs
+    };
+
     struct Params {
-        Real youngs = 0;        ///< E of the spheres [Pa]
-        Real poisson = 0.25;    ///< nu of the spheres, in (-1, 0.5] [-]
-        Real restitution = 1;   ///< of a normal impact, in (0, 1] [-]
-        Real friction = 0;      ///< mu [-]
-        bool tension = false;   ///< whether damping may pull; e is met either way
+        Real youngs = 0;       ///< E of the spheres [Pa]
+        Real poisson = 0.25;   ///< nu of the spheres, in (-1, 0.5] [-]
+        Real restitution = 1;  ///< of a normal impact, in (0, 1] [-]
+        Real friction = 0;     ///< mu [-]
+        bool tension = false;  ///< whether damping may pull; e is met either way
+        Spring spring = Spring::incremental;
+        Slider slider = Slider::whole_force;
         Real youngs_other = 0;  ///< E of the other partner [Pa]; 0: the same material
         Real poisson_other = 0.25;
         /// Overlap over radius up to which `stable_dt` is stable [-]. Contacts stiffen as they are pressed.
@@ -53,6 +73,8 @@ public:
             f("restitution", restitution, "-");
             f("friction", friction, "-");
             f("tension", tension ? 1 : 0, "-");
+            f("spring_total", spring == Spring::total ? 1 : 0, "-");
+            f("slider_springs", slider == Slider::springs ? 1 : 0, "-");
             f("youngs_other", youngs_other, "Pa");
             f("poisson_other", poisson_other, "-");
             f("largest_overlap", largest_overlap, "-");
@@ -101,24 +123,43 @@ public:
             params_.tension ? NormalSpring<Number>::pulling(push, held, dashpot, approach, contact.time_step)
                             : NormalSpring<Number>::pushing(push, held, dashpot, approach, contact.time_step);
 
-        // As k_t grows the spring shortens so that its force stays; as k_t falls the spring stays.
-        const Number stiffer = min(Number(1), memory.stiffness / max(kt, least));
-        const Vec3Of<Number> before = stiffer * turn_into_plane(memory.spring, contact.normal);
-        const Number held_before = Number(0.5) * memory.stiffness * memory.spring.dot(memory.spring);
-        const Number given_up = max(held_before - Number(0.5) * kt * before.dot(before), Number(0));
+        // As k_t grows an incremental spring shortens so that its force stays, and the way adds to it at the
+        // mean k_t of the step (for an overlap that grows evenly). As k_t falls the spring stays.
+        const bool total = params_.spring == Spring::total, by_springs = params_.slider == Slider::springs;
+        const Number grown =
+            total ? Number(0) : max(Number(1) - memory.stiffness / max(kt, least), Number(0));
+        const Number mean = Number(1) - grown * (Number(0.5) - grown * Number(1.0 / 6));
+        const Vec3Of<Number> before = (Number(1) - grown) * turn_into_plane(memory.spring, contact.normal);
         const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
-        const Vec3Of<Number> trial = before + begun * way;
-        const Number limit = select(touching, Number(params_.friction) * max(normal.force, Number(0)), far);
-        const auto tangential = SlidingSpring<Number>::at(
-            before, trial, slip, limit, max(kt, least),
-            dashpot * Number(std::sqrt(4 * effective_shear_ / effective_youngs_)), contact.time_step);
+        const Vec3Of<Number> trial = before + (mean * begun) * way;
+        const Number limit = select(
+            touching, Number(params_.friction) * (by_springs ? push : max(normal.force, Number(0))), far);
+        const Number beside = dashpot * Number(std::sqrt(4 * effective_shear_ / effective_youngs_));
+        auto tangential = SlidingSpring<Number>::at(before, trial, slip, limit, max(kt, least),
+                                                    by_springs ? Number(0) : beside, contact.time_step);
+        if (by_springs) {
+            const Number damping = select(kt * kt * trial.dot(trial) <= limit * limit, beside, Number(0));
+            tangential.force -= damping * slip;
+            tangential.lost += damping * slip.dot(slip) * Number(contact.time_step);
+        }
 
+        // What an incremental spring gives up: 1/2 k_t s^2 then, plus the work of its mean force over the
+        // way, less 1/2 k_t s^2 now and what the slider booked.
+        const Number held_before = Number(0.5) * memory.stiffness * memory.spring.dot(memory.spring);
+        Number given_up(0);
+        if (!total) {
+            const Number stiffened = kt * (Number(1) - mean),
+                         softened = max(memory.stiffness - kt, Number(0));
+            const Number work =
+                (stiffened + softened) * before.dot(way) + stiffened * tangential.spring.dot(way);
+            given_up = held_before + Number(0.5) * (begun * work - kt * before.dot(before));
+        }
         const Vec3Of<Number> none = Vec3Of<Number>::Zero();
         const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
         return {
             {select(touching, force, none), select(touching, normal.stored + tangential.stored, Number(0)),
              select(touching, normal.lost, Number(0)),
-             select(touching, tangential.lost + given_up, held_before)},
+             select(touching, max(tangential.lost + given_up, Number(0)), held_before)},
             {select(touching, tangential.spring, none), select(touching, kt, Number(0))}};
     }
 
