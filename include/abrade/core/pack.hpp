@@ -37,6 +37,12 @@ constexpr Number reciprocal(Number x) noexcept {
     return 1 / x;
 }
 
+/// About 1 / x, to four digits at least, where that is enough and cheaper.
+template <std::floating_point Number>
+constexpr Number rough_reciprocal(Number x) noexcept {
+    return 1 / x;
+}
+
 /// The smallest positive normal number: what a divisor is kept above.
 template <class Number>
 inline constexpr Number tiny = std::numeric_limits<Number>::min();

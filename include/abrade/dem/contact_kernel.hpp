@@ -6,6 +6,7 @@
 #include <abrade/geometry/surfaces.hpp>
 
 #include <cstring>
+#include <new>
 #include <span>
 
 namespace abrade {
@@ -21,7 +22,8 @@ struct ContactStep {
 /// `pack_lanes` pairs of spheres, or spheres on one plane, and what their contacts remember.
 template <class Law>
 struct alignas(64) ContactPack {
-    std::array<Index, pack_lanes> first{}, second{};  ///< slots; phantoms in lanes that are left over
+    /// Lines of the two, phantoms in lanes that are left over.
+    std::array<LineOffset, pack_lanes> first{}, second{};
     typename Law::template Memory<Pack> memory{};
     Vec3Of<Pack> before = Vec3Of<Pack>::Zero();  ///< velocity at the contact point, as last seen [m/s]
     PackMask touched{};                          ///< when last seen
@@ -31,7 +33,9 @@ struct alignas(64) ContactPack {
 struct PackSums {
     Pack lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
     Pack concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< once for each side of concrete [J]
-    Pack deepest = 0;                                             ///< overlap times (1/r_i + 1/r_j) [-]
+    /// Overlap times (1/r_i + 1/r_j), planes as an equal sphere: at least 1 + r_small/r_large times overlap
+    /// over the smaller radius [-].
+    Pack deepest = 0;
 
     PackSums& operator+=(const PackSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential, stored += other.stored;
@@ -67,12 +71,12 @@ void set_memory_of_lane(PackedMemory& all, int lane, const Memory& one) noexcept
                     reinterpret_cast<const std::byte*>(&one) + n * sizeof(Real), sizeof(Real));
 }
 
-/// combine(first slot, second slot) of each lane, as columns.
+/// combine(first, second) of the lines of each lane, as columns.
 template <class Law, class Combine>
 QuadColumns gather(const ContactPack<Law>& pack, const Combine& combine) noexcept {
     QuadRows row;
-    for (std::size_t k = 0; k < row.size(); ++k)
-        row[k] = combine(static_cast<std::size_t>(pack.first[k]), static_cast<std::size_t>(pack.second[k]));
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] = combine(pack.first[k], pack.second[k]);
     return columns(row);
 }
 
@@ -98,9 +102,7 @@ struct PackRun {
 template <KernelKind kind, ContactLaw Law, class Wear>
 [[gnu::flatten]] PackSums respond(const Law& law, const Wear& wear, std::span<ContactPack<Law>> packs,
                                   const PackRun& run, SphereLines& lines, const ContactStep step) noexcept {
-    const SpherePlace* place = lines.place.data();
-    const SphereMotion* motion = lines.motion.data();
-    SphereLoad* load = lines.load.data();
+    LineReader at(lines);
     constexpr Quad difference{{-1, -1, -1, 1}}, reaction{{-1, -1, -1, 1}};
     [[maybe_unused]] const Plane plane = kind.on_plane ? *run.plane : Plane{};
 
@@ -108,13 +110,10 @@ template <KernelKind kind, ContactLaw Law, class Wear>
     for (std::size_t p = 0; p < packs.size(); ++p) {
         ContactPack<Law>& pack = packs[p];
         ContactKinematics<Pack> contact;
-        Pack lambda;
+        Vec3Of<Pack> arm;  // lambda n: times a radius, from the contact point to the centre
         PackMask touching;
-        const auto [x, y, z, reach] = detail::gather(pack, [&](std::size_t i, std::size_t j) {
-            if constexpr (kind.on_plane)
-                return detail::quad(place[i]);
-            else
-                return detail::quad(place[i]) + difference * detail::quad(place[j]);
+        const auto [x, y, z, reach] = detail::gather(pack, [&](LineOffset i, LineOffset j) {
+            return kind.on_plane ? at.place(i) : at.place(i) + difference * at.place(j);
         });
         Pack distance2 = 0;
         if constexpr (kind.on_plane) {
@@ -130,32 +129,26 @@ template <KernelKind kind, ContactLaw Law, class Wear>
         }
         if (!any(touching | pack.touched)) continue;
 
-        const auto [vx, vy, vz, inverse_mass] = detail::gather(pack, [&](std::size_t i, std::size_t j) {
-            if constexpr (kind.on_plane)
-                return detail::quad(motion[i], 0);
-            else
-                return detail::quad(motion[i], 0) + difference * detail::quad(motion[j], 0);
+        const auto [vx, vy, vz, inverse_mass] = detail::gather(pack, [&](LineOffset i, LineOffset j) {
+            return kind.on_plane ? at.motion(i)[0] : at.motion(i)[0] + difference * at.motion(j)[0];
         });
-        const auto [rim_x, rim_y, rim_z, curvature] = detail::gather(pack, [&](std::size_t i, std::size_t j) {
-            if constexpr (kind.on_plane)
-                return detail::quad(motion[i], 1);
-            else
-                return detail::quad(motion[i], 1) + detail::quad(motion[j], 1);
+        const auto [rim_x, rim_y, rim_z, curvature] = detail::gather(pack, [&](LineOffset i, LineOffset j) {
+            return kind.on_plane ? at.motion(i)[1] : at.motion(i)[1] + at.motion(j)[1];
         });
         if constexpr (kind.on_plane) {
-            lambda = Pack(1) - Pack(0.5) * contact.overlap * curvature;
+            arm = (Pack(1) - Pack(0.5) * contact.overlap * curvature) * contact.normal;
         } else {
             const Pack inverse_distance = rsqrt(max(distance2, Pack(tiny<Pack>)));
-            const Pack distance = distance2 * inverse_distance;
-            lambda = distance * reciprocal(reach);
+            const Pack distance = distance2 * inverse_distance, inverse_reach = reciprocal(reach);
+            arm = {x * inverse_reach, y * inverse_reach, z * inverse_reach};
             contact.normal = {x * inverse_distance, y * inverse_distance, z * inverse_distance};
             contact.overlap = reach - distance;
         }
         contact.inverse_mass = inverse_mass;
         contact.curvature = curvature;
         contact.time_step = step.time_step;
-        const Vec3Of<Pack> rim(lambda * rim_x, lambda * rim_y, lambda * rim_z);
-        const Vec3Of<Pack> velocity = Vec3Of<Pack>(vx, vy, vz) - rim.cross(contact.normal);
+        const Vec3Of<Pack> rim(rim_x, rim_y, rim_z);
+        const Vec3Of<Pack> velocity = Vec3Of<Pack>(vx, vy, vz) - rim.cross(arm);
         const Pack ahead = select(pack.touched, Pack(step.ahead), Pack(0));
         contact.travel = Pack(step.time_step) * velocity;
         contact.velocity = velocity + ahead * (velocity - pack.before);
@@ -167,7 +160,8 @@ template <KernelKind kind, ContactLaw Law, class Wear>
         sums.lost_normal += answer.lost_normal;
         sums.lost_tangential += answer.lost_tangential;
         sums.stored += answer.stored;
-        sums.deepest = max(sums.deepest, contact.overlap * curvature);
+        sums.deepest =
+            max(sums.deepest, contact.overlap * (kind.on_plane ? curvature + curvature : curvature));
         Pack worn = 0;
         if constexpr (kind.wears) {
             Pack sides = 0;
@@ -179,20 +173,17 @@ template <KernelKind kind, ContactLaw Law, class Wear>
             sums.concrete_lost_tangential += sides * answer.lost_tangential;
         }
 
-        const Vec3Of<Pack> lever = lambda * answer.force.cross(contact.normal);
+        const Vec3Of<Pack> lever = answer.force.cross(arm);
         const QuadRows forces = rows({answer.force.x(), answer.force.y(), answer.force.z(), worn});
         const QuadRows levers = rows({lever.x(), lever.y(), lever.z(), Pack(0)});
-        for (std::size_t k = 0; k < forces.size(); ++k) {
-            SphereLoad& line = load[pack.first[k]];
-            detail::quad(line, 0) = detail::quad(line, 0) + forces[k];
-            detail::quad(line, 1) = detail::quad(line, 1) + levers[k];
-        }
+        // Read again: kept from above, sixteen offsets would crowd out the numbers.
+        const ContactPack<Law>& again = *std::launder(&pack);
+#pragma GCC unroll 8
+        for (std::size_t k = 0; k < forces.size(); ++k) at.add(again.first[k], forces[k], levers[k]);
         if constexpr (!kind.on_plane)
-            for (std::size_t k = 0; k < forces.size(); ++k) {
-                SphereLoad& line = load[pack.second[k]];
-                detail::quad(line, 0) = detail::quad(line, 0) + reaction * forces[k];
-                detail::quad(line, 1) = detail::quad(line, 1) + levers[k];
-            }
+#pragma GCC unroll 8
+            for (std::size_t k = 0; k < forces.size(); ++k)
+                at.add(again.second[k], reaction * forces[k], levers[k]);
     }
     return sums;
 }

@@ -87,10 +87,16 @@ concept ContactLaw = Law<L> && RemembersContacts<L> && requires(const L& law, co
 /// changing its length, so that the rotation of the frame neither makes nor loses energy.
 template <class Number>
 Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number>& normal) noexcept {
-    const Number length2 = spring.dot(spring);
-    const Vec3Of<Number> flat = spring - spring.dot(normal) * normal;
+    // |flat| = L sqrt(1 - q), q = (s . n)^2 / L^2: tiny from step to step, so a series serves.
+    const Number along = spring.dot(normal), length2 = spring.dot(spring), along2 = along * along;
+    const Number q = along2 * rough_reciprocal(max(length2, Number(tiny<Number>)));
+    const Vec3Of<Number> flat = spring - along * normal;
+    const Number scale = Number(1) + q * (Number(0.5) + Number(0.375) * q);
+    const auto turns_far = q > Number(1e-6);
+    if (!any(turns_far)) return scale * flat;
     const Number product = length2 * flat.dot(flat), least = Number(tiny<Number>);
-    return select(product > least, length2 * rsqrt(max(product, least)), Number(0)) * flat;
+    const Number exact = select(product > least, length2 * rsqrt(max(product, least)), Number(0));
+    return select(turns_far, exact, scale) * flat;
 }
 
 /// How much of the step that led to t_n a contact has lasted: 1, but for the step in which it begins, tau =

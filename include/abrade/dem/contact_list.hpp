@@ -4,8 +4,6 @@
 #include <abrade/dem/contact_section.hpp>
 #include <abrade/dem/sphere_store.hpp>
 
-#include <tuple>
-
 namespace abrade {
 
 /// A contact as it stands, seen one by one.
@@ -73,7 +71,6 @@ public:
                 else
                     kept_.push_back({first, second, memory, before});
             });
-        std::sort(kept_.begin(), kept_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
         return gone;
     }
 
@@ -91,13 +88,10 @@ public:
                 if (one.needs_image) requests.push_back(one.image());
             }
         store.make_images(std::move(requests), build.period);
-        for (Listed& one : listed) {
+        for (Listed& one : listed)
             if (one.needs_image) one.other = store.image_slot(one.image());
-            if (one.own_is_high) std::swap(one.own, one.other);  // from here on: first, second
-        }
         add_planes(store, build, listed);
-        const std::vector<Index> first_kept = kept_by_sphere(build.particles.spheres());
-        share_out(store, listed, first_kept);
+        share_out(store, by_own_slot(listed, store.spheres()), kept_by_sphere(build.particles.spheres()));
     }
 
     /// Picks the candidates of all sections: what may touch before surfaces have come `skin` [m] nearer.
@@ -117,10 +111,10 @@ public:
     void each_candidate(Visit&& visit) const {
         for (const ContactSection<Law>& section : sections_) section.each_candidate(visit);
     }
-    std::size_t near_count() const noexcept {
-        std::size_t count = 0;
-        for (const ContactSection<Law>& section : sections_) count += section.near_count();
-        return count;
+    ContactCensus census() const noexcept {
+        ContactCensus all;
+        for (const ContactSection<Law>& section : sections_) all += section.census();
+        return all;
     }
 
 private:
@@ -157,17 +151,16 @@ private:
 
     /// Which slab a pair belongs to: the first of its two, across the edge of a periodic axis the last slab.
     Listed in_charge(const SphereStore& store, const NearPair& pair) const noexcept {
-        const std::int8_t across = pair.shift[static_cast<std::size_t>(store.slabs.axis())];
+        const int across = pair.shift.along(store.slabs.axis());
         Listed one;
         one.own = pair.first, one.other = pair.second, one.shift = pair.shift;
         if (across < 0 || (across == 0 && slab_[at(pair.second)] < slab_[at(pair.first)])) {
             std::swap(one.own, one.other);
-            for (std::int8_t& s : one.shift) s = static_cast<std::int8_t>(-s);
+            one.shift = -one.shift;
         }
         one.section = slab_[at(one.own)];
         one.chunk = store.slabs.chunk_of(one.section);
-        one.needs_image =
-            one.shift != ImageShift{} || store.slabs.chunk_of(slab_[at(one.other)]) != one.chunk;
+        one.needs_image = !one.shift.none() || store.slabs.chunk_of(slab_[at(one.other)]) != one.chunk;
         one.spheres_low = store.sphere_of(one.own), one.spheres_high = store.sphere_of(one.other);
         // A pair keeps its direction, whatever slots its spheres get: what it remembers has a sign.
         one.own_is_high = one.spheres_low > one.spheres_high;
@@ -193,41 +186,63 @@ private:
         }
     }
 
-    /// Where in `kept_` each sphere's contacts as the first begin.
-    std::vector<Index> kept_by_sphere(Index spheres) const {
-        std::vector<Index> first(at(spheres) + 1, 0);
-        for (const auto& k : kept_) ++first[at(k.first) + 1];
-        for (std::size_t s = 1; s < first.size(); ++s) first[s] += first[s - 1];
-        return first;
+    /// Sorts by own slot, and so by section; pairs of one slot keep their order.
+    static std::vector<Listed> by_own_slot(const std::vector<Listed>& listed, Index slots) {
+        std::vector<Index> start(at(slots) + 1, 0);
+        for (const Listed& one : listed) ++start[at(one.own) + 1];
+        for (std::size_t s = 1; s < start.size(); ++s) start[s] += start[s - 1];
+        std::vector<Listed> sorted(listed.size());
+        for (const Listed& one : listed) sorted[at(start[at(one.own)]++)] = one;
+        return sorted;
+    }
+
+    /// Sorts `kept_` by first sphere; returns where each sphere's begin.
+    std::vector<Index> kept_by_sphere(Index spheres) {
+        std::vector<Index> start(at(spheres) + 1, 0);
+        for (const auto& k : kept_) ++start[at(k.first) + 1];
+        for (std::size_t s = 1; s < start.size(); ++s) start[s] += start[s - 1];
+        std::vector<KeptContact<Memory>> sorted(kept_.size());
+        std::vector<Index> next(start.begin(), start.end() - 1);
+        for (const auto& k : kept_) sorted[at(next[at(k.first)]++)] = k;
+        kept_ = std::move(sorted);
+        return start;
     }
 
     void share_out(const SphereStore& store, const std::vector<Listed>& listed,
-                   std::span<const Index> first_kept) {
+                   const std::vector<Index>& first_kept) {
         const auto kind_of = [](const Listed& one) {
             return ContactKind{one.other < 0 ? -1 - one.other : -1, one.concrete_sides > 0};
         };
-        std::vector<std::vector<const Listed*>> of_slab(at(store.slabs.count()));
-        for (const Listed& one : listed) of_slab[at(one.section)].push_back(&one);
-        sections_.resize(of_slab.size());
-        parallel_tasks(static_cast<Index>(of_slab.size()), [&](Index slab) {
-            auto& mine = of_slab[at(slab)];
-            std::sort(mine.begin(), mine.end(), [&](const Listed* a, const Listed* b) {
-                return std::tuple(kind_of(*a), std::min(a->own, a->other), a->own, a->other) <
-                       std::tuple(kind_of(*b), std::min(b->own, b->other), b->own, b->other);
-            });
-            std::vector<typename ContactSection<Law>::Near> near;
+        const Index slabs = store.slabs.count();
+        std::vector<std::size_t> first(at(slabs) + 1, 0);
+        for (const Listed& one : listed) ++first[at(one.section) + 1];
+        for (std::size_t s = 1; s < first.size(); ++s) first[s] += first[s - 1];
+        sections_.resize(at(slabs));
+        parallel_tasks(slabs, [&](Index slab) {
+            const auto mine =
+                std::span(listed).subspan(first[at(slab)], first[at(slab) + 1] - first[at(slab)]);
             std::vector<ContactKind> kinds;
+            for (const Listed& one : mine)
+                if (std::find(kinds.begin(), kinds.end(), kind_of(one)) == kinds.end())
+                    kinds.push_back(kind_of(one));
+            std::sort(kinds.begin(), kinds.end());
+            std::vector<typename ContactSection<Law>::Near> near;
             near.reserve(mine.size());
-            for (const Listed* one : mine) {
-                if (kinds.empty() || kinds.back() != kind_of(*one)) kinds.push_back(kind_of(*one));
-                Index kept = -1;
-                const auto first = at(one->spheres_low);
-                for (Index k = first_kept[first]; k < first_kept[first + 1]; ++k)
-                    if (kept_[at(k)].second == one->spheres_high) kept = k;
-                near.push_back({{one->own, one->other}, one->concrete_sides, kept});
-            }
+            for (const ContactKind& kind : kinds)
+                for (const Listed& one : mine)
+                    if (kind_of(one) == kind) near.push_back(near_of(one, first_kept));
             sections_[at(slab)].set_near(near, kinds, kept_, store.phantom());
         });
+    }
+
+    typename ContactSection<Law>::Near near_of(const Listed& one,
+                                               const std::vector<Index>& first_kept) const {
+        Index kept = -1;
+        const auto low = at(one.spheres_low);
+        for (Index k = first_kept[low]; k < first_kept[low + 1]; ++k)
+            if (kept_[at(k)].second == one.spheres_high) kept = k;
+        const SlotPair pair = one.own_is_high ? SlotPair{one.other, one.own} : SlotPair{one.own, one.other};
+        return {pair, one.concrete_sides, kept};
     }
 
     std::vector<ContactSection<Law>> sections_;  ///< [slab]

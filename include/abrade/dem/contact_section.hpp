@@ -15,7 +15,7 @@ namespace abrade {
 struct ContactSums {
     Real lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
     Real concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< [J]
-    Real deepest = 0;  ///< overlap times (1/r_i + 1/r_j): at least overlap over the smaller radius [-]
+    Real deepest = 0;                                             ///< as in PackSums [-]
 
     ContactSums& operator+=(const ContactSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential;
@@ -32,6 +32,14 @@ struct ContactKind {
     Index plane = -1;    ///< -1: spheres with each other
     bool wears = false;  ///< concrete is among them
     auto operator<=>(const ContactKind&) const = default;
+};
+
+/// Pairs within the skin, of them those evaluated in each step, and of them those that touch.
+struct ContactCensus {
+    std::size_t near = 0, candidates = 0, touching = 0;
+    ContactCensus& operator+=(const ContactCensus& o) noexcept {
+        return near += o.near, candidates += o.candidates, touching += o.touching, *this;
+    }
 };
 
 /// What one pair of spheres remembers while lists are renewed. Spheres by their lasting index, planes as in
@@ -78,9 +86,11 @@ public:
                 where_[static_cast<std::size_t>(lane_[l])] = static_cast<Index>(l);
         std::swap(packs_, old_packs_);
         begin_packs();
+        candidates_ = touching_ = 0;
         for (std::size_t n = 0; n < near_.size(); ++n) {
             const Index old = where_[n];
             if (old < 0 && !(gap(lines, planes, n) < skin)) continue;
+            ++candidates_, touching_ += old >= 0 ? 1 : 0;
             if (old < 0) {
                 add_lane(n, Memory{}, Vec3::Zero(), false);
                 continue;
@@ -132,8 +142,8 @@ public:
             if (n >= 0) visit(near_[static_cast<std::size_t>(n)].pair);
     }
 
-    std::size_t near_count() const noexcept { return near_.size(); }
-    std::size_t pack_count() const noexcept { return packs_.size(); }
+    /// As of the last call of `refine`.
+    ContactCensus census() const noexcept { return {near_.size(), candidates_, touching_}; }
 
 private:
     static constexpr auto lanes = static_cast<std::size_t>(pack_lanes);
@@ -169,16 +179,16 @@ private:
         }
         if (filled_ == lanes) {
             ContactPack<Law>& fresh = packs_.emplace_back();
-            fresh.first.fill(kinds_[kind].plane < 0 ? phantom_ : phantom_ + 2);
-            fresh.second.fill(phantom_ + 1);
+            fresh.first.fill(line_offset(kinds_[kind].plane < 0 ? phantom_ : phantom_ + 2));
+            fresh.second.fill(line_offset(phantom_ + 1));
             lane_.resize(lane_.size() + lanes, -1), concrete_sides_.resize(lane_.size(), 0);
             ++runs_.back().last;
             filled_ = 0;
         }
         ContactPack<Law>& pack = packs_.back();
         const int lane = static_cast<int>(filled_);
-        pack.first[filled_] = near_[n].pair.first;
-        if (near_[n].pair.second >= 0) pack.second[filled_] = near_[n].pair.second;
+        pack.first[filled_] = line_offset(near_[n].pair.first);
+        if (near_[n].pair.second >= 0) pack.second[filled_] = line_offset(near_[n].pair.second);
         const std::size_t place = (packs_.size() - 1) * lanes + filled_;
         lane_[place] = static_cast<Index>(n), concrete_sides_[place] = near_[n].concrete_sides;
         ++filled_;
@@ -200,7 +210,7 @@ private:
     std::vector<std::uint8_t> concrete_sides_;  ///< [pack x lane]
     std::vector<Run> runs_;
     std::vector<Index> where_;  ///< [near] its lane before, while lists are refined
-    std::size_t filled_ = lanes;
+    std::size_t filled_ = lanes, candidates_ = 0, touching_ = 0;
     Index phantom_ = 0;
 };
 

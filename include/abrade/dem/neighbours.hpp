@@ -12,7 +12,17 @@
 namespace abrade {
 
 /// How many periods an image is away along each axis: -1, 0 or 1.
-using ImageShift = std::array<std::int8_t, 3>;
+struct ImageShift {
+    std::int8_t x = 0, y = 0, z = 0;
+
+    bool none() const noexcept { return (x | y | z) == 0; }
+    int along(int axis) const noexcept { return axis == 0 ? x : axis == 1 ? y : z; }
+    Vec3 times(const Vec3& period) const noexcept { return {x * period.x(), y * period.y(), z * period.z()}; }
+    ImageShift operator-() const noexcept {
+        return {static_cast<std::int8_t>(-x), static_cast<std::int8_t>(-y), static_cast<std::int8_t>(-z)};
+    }
+    auto operator<=>(const ImageShift&) const = default;
+};
 
 /// Two spheres that are near each other. The second is meant where its image stands: at its centre plus
 /// shift times period.
@@ -32,29 +42,36 @@ struct NeighbourQuery {
     Vec3 period = Vec3::Zero();  ///< of space along each axis [m]; 0 where it is open
 
     Vec3 image(std::size_t sphere, const ImageShift& shift) const noexcept {
-        return centre[sphere] + Vec3(shift[0] * period.x(), shift[1] * period.y(), shift[2] * period.z());
+        return shift.none() ? centre[sphere] : Vec3(centre[sphere] + shift.times(period));
     }
 };
 
 namespace detail {
 
-/// The shifts that a sphere's images may have: 1 for open space, 3 per periodic axis.
-inline std::vector<ImageShift> image_shifts(const Vec3& period) {
-    std::vector<ImageShift> shifts;
-    const auto range = [&](int axis) { return period[axis] > 0 ? 1 : 0; };
-    for (int i = -range(0); i <= range(0); ++i)
-        for (int j = -range(1); j <= range(1); ++j)
-            for (int k = -range(2); k <= range(2); ++k)
-                shifts.push_back(
-                    {static_cast<std::int8_t>(i), static_cast<std::int8_t>(j), static_cast<std::int8_t>(k)});
-    return shifts;
+/// Calls `visit(shift)` for each shift along periodic axes that `wanted(axis, -1 or 1)`, none apart.
+template <class Wanted, class Visit>
+void each_shift(const Vec3& period, Wanted&& wanted, Visit&& visit) {
+    std::array<std::array<bool, 3>, 3> has{};
+    bool any_shift = false;
+    for (int a = 0; a < 3; ++a)
+        for (int s = -1; s <= 1; ++s) {
+            const bool take = s == 0 || (period[a] > 0 && wanted(a, s));
+            has[static_cast<std::size_t>(a)][static_cast<std::size_t>(s + 1)] = take;
+            any_shift |= s != 0 && take;
+        }
+    if (!any_shift) return;
+    for (std::int8_t i = -1; i <= 1; ++i)
+        for (std::int8_t j = -1; j <= 1; ++j)
+            for (std::int8_t k = -1; k <= 1; ++k)
+                if (has[0][static_cast<std::size_t>(i + 1)] && has[1][static_cast<std::size_t>(j + 1)] &&
+                    has[2][static_cast<std::size_t>(k + 1)] && !ImageShift{i, j, k}.none())
+                    visit(ImageShift{i, j, k});
 }
 
 /// Every pair once, whichever of the two found it.
 inline NearPair ordered(std::size_t i, std::size_t j, ImageShift shift) noexcept {
     if (i < j) return {static_cast<Index>(i), static_cast<Index>(j), shift};
-    for (std::int8_t& s : shift) s = static_cast<std::int8_t>(-s);
-    return {static_cast<Index>(j), static_cast<Index>(i), shift};
+    return {static_cast<Index>(j), static_cast<Index>(i), -shift};
 }
 
 /// Spheres of one size class and one kind, and images of theirs, sorted into cells.
@@ -63,6 +80,7 @@ public:
     struct Member {
         Index sphere;
         ImageShift shift;
+        Vec3 at;  ///< [m]
     };
 
     CellGrid(const NeighbourQuery& q, std::span<const Member> members, std::size_t level_, bool passive_)
@@ -70,9 +88,8 @@ public:
         low_ = Vec3::Constant(std::numeric_limits<Real>::infinity());
         Vec3 high = -low_;
         for (const Member& m : members) {
-            const auto s = static_cast<std::size_t>(m.sphere);
-            low_ = low_.cwiseMin(q.image(s, m.shift)), high = high.cwiseMax(q.image(s, m.shift));
-            largest_radius = std::max(largest_radius, q.radius[s]);
+            low_ = low_.cwiseMin(m.at), high = high.cwiseMax(m.at);
+            largest_radius = std::max(largest_radius, q.radius[static_cast<std::size_t>(m.sphere)]);
         }
         cell_ = 2 * largest_radius + q.skin;
         // Far-flung spheres must not blow the grid up: coarser cells are slower, never wrong.
@@ -87,8 +104,7 @@ public:
                       0);
         std::vector<std::size_t> cell_of(members.size());
         for (std::size_t k = 0; k < members.size(); ++k) {
-            const Vec3 at =
-                (q.image(static_cast<std::size_t>(members[k].sphere), members[k].shift) - low_) / cell_;
+            const Vec3 at = (members[k].at - low_) / cell_;
             cell_of[k] = index(clamp(at.x(), 0), clamp(at.y(), 1), clamp(at.z(), 2));
             ++start_[cell_of[k] + 1];
         }
@@ -101,8 +117,7 @@ public:
             const auto to = static_cast<std::size_t>(fill[cell_of[k]]++);
             const auto s = static_cast<std::size_t>(members[k].sphere);
             members_[to] = members[k];
-            const Vec3 at = q.image(s, members[k].shift);
-            for (int a = 0; a < 3; ++a) columns_[static_cast<std::size_t>(a)][to] = at[a];
+            for (int a = 0; a < 3; ++a) columns_[static_cast<std::size_t>(a)][to] = members[k].at[a];
             columns_[3][to] = q.radius[s];
         }
     }
@@ -171,15 +186,17 @@ inline std::vector<CellGrid> cell_grids(const NeighbourQuery& q, std::span<const
     for (const Vec3& x : q.centre) low = low.cwiseMin(x), high = high.cwiseMax(x);
     std::vector<std::vector<CellGrid::Member>> members(2 * levels);
     const auto of = [&](std::size_t s) -> auto& { return members[2 * level[s] + (q.passive[s] ? 1 : 0)]; };
-    const std::vector<ImageShift> shifts = image_shifts(q.period);
     for (std::size_t s = 0; s < q.centre.size(); ++s) {
-        of(s).push_back({static_cast<Index>(s), {}});
+        const Vec3& x = q.centre[s];
+        of(s).push_back({static_cast<Index>(s), {}, x});
         const Real reach = q.radius[s] + largest + q.skin;
-        for (const ImageShift& shift : shifts) {
-            const Vec3 at = q.image(s, shift);
-            const bool within = ((at - low).array() > -reach).all() && ((high - at).array() > -reach).all();
-            if (shift != ImageShift{} && within) of(s).push_back({static_cast<Index>(s), shift});
-        }
+        const auto wanted = [&](int a, int shift) {
+            const Real there = x[a] + shift * q.period[a];
+            return there > low[a] - reach && there < high[a] + reach;
+        };
+        each_shift(q.period, wanted, [&](const ImageShift& shift) {
+            of(s).push_back({static_cast<Index>(s), shift, q.image(s, shift)});
+        });
     }
     std::vector<CellGrid> grids;
     for (std::size_t m = 0; m < members.size(); ++m)
@@ -194,13 +211,17 @@ inline std::vector<CellGrid> cell_grids(const NeighbourQuery& q, std::span<const
 inline std::vector<NearPair> near_pairs_brute_force(const NeighbourQuery& q) {
     std::vector<NearPair> pairs;
     for (std::size_t i = 0; i < q.centre.size(); ++i)
-        for (std::size_t j = i + 1; j < q.centre.size(); ++j)
-            for (const ImageShift& shift : detail::image_shifts(q.period)) {
+        for (std::size_t j = i + 1; j < q.centre.size(); ++j) {
+            const auto test = [&](const ImageShift& shift) {
                 const bool candidate = q.body[i] != q.body[j] && !(q.passive[i] && q.passive[j]);
                 const Real near = q.radius[i] + q.radius[j] + q.skin;
                 if (candidate && (q.centre[i] - q.image(j, shift)).squaredNorm() < square(near))
                     pairs.push_back({static_cast<Index>(i), static_cast<Index>(j), shift});
-            }
+            };
+            test({});
+            detail::each_shift(
+                q.period, [](int, int) { return true; }, test);
+        }
     return pairs;
 }
 
@@ -221,19 +242,19 @@ inline std::vector<NearPair> near_pairs(const NeighbourQuery& q) {
         parallel_blocks(own.size(), [&](Index block, Index first, Index last) {
             std::vector<NearPair>& here = found[static_cast<std::size_t>(block)];
             for (Index m = first; m < last; ++m) {
-                const auto seeker = own.member(m);
+                const auto& seeker = own.member(m);
                 const auto i = static_cast<std::size_t>(seeker.sphere);
                 for (const detail::CellGrid& other : grids) {
                     // Two seekers find each other twice: the larger level, then the earlier member, reports.
                     const bool same = &other == &own;
                     if (!other.passive && other.level > own.level) continue;
-                    if (!same && seeker.shift != ImageShift{}) continue;
-                    const Vec3 x = q.image(i, seeker.shift);
+                    if (!same && !seeker.shift.none()) continue;
+                    const Vec3& x = seeker.at;
                     other.visit_near(x, q.radius[i], q.skin, same ? m : -1, [&](const auto& found_member) {
                         const auto j = static_cast<std::size_t>(found_member.sphere);
                         if (q.body[i] == q.body[j]) return;
-                        const bool seeker_is_image = seeker.shift != ImageShift{},
-                                   found_is_image = found_member.shift != ImageShift{};
+                        const bool seeker_is_image = !seeker.shift.none(),
+                                   found_is_image = !found_member.shift.none();
                         if (seeker_is_image && found_is_image) return;
                         ImageShift shift = found_member.shift;
                         if (same && (seeker_is_image || found_is_image)) {

@@ -53,9 +53,9 @@ public:
 
     /// Cuts the slabs into chunks of about equal numbers of spheres; `first_sphere` [slab + 1].
     void share_out(std::span<const Index> first_sphere) {
-        // A chunk pays for its border: four slabs repay that.
+        // A chunk pays for its border: eight slabs repay that.
         Index chunks = 1;
-        while (2 * chunks <= count_ / 4 && chunks < 64) chunks *= 2;
+        while (2 * chunks <= count_ / 8 && chunks < 64) chunks *= 2;
         first_slab_.assign(1, 0);
         const Real total = first_sphere.back();
         for (Index s = 1; s < count_; ++s) {

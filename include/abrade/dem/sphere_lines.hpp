@@ -4,6 +4,7 @@
 
 #include <abrade/core/simd.hpp>
 
+#include <cstddef>
 #include <vector>
 
 namespace abrade {
@@ -79,5 +80,36 @@ inline const Quad& quad(const SphereLoad& line, std::size_t half) noexcept {
 }
 
 }  // namespace detail
+
+/// Where a slot's place is, in bytes: saves the hot loop the multiplication. Motion and load lie twice as
+/// far.
+using LineOffset = std::uint32_t;
+inline LineOffset line_offset(Index slot) noexcept {
+    return static_cast<LineOffset>(slot) * static_cast<LineOffset>(sizeof(SpherePlace));
+}
+inline Index slot_at(LineOffset offset) noexcept {
+    return static_cast<Index>(offset / static_cast<LineOffset>(sizeof(SpherePlace)));
+}
+
+/// Lines as quads, by their offsets.
+class LineReader {
+public:
+    explicit LineReader(SphereLines& lines) noexcept
+        : place_(reinterpret_cast<std::byte*>(lines.place.data())),
+          motion_(reinterpret_cast<std::byte*>(lines.motion.data())),
+          load_(reinterpret_cast<std::byte*>(lines.load.data())) {}
+
+    const Quad& place(std::size_t at) const noexcept { return *reinterpret_cast<const Quad*>(place_ + at); }
+    const Quad* motion(std::size_t at) const noexcept {
+        return reinterpret_cast<const Quad*>(motion_ + 2 * at);
+    }
+    void add(std::size_t at, const Quad& force, const Quad& lever) const noexcept {
+        Quad* load = reinterpret_cast<Quad*>(load_ + 2 * at);
+        load[0] = load[0] + force, load[1] = load[1] + lever;
+    }
+
+private:
+    std::byte *place_, *motion_, *load_;
+};
 
 }  // namespace abrade

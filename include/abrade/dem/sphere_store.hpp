@@ -179,9 +179,7 @@ public:
         first_image_.assign(at(slabs.count()) + 1, 0);
         for (const ImageRequest& r : requests_) {
             const auto slot = spheres() + static_cast<Index>(images_.size());
-            images_.push_back(
-                {slot, r.owner,
-                 Vec3(r.shift[0] * period.x(), r.shift[1] * period.y(), r.shift[2] * period.z())});
+            images_.push_back({slot, r.owner, r.shift.times(period)});
             lines.load[at(slot)] = {};
             ++first_image_[at(slab_of_slot(r.owner)) + 1];
         }

@@ -21,38 +21,45 @@ inline Vec3 first_three(const Quad& q) noexcept { return {q.value[0], q.value[1]
 
 }  // namespace detail
 
-/// Kicks and drifts a single sphere, and takes its loads off it.
+/// Kicks and drifts the single spheres in slots [first, last), and takes their loads off them.
 template <class P>
-void move_sphere(State<P>& state, Index slot, const Move& move, MotionSums& sums) noexcept {
-    const auto s = static_cast<std::size_t>(slot);
-    SphereMotion& motion = state.store.lines.motion[s];
-    SphereLoad& load = state.store.lines.load[s];
-    SpherePlace& place = state.store.lines.place[s];
-    const Real mass = load.mass;
-    if (motion.inverse_mass > 0) {
-        FluidLoad fluid;
-        Quad other{};
-        if constexpr (P::has_fluid) {
-            const auto body = state.particles.body[static_cast<std::size_t>(state.store.sphere_of(slot))];
-            if (state.feels_fluid(body)) {
-                fluid = state.fluid_on(body, place.centre, motion.velocity, move.time, move.ahead_in_fluid);
-                state.velocity_in_fluid[static_cast<std::size_t>(body)] = motion.velocity;
-                other = detail::quad(Vec3(fluid.drag + fluid.buoyancy));
+[[gnu::flatten]] MotionSums move_spheres(State<P>& state, Index first, Index last,
+                                         const Move& move) noexcept {
+    MotionSums sums;
+    const Quad gravity = detail::quad(state.scene.gravity);
+    SphereLines& lines = state.store.lines;
+    for (auto slot = static_cast<std::size_t>(first); slot < static_cast<std::size_t>(last); ++slot) {
+        SphereMotion& motion = lines.motion[slot];
+        SphereLoad& load = lines.load[slot];
+        SpherePlace& place = lines.place[slot];
+        const Real mass = load.mass;
+        if (motion.inverse_mass > 0) {
+            FluidLoad fluid;
+            Quad other{};
+            if constexpr (P::has_fluid) {
+                const auto sphere = static_cast<std::size_t>(state.store.sphere_of(static_cast<Index>(slot)));
+                if (const Index body = state.particles.body[sphere]; state.feels_fluid(body)) {
+                    fluid =
+                        state.fluid_on(body, place.centre, motion.velocity, move.time, move.ahead_in_fluid);
+                    state.velocity_in_fluid[static_cast<std::size_t>(body)] = motion.velocity;
+                    other = detail::quad(Vec3(fluid.drag + fluid.buoyancy));
+                }
             }
+            const KickedSphere after = kick(motion, load, other, gravity, move.kick);
+            sums.interaction = sums.interaction + after.interaction;
+            sums.path = sums.path + after.path;
+            if constexpr (P::has_fluid)
+                sums.add(fluid, 0.5 * move.kick * (motion.velocity + detail::first_three(after.velocity)),
+                         move.kick);
+            detail::quad(motion, 0) = after.velocity, detail::quad(motion, 1) = after.rim;
+            const Quad velocity = detail::three_ones * after.velocity;
+            detail::quad(place) = detail::quad(place) + detail::same(move.drift) * velocity;
+            sums.notice(detail::quad(place), velocity, after.rim);
         }
-        const KickedSphere after = kick(motion, load, other, detail::quad(state.scene.gravity), move.kick);
-        sums.interaction = sums.interaction + after.interaction;
-        sums.path = sums.path + after.path;
-        if constexpr (P::has_fluid)
-            sums.add(fluid, 0.5 * move.kick * (motion.velocity + detail::first_three(after.velocity)),
-                     move.kick);
-        detail::quad(motion, 0) = after.velocity, detail::quad(motion, 1) = after.rim;
-        const Quad velocity = detail::three_ones * after.velocity;
-        detail::quad(place) = detail::quad(place) + detail::same(move.drift) * velocity;
-        sums.notice(detail::quad(place), velocity, after.rim);
+        if (move.keeps_loads) continue;
+        detail::quad(load, 0) = Quad{}, detail::quad(load, 1) = Quad{Quad::Native{0, 0, 0, mass}};
     }
-    if (move.keeps_loads) return;
-    detail::quad(load, 0) = Quad{}, detail::quad(load, 1) = Quad{Quad::Native{0, 0, 0, mass}};
+    return sums;
 }
 
 /// The same for a clump and its member spheres.

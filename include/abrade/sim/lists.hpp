@@ -12,8 +12,7 @@ namespace abrade {
 template <class P>
 class Lists {
 public:
-    /// The time after which lists are renewed although nothing outran them, so that supply and departures are
-    /// not left waiting [steps].
+    /// The time after which supply and departures are seen to, although nothing outran the lists [steps].
     static constexpr Index longest_life = 400;
 
     void set_skin(Real skin) noexcept { skin_ = skin; }
@@ -23,7 +22,8 @@ public:
 
     /// Makes the lists good for the places of now. Steps are of dt.
     void freshen(State<P>& state, Real t, Real dt) {
-        if (age_ >= longest_life || state.loosened)
+        const bool traffic = state.feed || state.scene.outlet;
+        if ((traffic && age_ >= longest_life) || state.loosened)
             renew(state, t, dt);
         else if (2 * moved_ > inner_skin_ && !refine(state, dt))
             renew(state, t, dt);
@@ -46,6 +46,9 @@ public:
         const Real fastest = std::sqrt(fastest2(state));
         list_skin_ = std::max(skin_, 2 * shortest_life * dt * fastest);
         state.store.arrange(state.particles, departure.moved, list_skin_, state.scene.periodic());
+        const auto [smallest, largest] =
+            std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
+        if (largest != state.particles.radius.end()) state.size_ratio = *smallest / *largest;
         find_pairs(state);
         built_at_.clear();
         for (Index s = 0; s < state.store.spheres(); ++s)
@@ -58,8 +61,8 @@ public:
     Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
 
 private:
-    /// Steps that lists last at least, and that candidates are meant to last.
-    static constexpr Real shortest_life = 8, inner_life = 32;
+    /// Steps that lists last at least.
+    static constexpr Real shortest_life = 8;
 
     struct Departure {
         std::vector<char> gone;    ///< [body]
@@ -86,10 +89,20 @@ private:
         const Real left = list_skin_ - 2 * std::sqrt(furthest2);
         const Real way = 2 * dt * std::sqrt(fastest2(state));
         if (left < shortest_life * way && age_ > 0) return false;
-        inner_skin_ = std::min(left, std::max(inner_life * way, 0.01 * skin_));
+        inner_skin_ = std::min(left, std::max(inner_life_ * way, 0.01 * skin_));
         moved_ = 0;
         state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_);
+        choose_life(state.contacts.census());
         return true;
+    }
+
+    /// Candidates that live longer are picked less often, but are more: both cost about the same when
+    /// life times those that do not touch equals the pairs looked through.
+    void choose_life(const ContactCensus& census) noexcept {
+        const Real idle = static_cast<Real>(census.candidates - census.touching) + 1;
+        const Real best = std::sqrt(inner_life_ * static_cast<Real>(census.near) / idle);
+        inner_life_ =
+            std::clamp(best, std::max(shortest_life, 0.5 * inner_life_), std::min(256.0, 2 * inner_life_));
     }
 
     /// Brings bodies that crossed a periodic edge back in; what that does to their potential energy is booked
@@ -230,11 +243,11 @@ private:
         return SphereStore::ImageRequest{slot, chunk, {}};
     }
 
-    Real skin_ = 0, list_skin_ = 0;    ///< asked for, of the present list [m]
-    Real inner_skin_ = 0, moved_ = 0;  ///< of the candidates; how far anything may have come since [m]
-    Real seconds_ = 0;
-    Index age_ = 0;               ///< steps since the last renewal
-    std::vector<Vec3> built_at_;  ///< [slot] where the list was made [m]
+    Real skin_ = 0, list_skin_ = 0;       ///< asked for, of the present list [m]
+    Real inner_skin_ = 0, moved_ = 0;     ///< of the candidates; how far anything may have come since [m]
+    Real seconds_ = 0, inner_life_ = 32;  ///< [s], [steps]
+    Index age_ = 0;                       ///< steps since the last renewal
+    std::vector<Vec3> built_at_;          ///< [slot] where the list was made [m]
 };
 
 }  // namespace abrade

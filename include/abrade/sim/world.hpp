@@ -220,8 +220,7 @@ private:
         if constexpr (P::has_wear)
             for (Index slot = first; slot < last; ++slot) take_wear(slot);
         if (!move) return;
-        for (Index slot = first; slot < store.first_clump_slot(slab); ++slot)
-            move_sphere(state_, slot, *move, sums);
+        sums += move_spheres(state_, first, store.first_clump_slot(slab), *move);
         for (MovingClump& clump : store.clumps_of(slab)) move_clump(state_, clump, *move, sums);
         for (const SphereImage& image : store.images_of(slab)) store.refresh(image);
     }
@@ -244,7 +243,7 @@ private:
         stored_contacts_ = contacts.stored, stored_bonds_ = bonds.stored;
         state_.broken_tension += bonds.broken_tension, state_.broken_shear += bonds.broken_shear;
         state_.pattern_changed |= bonds.broken_tension + bonds.broken_shear > 0;
-        if (contacts.deepest > overlap_limit) find_overlap();
+        if (contacts.deepest > overlap_limit * (1 + state_.size_ratio)) find_overlap();
         if (bonds.deepest > overlap_limit) report_bond(bonds);
     }
     void book(Ledger& to, const MotionSums& motion) const {
