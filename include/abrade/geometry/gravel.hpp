@@ -25,7 +25,7 @@ struct Gravel {
     Real flatness = 1;     ///< S / I, in [0.2, 1]
     Real roundness = 0.5;  ///< radius of the corners over that of the largest inscribed sphere, in [0.05, 1]
     Real largest_gap = 0.03;  ///< between the spheres and the smooth stone they stand for, over size
-    Index max_spheres = 60;   ///< no more than this, even if gaps are then wider
+    Index max_spheres = 100;  ///< no more than this, even if gaps are then wider
     std::uint64_t seed = 0;   ///< another seed, another stone
 
     void validate() const {
@@ -35,8 +35,8 @@ struct Gravel {
         require_share(roundness, 0.05, "Gravel.roundness");
         require(largest_gap >= 0.002 && largest_gap <= 1,
                 {"Gravel.largest_gap", "in [0.002, 1]", {}, "it is a share of the size"}, largest_gap);
-        require(max_spheres >= 7,
-                {"Gravel.max_spheres", ">= 7", "spheres", "one inside and one at each end of three axes"},
+        require(max_spheres >= 9,
+                {"Gravel.max_spheres", ">= 9", "spheres", "one inside and one at each of eight corners"},
                 max_spheres);
     }
 
@@ -70,14 +70,14 @@ inline Box box_around(std::span<const Sphere> spheres) {
     return box;
 }
 
-/// Twelve directions spread over the sphere, turned and shaken by chance.
+/// Eight directions spread over the sphere, turned and shaken by chance.
 inline std::vector<Vec3> random_corners(std::uint64_t seed) {
     std::mt19937_64 random(seed);
     // The distributions of the standard library differ from one compiler to the next; the engine does not.
     const auto uniform = [&] { return static_cast<Real>(random() >> 11) * 0x1p-52 - 1; };
     Quaternion turn(uniform(), uniform(), uniform(), uniform());
     turn.normalize();
-    constexpr int count = 12;
+    constexpr int count = 8;
     constexpr Real golden_angle = 2.399963229728653, shake = 0.3;
     std::vector<Vec3> corners;
     for (int n = 0; n < count; ++n) {
@@ -101,15 +101,23 @@ public:
 
     std::vector<Sphere> make() {
         for (int n = 0; n < 20; ++n) adjust(false);
-        for (int n = 0; n < 3; ++n) {
+        // Filling anew changes the moments, and so, a little, the shape; it must not tear the spheres apart.
+        for (int n = 0; n < 8; ++n) {
             fill();
-            for (int k = 0; k < 8; ++k) adjust(true);
+            const bool last = n >= 2;
+            for (int k = 0; k < (last ? 60 : 4) && adjust(true) > settled(); ++k) {
+            }
+            if (last && hang_together(spheres())) break;
         }
-        for (int k = 0; k < 60 && adjust(true) > 1e-9;) ++k;
         return spheres();
     }
 
 private:
+    /// Rounded stones have few spheres and nearly equal moments: a small error of their integrals would turn
+    /// their axes far, and costs little to avoid.
+    static constexpr std::size_t few = 30;
+    Real settled() const { return places_.size() < few ? 1e-10 : 1e-7; }
+
     /// The spheres as they are now: the largest inscribed one, and those at places, each as large as fits.
     std::vector<Sphere> spheres() const {
         std::vector<Sphere> result;
@@ -132,7 +140,7 @@ private:
             for (const Vec3& corner : stone_.corners()) now.push_back({corner, stone_.radius()});
         Mat3 change = Mat3::Identity();
         if (aligned && now.size() > 1) {
-            const SolidMoments m = slice_moments<12>(now);
+            const SolidMoments m = now.size() <= few ? slice_moments<32>(now) : slice_moments<12>(now);
             const Mat3 c = 0.5 * m.inertia.trace() * Mat3::Identity() - m.inertia;
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j)
@@ -155,36 +163,76 @@ private:
     void fill() {
         inscribed_ = stone_.largest_inscribed();
         filled_ = true;
-        const std::vector<SurfaceSample> samples = stone_.samples(6);
-        GreedyFilling filling(samples);
-        filling.add(inscribed_);
-        // The ends of the axes, so that the spheres have the extent of the stone.
-        for (int axis = 0; axis < 3; ++axis)
-            for (const Real side : {-1.0, 1.0}) {
-                const auto end = std::max_element(
-                    stone_.corners().begin(), stone_.corners().end(),
-                    [&](const Vec3& a, const Vec3& b) { return side * a[axis] < side * b[axis]; });
-                const Sphere ball{*end, stone_.radius()};
-                const auto reaches = [&](const Sphere& s) {
-                    return side * (ball.centre - s.centre)[axis] + ball.radius - s.radius < 1e-4;
-                };
-                if (std::none_of(filling.spheres().begin(), filling.spheres().end(), reaches))
-                    filling.add(ball);
-            }
-        const std::size_t kept = filling.spheres().size();
-        const Real nominal = std::cbrt(6 / pi * union_volume(filling.spheres()));
-        const Real gap = wanted_.largest_gap * nominal;
-        filling.fill_by_gap(
-            {.max_spheres = wanted_.max_spheres, .largest_gap = gap},
-            [&](const Vec3& x) { return stone_.depth(x); }, 0, stone_.radius(), 1);
-        if (filling.largest_gap() <= gap) filling.drop_redundant(gap, kept);
+        // Centres keep within the core: from outside of it the depth is not known, and a place would not
+        // last.
+        const auto depth = [&](const Vec3& x) { return stone_.in_core(x) ? stone_.depth(x) : -1.0; };
+        const std::vector<SurfaceSample> samples = stone_.samples(5);
+        std::vector<Sphere> pool;
+        for (const SurfaceSample& sample : samples)
+            for (const Real slack : {1e-9, 0.01, 0.04})
+                pool.push_back(ball_under(sample, depth, slack, stone_.radius(), 1));
+
+        const std::vector<Sphere> frame = frame_of_corners();
+        const SphereFilling limits{.max_spheres = wanted_.max_spheres,
+                                   .largest_gap = wanted_.largest_gap * nominal_diameter(pool)};
+        require(frame.size() <= static_cast<std::size_t>(wanted_.max_spheres),
+                {"Gravel.max_spheres", "at least " + std::to_string(frame.size()) + " for this form",
+                 "spheres", "or make it rounder, less elongated or less flat"},
+                wanted_.max_spheres);
+        GreedyFilling filling(samples, limits);
+        for (const Sphere& s : frame) filling.add(s);
+        filling.fill_by_volume(pool);
+        if (filling.gap_reached()) filling.drop_redundant(frame.size());
         places_.clear();
         const Mat3 back = stone_.map().inverse();
         for (std::size_t n = 1; n < filling.spheres().size(); ++n)
             places_.push_back(back * filling.spheres()[n].centre);
     }
-    static Real union_volume(std::span<const Sphere> spheres) {
-        return spheres.size() < 3 ? exact_moments(spheres).volume : slice_moments<12>(spheres).volume;
+
+    /// The largest inscribed sphere, one at each corner, which give the stone its extent and its roundness,
+    /// and what it takes to tie them together.
+    std::vector<Sphere> frame_of_corners() const {
+        std::vector<Sphere> frame{inscribed_};
+        for (const Vec3& corner : stone_.corners()) {
+            const auto covers = [&](const Sphere& s) {
+                return (s.centre - corner).norm() + stone_.radius() - s.radius < 1e-5;
+            };
+            if (std::none_of(frame.begin(), frame.end(), covers)) tie(frame, {corner, stone_.radius()});
+        }
+        return frame;
+    }
+
+    /// Adds `tip` and, towards the nearest sphere of the frame, spheres that each overlap the one before.
+    void tie(std::vector<Sphere>& frame, const Sphere& tip) const {
+        const Sphere nearest =
+            *std::min_element(frame.begin(), frame.end(), [&](const Sphere& a, const Sphere& b) {
+                return (a.centre - tip.centre).norm() - a.radius < (b.centre - tip.centre).norm() - b.radius;
+            });
+        constexpr Real overlap = 0.3;  // more than must be, since the stone still changes a little
+        frame.push_back(tip);
+        while (!overlap_by(overlap, frame.back(), nearest)) {
+            // The farther along the way, the less it overlaps the one before: the last place that will do.
+            const Sphere before = frame.back();
+            Real low = 0, high = 1;
+            const auto at = [&](Real share) -> Sphere {
+                const Vec3 centre = before.centre + share * (nearest.centre - before.centre);
+                return {centre, stone_.depth(centre)};
+            };
+            for (int halving = 0; halving < 30; ++halving) {
+                const Real share = 0.5 * (low + high);
+                (overlap_by(overlap, before, at(share)) ? low : high) = share;
+            }
+            frame.push_back(at(low));
+        }
+    }
+
+    /// Of the union of the largest spheres: close enough to say what a gap is.
+    Real nominal_diameter(std::vector<Sphere> pool) const {
+        constexpr std::size_t enough = 30;
+        const std::size_t stride = std::max<std::size_t>(1, pool.size() / enough);
+        std::vector<Sphere> some{inscribed_};
+        for (std::size_t n = 0; n < pool.size(); n += stride) some.push_back(pool[n]);
+        return std::cbrt(6 / pi * slice_moments<12>(some).volume);
     }
 
     Gravel wanted_;
@@ -205,7 +253,7 @@ inline StoneForm form_of(const Clump& clump) {
     return {sides.z(), sides.y(), sides.x()};
 }
 
-/// A stone of the wanted size, form and roundness: a random convex polyhedron of twelve corners, rounded, and
+/// A stone of the wanted size, form and roundness: a random convex polyhedron of eight corners, rounded, and
 /// filled with the largest inscribed sphere, spheres at its corners, whose radius is that of the rounding,
 /// and what it takes to close the gaps between them. Its volume is that of the nominal sphere to round-off,
 /// elongation and flatness are met to 1e-3, and roundness to 1e-3; the same input gives the same stone.

@@ -54,6 +54,8 @@ public:
     /// Distance from a point of the core to the surface of the rounded solid [m].
     Real depth(const Vec3& x) const noexcept { return radius_ + std::max(0.0, core_depth(x)); }
 
+    bool in_core(const Vec3& x) const noexcept { return core_depth(x) >= 0; }
+
     /// The largest inscribed sphere. It touches at least four faces, so among the points that are equally far
     /// from four of them its centre is the one farthest in.
     Sphere largest_inscribed() const {
@@ -97,7 +99,8 @@ public:
         for (std::size_t c = 0; c < corners_.size(); ++c)
             if (at_corner[c].norm() > 1e-9) {
                 const Vec3 normal = at_corner[c].normalized();
-                result.push_back({corners_[c] + radius_ * normal, normal});
+                const Real share = 4 * pi / static_cast<Real>(corners_.size());  // of the sphere, on average
+                result.push_back({corners_[c] + radius_ * normal, normal, share * square(radius_)});
             }
         return result;
     }
@@ -138,10 +141,13 @@ private:
         const Vec3 middle = across.normalized();
         const std::array<Vec3, 3> normals{(planes_[f].normal + middle).normalized(), middle,
                                           (planes_[g].normal + middle).normalized()};
+        const Real turn = std::acos(std::clamp(planes_[f].normal.dot(planes_[g].normal), -1.0, 1.0));
+        const Real length = (corners_[shared[1]] - corners_[shared[0]]).norm();
+        const Real area = length / (2 * parts) * radius_ * turn / 3;
         for (int k = 0; k < 2 * parts; ++k) {
             const Real share = (k + 0.5) / (2 * parts);
             const Vec3 point = (1 - share) * corners_[shared[0]] + share * corners_[shared[1]];
-            for (const Vec3& normal : normals) result.push_back({point + radius_ * normal, normal});
+            for (const Vec3& normal : normals) result.push_back({point + radius_ * normal, normal, area});
         }
     }
 

@@ -61,7 +61,7 @@ Sphere ball_under(const SurfaceSample& sample, const Distance& distance, Real sl
         (s - distance(centre(s)) <= slack ? low : high) = s;
     }
     const Vec3 at = centre(low);
-    return {at, std::max(known, distance(at))};
+    return {at, low > known ? distance(at) : known};
 }
 
 /// Walks from `ball`, inside the solid, to where the distance from the surface is largest nearby: in
@@ -84,77 +84,93 @@ Sphere largest_ball_near(Sphere ball, const Distance& distance) {
     return ball;
 }
 
-/// Spheres that fill a solid, and the gaps that they leave at its samples.
+/// Do two spheres overlap by at least `share` of the smaller radius?
+inline bool overlap_by(Real share, const Sphere& a, const Sphere& b) {
+    return (a.centre - b.centre).norm() <= a.radius + b.radius - share * std::min(a.radius, b.radius);
+}
+inline constexpr Real least_overlap = 0.1;  ///< below this two spheres are not taken to hang together
+
+/// Can every sphere be reached from the first over overlaps?
+inline bool hang_together(std::span<const Sphere> spheres) {
+    std::vector<char> reached(spheres.size(), 0);
+    std::vector<std::size_t> front{0};
+    reached[0] = 1;
+    for (std::size_t n = 0; n < front.size(); ++n)
+        for (std::size_t m = 0; m < spheres.size(); ++m)
+            if (!reached[m] && overlap_by(least_overlap, spheres[front[n]], spheres[m]))
+                reached[m] = 1, front.push_back(m);
+    return front.size() == spheres.size();
+}
+
+/// Spheres that fill a solid and hang together, and the gaps that they leave at its samples.
 class GreedyFilling {
 public:
-    explicit GreedyFilling(std::span<const SurfaceSample> samples)
-        : samples_{samples}, gaps_(samples.size(), std::numeric_limits<Real>::infinity()),
-          open_(samples.size(), 1) {}
+    GreedyFilling(std::span<const SurfaceSample> samples, const SphereFilling& limits)
+        : samples_{samples}, limits_{limits}, gaps_(samples.size(), std::numeric_limits<Real>::infinity()) {}
 
     void add(const Sphere& ball) {
         spheres_.push_back(ball);
         for (std::size_t s = 0; s < samples_.size(); ++s) gaps_[s] = std::min(gaps_[s], gap(s, ball));
     }
 
-    /// Adds a ball below the sample with the widest gap, again and again. A ball may miss its sample by a
-    /// `slack_share` of the gap: it can then lie deeper, and serves a wider part of the surface.
-    template <class Distance>
-    void fill_by_gap(const SphereFilling& limits, const Distance& distance, Real slack_share, Real known,
-                     Real extent) {
-        while (spheres_.size() < static_cast<std::size_t>(limits.max_spheres)) {
-            std::size_t widest = samples_.size();
-            for (std::size_t s = 0; s < samples_.size(); ++s)
-                if (open_[s] && (widest == samples_.size() || gaps_[s] > gaps_[widest])) widest = s;
-            if (widest == samples_.size() || gaps_[widest] <= limits.largest_gap) break;
-            const Real before = gaps_[widest];
-            const Real slack = std::max(slack_share * std::min(before, extent), 1e-9 * extent);
-            const Sphere ball = ball_under(samples_[widest], distance, slack, known, extent);
-            if (ball.radius >= limits.smallest_radius && ball.radius > 0 && gap(widest, ball) < 0.99 * before)
-                add(ball);
-            else
-                open_[widest] = 0;  // no ball that may be used comes nearer
-        }
-    }
-
     /// Adds the ball of `pool` that fills the most, again and again: the sum of gap times area over the
     /// samples is, for narrow gaps, the volume that is missing. A ball's share of it can only fall as others
-    /// are added, so one whose share, computed anew, still is the largest of all is the best.
-    void fill_by_volume(const SphereFilling& limits, const std::vector<Sphere>& pool) {
+    /// are added, so one whose share, computed anew, still is the largest of all is the best. A ball that
+    /// does not yet overlap any waits for one that it does.
+    void fill_by_volume(const std::vector<Sphere>& pool) {
         std::priority_queue<std::pair<Real, std::size_t>> shares;
         for (std::size_t n = 0; n < pool.size(); ++n) shares.emplace(volume_filled(pool[n]), n);
-        while (spheres_.size() < static_cast<std::size_t>(limits.max_spheres) && !shares.empty()) {
+        std::vector<std::size_t> waiting;
+        while (!done() && !shares.empty()) {
             const std::size_t n = shares.top().second;
             shares.pop();
             const Real share = volume_filled(pool[n]);
             if (share <= 0) continue;
-            if (shares.empty() || share >= shares.top().first)
-                add(pool[n]);
-            else
+            if (!shares.empty() && share < shares.top().first) {
                 shares.emplace(share, n);
+            } else if (!hangs_on(pool[n])) {
+                waiting.push_back(n);
+            } else {
+                add(pool[n]);
+                for (const std::size_t w : waiting) shares.emplace(volume_filled(pool[w]), w);
+                waiting.clear();
+            }
         }
     }
 
-    /// Takes out, smallest first but never the first `kept`, what is not needed for gaps of `largest_gap`.
-    void drop_redundant(Real largest_gap, std::size_t kept) {
+    /// Adds a ball below the sample with the widest gap, again and again. A ball may miss its sample by a
+    /// tenth of the gap: it can then lie deeper, and serves a wider part of the surface.
+    template <class Distance>
+    void fill_by_gap(const Distance& distance, Real known, Real extent) {
+        std::vector<char> open(samples_.size(), 1);
+        while (!done()) {
+            std::size_t widest = samples_.size();
+            for (std::size_t s = 0; s < samples_.size(); ++s)
+                if (open[s] && (widest == samples_.size() || gaps_[s] > gaps_[widest])) widest = s;
+            if (widest == samples_.size()) break;
+            const Real slack = std::max(0.1 * gaps_[widest], 1e-9 * extent);
+            const Sphere ball = ball_under(samples_[widest], distance, slack, known, extent);
+            if (ball.radius >= limits_.smallest_radius && ball.radius > 0 &&
+                gap(widest, ball) < 0.99 * gaps_[widest] && hangs_on(ball))
+                add(ball);
+            else
+                open[widest] = 0;  // no ball that may be used comes nearer
+        }
+    }
+
+    /// Takes out, smallest first but never the first `kept`, what is not needed for the wanted gap.
+    void drop_redundant(std::size_t kept) {
         std::vector<std::size_t> order;
         for (std::size_t n = kept; n < spheres_.size(); ++n) order.push_back(n);
         std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
             return spheres_[a].radius < spheres_[b].radius;
         });
-        std::vector<char> dropped(spheres_.size(), 0);
+        std::vector<char> used(spheres_.size(), 1);
         for (const std::size_t n : order) {
-            bool needed = false;
-            for (std::size_t s = 0; s < samples_.size() && !needed; ++s) {
-                if (gap(s, spheres_[n]) > largest_gap) continue;  // not this one's sample
-                needed = true;
-                for (std::size_t m = 0; m < spheres_.size() && needed; ++m)
-                    needed = m == n || dropped[m] || gap(s, spheres_[m]) > largest_gap;
-            }
-            dropped[n] = !needed;
+            used[n] = 0;
+            used[n] = !(hang_together(those(used)) && close_enough(used, n));
         }
-        std::vector<Sphere> left;
-        for (std::size_t n = 0; n < spheres_.size(); ++n)
-            if (!dropped[n]) left.push_back(spheres_[n]);
+        const std::vector<Sphere> left = those(used);
         spheres_.clear();
         gaps_.assign(samples_.size(), std::numeric_limits<Real>::infinity());
         for (const Sphere& ball : left) add(ball);
@@ -162,22 +178,45 @@ public:
 
     const std::vector<Sphere>& spheres() const { return spheres_; }
     Real largest_gap() const { return std::max(0.0, *std::max_element(gaps_.begin(), gaps_.end())); }
+    bool gap_reached() const { return largest_gap() <= limits_.largest_gap; }
+    bool done() const {
+        return spheres_.size() >= static_cast<std::size_t>(limits_.max_spheres) || gap_reached();
+    }
 
 private:
+    Real gap(std::size_t s, const Sphere& ball) const {
+        return (samples_[s].point - ball.centre).norm() - ball.radius;
+    }
     Real volume_filled(const Sphere& ball) const {
         Real sum = 0;
         for (std::size_t s = 0; s < samples_.size(); ++s)
             sum += samples_[s].area * std::max(0.0, gaps_[s] - gap(s, ball));
         return sum;
     }
-    Real gap(std::size_t s, const Sphere& ball) const {
-        return (samples_[s].point - ball.centre).norm() - ball.radius;
+    std::vector<Sphere> those(const std::vector<char>& used) const {
+        std::vector<Sphere> some;
+        for (std::size_t n = 0; n < spheres_.size(); ++n)
+            if (used[n]) some.push_back(spheres_[n]);
+        return some;
     }
-
+    bool hangs_on(const Sphere& ball) const {
+        return std::any_of(spheres_.begin(), spheres_.end(),
+                           [&](const Sphere& other) { return overlap_by(least_overlap, ball, other); });
+    }
+    /// Is the widest gap among the samples of the dropped sphere `n` still narrow enough?
+    bool close_enough(const std::vector<char>& used, std::size_t n) const {
+        for (std::size_t s = 0; s < samples_.size(); ++s) {
+            bool near = gap(s, spheres_[n]) > limits_.largest_gap;  // never was this one's sample
+            for (std::size_t m = 0; m < spheres_.size() && !near; ++m)
+                near = used[m] && gap(s, spheres_[m]) <= limits_.largest_gap;
+            if (!near) return false;
+        }
+        return true;
+    }
     std::span<const SurfaceSample> samples_;
+    SphereFilling limits_;
     std::vector<Sphere> spheres_{};
     std::vector<Real> gaps_;  ///< [sample] distance to the nearest sphere [m]
-    std::vector<char> open_;  ///< [sample] a ball may still be put below it
 };
 
 /// Centroids of the k^2 equal parts of the triangle a b c.
@@ -193,13 +232,14 @@ void each_part(const Vec3& a, const Vec3& b, const Vec3& c, int k, const Use& us
 
 }  // namespace detail
 
-/// Overlapping spheres inside `mesh`, each as large as its place allows.
-/// First the largest inscribed sphere; then, below the point of the surface with the widest gap, a sphere
-/// that touches the surface there from within, up to a tenth of that gap, and so on. Tangent spheres grown
-/// below points of the surface are those of Ferellec and McDowell 2010, doi:10.1007/s10035-010-0205-8;
-/// the widest gap first, instead of points at random, is ours. For a comparison of such methods see
-/// Angelidakis et al. 2021, doi:10.1016/j.softx.2021.100735. The result is the same for the same input.
-/// With a largest_gap, spheres that turn out not to be needed for it are taken out again.
+/// Overlapping spheres inside `mesh`, each as large as its place allows, that hang together.
+/// First the largest inscribed sphere. Then, from a pool of spheres that touch the surface from within, or
+/// nearly so, the one that fills the most of what is still empty, and so on; where the pool is exhausted,
+/// spheres below the widest gap. Tangent spheres grown below points of the surface are those of Ferellec and
+/// McDowell 2010, doi:10.1007/s10035-010-0205-8; choosing the one that fills the most, instead of points at
+/// random, is ours. For a comparison of such methods see Angelidakis et al. 2021,
+/// doi:10.1016/j.softx.2021.100735. The result is the same for the same input. Once a wanted gap is reached,
+/// spheres that turn out not to be needed for it are taken out again.
 /// The spheres keep inside the mesh, so the union's volume is below the mesh's, and tends to it.
 /// Throws InputError on bad limits, and when every sphere would be below the smallest radius.
 inline SphereFillingResult fill_with_spheres(const SurfaceMesh& mesh, const SphereFilling& limits) {
@@ -238,14 +278,11 @@ inline SphereFillingResult fill_with_spheres(const SurfaceMesh& mesh, const Sphe
              "no larger than the largest inscribed sphere (" + short_text(deepest.radius) + " m)", "m"},
             limits.smallest_radius);
 
-    detail::GreedyFilling filling(samples);
+    detail::GreedyFilling filling(samples, limits);
     filling.add(deepest);
-    if (limits.largest_gap > 0) {
-        filling.fill_by_gap(limits, distance, 0.1, 0, extent);
-        if (filling.largest_gap() <= limits.largest_gap) filling.drop_redundant(limits.largest_gap, 1);
-    } else {
-        filling.fill_by_volume(limits, pool);
-    }
+    filling.fill_by_volume(pool);
+    filling.fill_by_gap(distance, 0, extent);
+    if (filling.gap_reached()) filling.drop_redundant(1);
     return {filling.spheres(), filling.largest_gap(), spacing,
             moments_error(union_moments(filling.spheres()), mesh.moments())};
 }
