@@ -111,7 +111,7 @@ Summary clumps(const OutputFolder& folder) {
             Clump shown = stone;
             for (Sphere& s : shown.members) s.centre *= centimetre, s.radius *= centimetre;
             plate.sets.push_back(
-                view_of(shown, {9.5 * static_cast<Real>(column), -7.0 * static_cast<Real>(row), 0}));
+                view_of(shown, {11.0 * static_cast<Real>(column), -7.0 * static_cast<Real>(row), 0}));
             const StoneForm form = form_of(stone);
             worst_form = std::max({worst_form, std::abs(form.elongation() - forms[row].elongation),
                                    std::abs(form.flatness() - forms[row].flatness)});
@@ -147,8 +147,12 @@ Summary clumps(const OutputFolder& folder) {
                       {"block_100_largest_gap_m", b.largest_gap}};
     }
     draw(LineChart{.title = "Spheres in a surface: what they leave out",
-                   .x = {.label = "spheres", .logarithmic = true},
-                   .y = {.label = "error against the surface's own", .unit = "%", .logarithmic = true},
+                   .x = {.label = "spheres", .min = 0.9, .max = 250, .logarithmic = true},
+                   .y = {.label = "error against the surface's own",
+                         .unit = "%",
+                         .min = 0.7,
+                         .max = 200,
+                         .logarithmic = true},
                    .curves = {{"pebble, volume", count, pebble_volume, CurveStyle::points},
                               {"pebble, inertia", count, pebble_inertia, CurveStyle::points},
                               {"block, volume", count, block_volume, CurveStyle::points},

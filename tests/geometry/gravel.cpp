@@ -78,8 +78,8 @@ std::string message_of(const Gravel& wanted) {
 TEST_CASE("size, form and roundness come out as they were asked for") {
     std::uint64_t seed = 1;
     for (const Real elongation : {1.0, 0.7, 0.4})
-        for (const Real flatness : {1.0, 0.7, 0.4})
-            for (const Real roundness : {0.15, 0.4, 0.7, 0.9, 1.0}) {
+        for (const Real flatness : {1.0, 0.4})
+            for (const Real roundness : {0.15, 0.5, 0.9, 1.0}) {
                 const Clump stone = make_gravel({.size = 0.05,
                                                  .elongation = elongation,
                                                  .flatness = flatness,
@@ -168,14 +168,14 @@ TEST_CASE("narrower gaps take more spheres, a rounder stone fewer") {
                             .flatness = 0.8,
                             .roundness = roundness,
                             .largest_gap = gap,
-                            .max_spheres = 300,
+                            .max_spheres = 200,
                             .seed = 3})
             .members.size();
     };
-    const std::size_t coarse = count(0.5, 0.08), fine = count(0.5, 0.04), round = count(0.8, 0.04);
+    const std::size_t coarse = count(0.5, 0.1), fine = count(0.5, 0.06), round = count(0.8, 0.06);
     CHECK(coarse < fine);
     CHECK(round < fine);
-    CHECK(fine < 300);  // done because the gaps are closed, not because there are no more
+    CHECK(fine < 200);  // done because the gaps are closed, not because there are no more
 }
 
 TEST_CASE("axes, of a clump that is known") {

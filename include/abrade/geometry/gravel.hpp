@@ -113,10 +113,12 @@ public:
     }
 
 private:
-    /// Rounded stones have few spheres and nearly equal moments: a small error of their integrals would turn
-    /// their axes far, and costs little to avoid.
-    static constexpr std::size_t few = 30;
-    Real settled() const { return places_.size() < few ? 1e-10 : 1e-7; }
+    /// A step of L that is as good as none. Where two moments are nearly equal, a small error of the
+    /// integrals turns the axes far, so there both are taken more exactly.
+    Real settled() const { return nearly_equal_ ? 1e-10 : 1e-7; }
+    static Mat3 covariance(const SolidMoments& m) {
+        return 0.5 * m.inertia.trace() * Mat3::Identity() - m.inertia;
+    }
 
     /// The spheres as they are now: the largest inscribed one, and those at places, each as large as fits.
     std::vector<Sphere> spheres() const {
@@ -130,9 +132,7 @@ private:
     }
 
     /// One step towards the wanted axes and roundness, and, when `aligned`, towards principal axes along x, y
-    /// and z. With C the integral of x x^T about the centroid, the shear x + E x, E_ij = -C_ij / (C_ii +
-    /// C_jj), removes its off-diagonal part to first order, and unlike a turn also where two axes are about
-    /// equal. Returns the size of the step.
+    /// and z: by shear, which unlike a turn also works where two axes are about equal. Returns its size.
     Real adjust(bool aligned) {
         inscribed_ = stone_.largest_inscribed();
         std::vector<Sphere> now = spheres();
@@ -140,11 +140,24 @@ private:
             for (const Vec3& corner : stone_.corners()) now.push_back({corner, stone_.radius()});
         Mat3 change = Mat3::Identity();
         if (aligned && now.size() > 1) {
-            const SolidMoments m = now.size() <= few ? slice_moments<32>(now) : slice_moments<12>(now);
-            const Mat3 c = 0.5 * m.inertia.trace() * Mat3::Identity() - m.inertia;
+            Mat3 c = covariance(slice_moments<6>(now));
+            const Vec3 d = c.diagonal();
+            nearly_equal_ = std::min({std::abs(d.x() - d.y()), std::abs(d.y() - d.z()),
+                                      std::abs(d.z() - d.x())}) < 0.01 * d.sum();
+            if (nearly_equal_) c = covariance(slice_moments<24>(now));
+            // A shear E changes C_ij, the integral of x_i x_j, by E (C_ii + C_jj), if everything moves with
+            // it. Here only centres do. The share of the core in the extent, to the first power, keeps the
+            // iteration stable for any roundness, and quick enough where there is little core.
+            const Box all = box_around(now);
+            const Vec3 side2 = (all.high - all.low).cwiseAbs2();
+            const Vec3 core2 = (all.high - all.low - Vec3::Constant(2 * stone_.radius())).cwiseAbs2();
             for (int i = 0; i < 3; ++i)
-                for (int j = 0; j < 3; ++j)
-                    if (i != j) change(i, j) = -c(i, j) / (c(i, i) + c(j, j));
+                for (int j = 0; j < i; ++j) {
+                    const Real moves =
+                        std::max(0.05, std::sqrt((core2[i] + core2[j]) / (side2[i] + side2[j])));
+                    const Real shear = -c(i, j) / (moves * (c(i, i) + c(j, j)));
+                    change(i, j) = change(j, i) = std::clamp(shear, -0.1, 0.1);
+                }
         }
         // The core must keep some thickness: its faces are made of it.
         const Real radius = std::min(wanted_.roundness * inscribed_.radius, 0.5 * (1 - 1e-5) * axes_.z());
@@ -210,7 +223,7 @@ private:
             });
         constexpr Real overlap = 0.3;  // more than must be, since the stone still changes a little
         frame.push_back(tip);
-        while (!overlap_by(overlap, frame.back(), nearest)) {
+        while (!overlap_by(overlap, frame.back(), nearest) && frame.size() < 10'000) {
             // The farther along the way, the less it overlaps the one before: the last place that will do.
             const Sphere before = frame.back();
             Real low = 0, high = 1;
@@ -239,6 +252,7 @@ private:
     Vec3 axes_;  ///< L, I, S over L
     RoundedPolyhedron stone_;
     bool filled_ = false;
+    bool nearly_equal_ = false;  ///< are two of the principal moments
     Sphere inscribed_{};
     std::vector<Vec3> places_{};  ///< of the other spheres' centres, in the polyhedron's shape
 };

@@ -45,11 +45,21 @@ struct AreaMoments {
 ///   A = 1/2 int (x dy - y dx),  M_x = 1/2 int x^2 dy,  M_xx = 1/3 int x^3 dy,  M_xy = 1/2 int x^2 y dy, ...
 /// with x = p + r cos(theta), y = q + r sin(theta): polynomials in cos and sin, in closed form.
 inline void add_arc(AreaMoments& sum, Real p, Real q, Real r, Real from, Real to) {
+    struct Multiples {  // cos(k theta), sin(k theta)
+        std::array<Real, 5> c{}, s{};
+        explicit Multiples(Real theta) {
+            c[1] = std::cos(theta), s[1] = std::sin(theta);
+            for (std::size_t k = 2; k < 5; ++k) {
+                c[k] = c[k - 1] * c[1] - s[k - 1] * s[1];
+                s[k] = s[k - 1] * c[1] + c[k - 1] * s[1];
+            }
+        }
+    };
+    const Multiples end(to), begin(from);
     std::array<Real, 5> c{}, s{};  // integrals of cos(k theta), sin(k theta)
     for (std::size_t k = 1; k < 5; ++k) {
-        const Real n = static_cast<Real>(k);
-        c[k] = (std::sin(n * to) - std::sin(n * from)) / n;
-        s[k] = (std::cos(n * from) - std::cos(n * to)) / n;
+        c[k] = (end.s[k] - begin.s[k]) / static_cast<Real>(k);
+        s[k] = (begin.c[k] - end.c[k]) / static_cast<Real>(k);
     }
     const Real turn = to - from;
     const Real cc = 0.5 * (turn + c[2]), ss = 0.5 * (turn - c[2]), cs = 0.5 * s[2];
