@@ -22,7 +22,7 @@ holds "number of spheres" "$(value gravel_most_spheres) <= 100 && $(value gravel
 holds "order, pebble" "$(value pebble_order_of_volume_error) < -0.75"
 # At edges the spheres shrink with their distance from them: slower.
 holds "order, block" "$(value block_order_of_volume_error) < -0.4"
-holds "a hundred spheres in a pebble" "-$(value pebble_100_volume_error_relative) < 0.03"
+holds "a hundred spheres in a pebble" "$(value pebble_100_volume_error_relative) > -0.03"
 holds "spheres keep inside" "$(value pebble_100_volume_error_relative) < 0 && $(value block_100_volume_error_relative) < 0"
 
 code=0; "$program" --frobnicate > bad.log 2>&1 || code=$?
