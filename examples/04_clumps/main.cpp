@@ -15,7 +15,6 @@
 #include "../common/textbook.hpp"
 
 #include <abrade/abrade.hpp>
-#include <abrade/geometry/gravel.hpp>
 #include <abrade/io/stl_file.hpp>
 
 using namespace abrade;
