@@ -6,6 +6,7 @@
 #include <abrade/dem/hertz_mindlin.hpp>
 #include <abrade/dem/linear_spring.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
+#include <abrade/geometry/gravel.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>

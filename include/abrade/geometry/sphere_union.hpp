@@ -2,6 +2,7 @@
 // Volume, centre and inertia of a union of overlapping spheres: what overlaps counts once.
 
 #include <abrade/core/require.hpp>
+#include <abrade/geometry/sphere_slices.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -14,32 +15,7 @@
 
 namespace abrade {
 
-struct Sphere {
-    Vec3 centre = Vec3::Zero();  ///< [m]
-    Real radius = 0;             ///< [m]
-};
-
-/// Volume integrals of a solid of unit density.
-struct SolidMoments {
-    Real volume = 0;               ///< [m3]
-    Vec3 centroid = Vec3::Zero();  ///< [m]
-    Mat3 inertia = Mat3::Zero();   ///< about the centroid, [m5]; times density [kg/m3] gives [kg m2]
-};
-
 namespace detail {
-
-/// Integrals of 1, x and x x^T over the solid, from which every other moment follows.
-struct RawMoments {
-    Real volume = 0;
-    Vec3 first = Vec3::Zero();
-    Mat3 second = Mat3::Zero();
-
-    SolidMoments about_centroid() const {
-        const Vec3 c = first / volume;
-        const Mat3 covariance = second - volume * c * c.transpose();
-        return {volume, c, covariance.trace() * Mat3::Identity() - covariance};
-    }
-};
 
 /// Adds the part of a ball between the planes `from` and `to` (signed distances from its centre along
 /// `axis`). The integrands are polynomials of degree 4 at most, so three Gauss points are exact.
@@ -78,57 +54,20 @@ inline RawMoments exact_moments(std::span<const Sphere> spheres) {
     return sum;
 }
 
-/// Rays along z on a square grid of midpoints; along each ray the union of intervals is exact.
-inline RawMoments ray_moments(std::span<const Sphere> spheres, int rays_across) {
-    Vec3 low = spheres[0].centre, high = low;
-    for (const Sphere& s : spheres) {
-        low = low.cwiseMin((s.centre.array() - s.radius).matrix());
-        high = high.cwiseMax((s.centre.array() + s.radius).matrix());
-    }
-    const Real dx = (high.x() - low.x()) / rays_across, dy = (high.y() - low.y()) / rays_across;
-    RawMoments sum;
-    std::vector<std::pair<Real, Real>> intervals;
-    for (int i = 0; i < rays_across; ++i) {
-        for (int j = 0; j < rays_across; ++j) {
-            const Real x = low.x() + (i + 0.5) * dx, y = low.y() + (j + 0.5) * dy;
-            intervals.clear();
-            for (const Sphere& s : spheres) {
-                const Real h2 = square(s.radius) - square(x - s.centre.x()) - square(y - s.centre.y());
-                if (h2 > 0)
-                    intervals.emplace_back(s.centre.z() - std::sqrt(h2), s.centre.z() + std::sqrt(h2));
-            }
-            std::sort(intervals.begin(), intervals.end());
-            for (std::size_t k = 0; k < intervals.size();) {
-                Real from = intervals[k].first, to = intervals[k].second;
-                for (++k; k < intervals.size() && intervals[k].first <= to; ++k)
-                    to = std::max(to, intervals[k].second);
-                const Real m0 = (to - from) * dx * dy, m1 = 0.5 * (to * to - from * from) * dx * dy;
-                sum.volume += m0;
-                sum.first += Vec3(x * m0, y * m0, m1);
-                const Real zz = (cube(to) - cube(from)) / 3 * dx * dy;
-                sum.second += Mat3{
-                    {x * x * m0, x * y * m0, x * m1}, {x * y * m0, y * y * m0, y * m1}, {x * m1, y * m1, zz}};
-            }
-        }
-    }
-    return sum;
-}
-
 }  // namespace detail
 
-/// Volume, centroid and inertia tensor of the union of `spheres`.
-/// Exact (to round-off) for one and for two spheres; for more by rays, whose error in volume was
-/// measured at below 1e-4 with the default 200 rays across.
+/// Volume, centroid and inertia tensor of the union of `spheres`: what overlaps counts once.
+/// One and two spheres: closed form (slices of balls). More: detail::SphereSlices, whose error was measured
+/// at 1e-12 of each quantity on rows, grids and heaps of spheres.
 /// Throws InputError when there is no sphere, or one with a radius that is not > 0.
-inline SolidMoments union_moments(std::span<const Sphere> spheres, int rays_across = 200) {
+inline SolidMoments union_moments(std::span<const Sphere> spheres) {
     require(!spheres.empty(), {"union_moments.spheres", "at least 1 sphere"}, 0);
     for (const Sphere& s : spheres) {
         require_positive(s.radius, "Sphere.radius", "m");
         require(s.centre.allFinite(), {"Sphere.centre", "finite", "m"}, s.centre.sum());
     }
-    const bool exact = spheres.size() <= 2;
-    return (exact ? detail::exact_moments(spheres) : detail::ray_moments(spheres, rays_across))
-        .about_centroid();
+    return spheres.size() <= 2 ? detail::exact_moments(spheres).about_centroid()
+                               : detail::slice_moments(spheres);
 }
 
 /// A rigid body made of spheres, described in its principal frame: origin at the centroid, axes along
