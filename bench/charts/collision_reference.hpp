@@ -110,8 +110,8 @@ public:
     const ContinuousLaw& law() const { return law_; }
 
     ReferenceResult solve(Real tolerance = 1e-13) {
-        // The force may start like t^(1/4): the first steps are tiny. What they leave out is smaller still.
-        const Real start = 1e-12;
+        // The force may start like t^(1/4): the first steps are tiny. What comes before them is left out.
+        const Real start = std::clamp(1e-2 * tolerance, 1e-12, 1e-4);
         mode_ = {};
         evaluations_ = 0;
         State y{};

@@ -36,17 +36,23 @@ inline void draw(const PanelChart& chart, const std::filesystem::path& picture) 
     using examples::gnuplot_number, examples::gnuplot_text;
     namespace style = examples::charts;
     static constexpr std::array<int, 7> marks{7, 5, 9, 11, 13, 6, 4};
-    const int left = 95, right = 25, top = 112, bottom = 75, gap_x = 28, gap_y = 52;
+    const int legend_rows = (static_cast<int>(chart.names.size()) + 1) / 2;  // two columns fit at least
+    const int left = 110, right = 45, top = 90 + 24 * legend_rows, bottom = 90, gap_x = 55, gap_y = 95;
     const auto columns = static_cast<int>(chart.columns);
     const int rows = (static_cast<int>(chart.panels.size()) + columns - 1) / columns;
     const int width = left + columns * chart.panel_width + (columns - 1) * gap_x + right;
     const int height = top + rows * chart.panel_height + (rows - 1) * gap_y + bottom;
 
+    const auto look = [](std::size_t c) {
+        return " with linespoints linecolor '" + std::string{style::colours[c % style::colours.size()]} +
+               "' linewidth 1.8 pointtype " + std::to_string(marks[c % marks.size()]) + " pointsize 0.9";
+    };
     std::string data, script = style::frame("", chart.x, chart.y);
     script += "unset title\nset label 1 " + gnuplot_text(chart.title) + " at screen 0.5, screen " +
               to_text(1 - 24.0 / height) + " center font 'sans,17' textcolor '#222222'\n";
     if (chart.y.logarithmic) script += "set format y '10^{%T}'\nset termoption enhanced\n";
-    script += "set multiplot\n";
+    if (chart.x.logarithmic) script += "set format x '10^{%T}'\nset termoption enhanced\n";
+    script += "unset key\nset multiplot\n";
     int block = 0;
     for (std::size_t p = 0; p < chart.panels.size(); ++p) {
         const Panel& panel = chart.panels[p];
@@ -63,9 +69,7 @@ inline void draw(const PanelChart& chart, const std::filesystem::path& picture) 
         script += column == 0 ? "set ylabel " + style::axis_title(chart.y) + "\nset format y" +
                                     (chart.y.logarithmic ? " '10^{%T}'" : "") + "\n"
                               : "unset ylabel\nset format y ''\n";
-        script += p == 0 ? "set key at screen 0.5, screen " + to_text(1 - 42.0 / height) +
-                               " center top horizontal Left reverse maxcols 3 samplen 2.5 width 2\n"
-                         : "unset key\nunset label 1\n";
+        if (p == 1) script += "unset label 1\n";
         int label = 10;
         std::string plots;
         for (const Slope& slope : chart.slopes) {
@@ -80,20 +84,29 @@ inline void draw(const PanelChart& chart, const std::filesystem::path& picture) 
                      " using 1:2 with lines linecolor '#999999' linewidth 1.2 dashtype 3 notitle";
         }
         for (std::size_t c = 0; c < chart.names.size(); ++c) {
-            const std::string colour = "'" + std::string{style::colours[c % style::colours.size()]} + "'";
-            const std::string look = " with linespoints linecolor " + colour + " linewidth 1.8 pointtype " +
-                                     std::to_string(marks[c % marks.size()]) + " pointsize 0.9";
             const examples::Curve& curve = panel.curves.at(c);
             for (std::size_t i = 0; i < curve.x.size(); ++i)
                 data += gnuplot_number(curve.x[i]) + " " + gnuplot_number(curve.y[i]) + "\n";
             if (curve.x.empty()) data += "NaN NaN\n";
             data += "\n\n";
             plots += (plots.empty() ? "plot " : ", \\\n     ") + std::string("data index ") +
-                     std::to_string(block++) + " using 1:2" + look + " title " + gnuplot_text(chart.names[c]);
+                     std::to_string(block++) + " using 1:2" + look(c) + " notitle";
         }
         script += plots + "\n";
     }
-    script += "unset multiplot\n";
+    // The legend is a plot of its own, as wide as the picture: gnuplot fits a legend to its plot.
+    style::Layout all{.width = width, .height = height, .left = 10, .right = 10, .top = 40, .bottom = 10};
+    script += all.margins() +
+              "unset title\nunset border\nunset tics\nunset grid\nunset xlabel\n"
+              "unset ylabel\nunset label\nunset logscale\nset xrange [0:1]\nset yrange [0:1]\n"
+              "set key at screen 0.5, screen " +
+              to_text(1 - 44.0 / height) +
+              " center top horizontal Left reverse maxcols 3 samplen 2.5 width 2 textcolor '#222222'\n";
+    std::string legend;
+    for (std::size_t c = 0; c < chart.names.size(); ++c)
+        legend += (legend.empty() ? "plot " : ", \\\n     ") + std::string("NaN") + look(c) + " title " +
+                  gnuplot_text(chart.names[c]);
+    script += legend + "\nunset multiplot\n";
     examples::make_picture(picture, script, data, width, height);
 }
 

@@ -162,11 +162,12 @@ template <Method M, ContactLaw Law>
 CollisionResult collide(const Law& law, const Collision& collision, Real dt, Real phase = 0.5) {
     collision.validate();
     require_positive(dt, "collide.dt", "s");
-    require(phase > 0 && phase < 1, {"collide.phase", "in (0, 1)"}, phase);
+    require(phase >= 0 && phase < 1, {"collide.phase", "in [0, 1)"}, phase);
 
     const Real vn = collision.normal_speed(), vt = collision.tangential_speed(),
                mass = collision.effective_mass();
-    const Real before = (1 + phase) * dt;
+    // Forces may begin with a jump: a step that begins at first touch must see what comes after it.
+    const Real before = phase > 0 ? (1 + phase) * dt : -1e-9 * dt;
     PhasePoint<4> point;
     point.position = {collision.radius_i + collision.radius_j + before * vn, -before * vt, 0, 0};
     point.velocity = {-vn, vt, collision.spin_i, collision.spin_j};
