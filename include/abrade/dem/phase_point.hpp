@@ -31,7 +31,8 @@ concept TrialSystem = requires(S& system, const std::array<Real, N>& vector, Rea
     system.commit();
 };
 
-/// A method that moves a PhasePoint by dt. `start` before the first step; the last acceleration is kept.
+/// What names a stepper: `M::Stepper<System, N> s(system, point); s.step(dt)` moves `point`, which it refers
+/// to, and commits once. See dem/odeint_steppers.hpp.
 // clang-format off
 template <class M>
 concept Method = requires(const M& method) {
