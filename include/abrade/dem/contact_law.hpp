@@ -138,10 +138,10 @@ struct SlidingSpring {
     /// against the mean of the spring's force `before` the step and after it, which books sliding and
     /// release by a falling limit alike to second order. The dashpot acts only as far as the limit leaves it
     /// room. Unlike the usual form, which stretches the spring backwards to make room for the dashpot, this
-    /// never books a negative loss.
+    /// never books a negative loss. `way_per_stretch`: how far it slips for what the spring did not take.
     static SlidingSpring at(const Vec3Of<Number>& before, const Vec3Of<Number>& trial,
                             const Vec3Of<Number>& slip, Number limit, Number stiffness, Number dashpot,
-                            Real dt) noexcept {
+                            Real dt, Number way_per_stretch = Number(1)) noexcept {
         const Number trial2 = trial.dot(trial), slip2 = slip.dot(slip), least = Number(tiny<Number>);
         SlidingSpring sticks{-stiffness * trial - dashpot * slip, trial, Number(0.5) * stiffness * trial2,
                              dashpot * slip2 * Number(dt)};
@@ -162,7 +162,7 @@ struct SlidingSpring {
                 select(slides, spring, sticks.spring),
                 select(slides, Number(0.5) * stiffness * kept * kept, sticks.stored),
                 select(slides,
-                       Number(0.5) * stiffness * (start + kept) * (length - kept) +
+                       Number(0.5) * stiffness * (start + kept) * (length - kept) * way_per_stretch +
                            share * dashpot * slip2 * Number(dt),
                        sticks.lost)};
     }

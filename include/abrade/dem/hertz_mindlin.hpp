@@ -105,13 +105,20 @@ public:
         const Number stiffer = min(Number(1), memory.stiffness / max(kt, least));
         const Vec3Of<Number> before = stiffer * turn_into_plane(memory.spring, contact.normal);
         const Number held_before = Number(0.5) * memory.stiffness * memory.spring.dot(memory.spring);
-        const Number given_up = max(held_before - Number(0.5) * kt * before.dot(before), Number(0));
         const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
-        const Vec3Of<Number> trial = before + begun * way;
+        // The way of a step stretches the spring with the mean of the stiffness at its two ends.
+        const Number stretch = Number(0.5) * (Number(1) + stiffer), per_stretch = reciprocal(stretch);
+        const Vec3Of<Number> trial = before + (begun * stretch) * way;
         const Number limit = select(touching, Number(params_.friction) * max(normal.force, Number(0)), far);
-        const auto tangential = SlidingSpring<Number>::at(
-            before, trial, slip, limit, max(kt, least),
-            dashpot * Number(std::sqrt(4 * effective_shear_ / effective_youngs_)), contact.time_step);
+        const auto tangential =
+            SlidingSpring<Number>::at(before, trial, slip, limit, max(kt, least),
+                                      dashpot * Number(std::sqrt(4 * effective_shear_ / effective_youngs_)),
+                                      contact.time_step, per_stretch);
+
+        // What neither spring nor slider has of the work (f_before + f)/2 . way, exactly; never negative.
+        const Number given_up =
+            (Number(1) - stretch) * per_stretch * (held_before + tangential.stored) +
+            Number(0.5) * max(memory.stiffness - kt, Number(0)) * max(before.dot(trial), Number(0));
 
         const Vec3Of<Number> none = Vec3Of<Number>::Zero();
         const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
