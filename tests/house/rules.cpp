@@ -42,9 +42,10 @@ TEST_CASE("the library keeps the rules of the house") {
 TEST_CASE("a tree that keeps the rules has no offence") {
     MadeUpTree tree;
     tree.add("abrade/core/types.hpp", once + "#include <Eigen/Core>\n");
-    tree.add("abrade/dem/stepper.hpp", once +
-                                           "#include <abrade/core/types.hpp>\n#include "
-                                           "<boost/numeric/odeint/stepper/velocity_verlet.hpp>\n");
+    tree.add("abrade/dem/stepper.hpp",
+             once + "#include <abrade/core/types.hpp>\n#include <" + std::string(house::odeint_tag) + ">\n");
+    tree.add("abrade/dem/odeint_steppers.hpp",
+             once + "#include <boost/numeric/odeint/stepper/velocity_verlet.hpp>\n");
     tree.add("abrade/dem/linear.hpp", once + "#include <abrade/dem/stepper.hpp>\n// #include <iostream>\n");
     tree.add("abrade/abrade.hpp", once + "#include <abrade/dem/linear.hpp>\n");
     CHECK(tree.offences() == "");
@@ -101,7 +102,14 @@ TEST_CASE("each rule can be broken") {
         CHECK(says("abrade/core/a.hpp", once + "#include <boost/numeric/odeint.hpp>\n") ==
               "abrade/core/a.hpp:2: includes all of odeint\n");
         CHECK(says("abrade/core/a.hpp", once + "#include <boost/numeric/odeint/stepper/euler.hpp>\n") ==
-              "abrade/core/a.hpp:2: includes odeint, which only dem/stepper.hpp may\n");
+              "abrade/core/a.hpp:2: includes odeint, which only dem/odeint_steppers.hpp may\n");
+        fs::remove("made_up_tree/abrade/core/a.hpp");
+        CHECK(says("abrade/dem/stepper.hpp", once + "#include <boost/numeric/odeint/stepper/euler.hpp>\n") ==
+              "abrade/dem/stepper.hpp:2: includes odeint, which only dem/odeint_steppers.hpp may\n");
+        tree.add("abrade/dem/stepper.hpp", once);
+        tree.add("abrade/dem/odeint_steppers.hpp", once);
+        CHECK(says("abrade/sim/a.hpp", once + "#include <abrade/dem/odeint_steppers.hpp>\n") ==
+              "abrade/sim/a.hpp:2: includes odeint's steppers, which only users may\n");
     }
     SUBCASE("wrong places") {
         CHECK(says("abrade/attic/a.hpp", once) == "abrade/attic/a.hpp:1: stands in no known room\n");

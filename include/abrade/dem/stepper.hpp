@@ -1,5 +1,5 @@
 #pragma once
-// Time stepping in Boost.Odeint's terms. The only header of the library that includes odeint.
+// Time stepping in Boost.Odeint's terms: of odeint only the tag. Its steppers are in dem/odeint_steppers.hpp.
 
 #include <abrade/core/types.hpp>
 
