@@ -57,27 +57,24 @@ struct History {
 
     void operator()(const auto& sim) {
         const Particles& p = sim.particles();
-        const auto& contacts = sim.world().contacts();
-        const auto body = [&](Index sphere) {
-            return static_cast<std::size_t>(p.body[static_cast<std::size_t>(sphere)]);
-        };
-        Real vertical = 0, worn_in_step = 0;
+        Real vertical = 0;
         all_forces = 0;
-        for (std::size_t c = 0; c < contacts.pairs().size(); ++c) {
-            const auto [first, second] = contacts.pairs()[c];
-            const PairLoad& load = contacts.loads()[c];
-            if (!load.active) continue;
+        const auto is_stone = [&](Index body) {
+            return body >= 0 && p.kind[static_cast<std::size_t>(body)] == Kind::stone;
+        };
+        sim.world().each_contact([&](Index first, Index second, const auto&, const auto& load) {
             all_forces += load.force.norm();
-            worn_in_step += contacts.worn(static_cast<Index>(c));
-            const bool first_stone = p.kind[body(first)] == Kind::stone;
-            const bool second_stone = second >= 0 && p.kind[body(second)] == Kind::stone;
-            if (first_stone != second_stone) vertical += (first_stone ? 1 : -1) * load.force.z();
-        }
+            if (is_stone(first) != is_stone(second)) vertical += (is_stone(first) ? 1 : -1) * load.force.z();
+        });
+        const Real worn_now = sim.concrete().worn_volume();
+        const Real rate = time.empty() || sim.time() == time.back()
+                              ? 0
+                              : (worn_now - worn.back()) / (sim.time() - time.back());
         weight = 0;
         for (std::size_t b = 0; b < p.mass.size(); ++b)
             if (p.kind[b] == Kind::stone) weight += p.mass[b] * standard_gravity;
         time.push_back(sim.time()), kinetic.push_back(sim.ledger().kinetic);
-        worn.push_back(sim.concrete().worn_volume()), wear_rate.push_back(worn_in_step / sim.time_step());
+        worn.push_back(worn_now), wear_rate.push_back(rate);
         carried.push_back(vertical);
         if (sim.time() < rest_from)
             at_rest = p.centre;

@@ -24,91 +24,124 @@ Particles chain(Index count) {
     return p;
 }
 
-Network<MohrCoulomb> bonded(const Particles& p) {
-    Network<MohrCoulomb> network;
-    std::vector<Pair> pairs;
-    for (Index n = 0; n + 1 < p.bodies(); ++n) pairs.push_back({n, n + 1});
-    network.build(p, pairs);
-    return network;
-}
-
-void move(Particles& p, std::size_t body, const Vec3& by) {
-    p.position[body] += by;
-    p.place_spheres(static_cast<Index>(body), p.velocity[body], p.angular_velocity(static_cast<Index>(body)));
-}
-
 std::vector<Index> identity(Index n) {
     std::vector<Index> same;
     for (Index i = 0; i < n; ++i) same.push_back(i);
     return same;
 }
 
+/// Bodies in their slots and the bonds between them.
+struct Rig {
+    Particles p;
+    SphereStore store{};
+    Network<MohrCoulomb> network{};
+
+    explicit Rig(Particles from, std::vector<BondedPair> pairs = {}) : p(std::move(from)) {
+        if (pairs.empty())
+            for (Index n = 0; n + 1 < p.bodies(); ++n) pairs.push_back({n, n + 1});
+        network.build(p, pairs);
+        arrange({});
+    }
+    void arrange(const std::vector<Index>& moved) {
+        store.arrange(p, moved, 0, {});
+        network.arrange(store);
+        network.each_bond([&](auto& bond, Index) {
+            bond.slots = {store.slot_of(bond.spheres.first), store.slot_of(bond.spheres.second)};
+        });
+    }
+    void move(Index body, const Vec3& by) {
+        store.lines.place[static_cast<std::size_t>(store.slot_of(body))].centre += by;
+        p.centre[static_cast<std::size_t>(body)] += by;
+    }
+    template <class StrengthLeft>
+    BondSums respond(const StrengthLeft& left) {
+        for (SphereLoad& load : store.lines.load) load.force.setZero(), load.lever.setZero();
+        BondSums sums;
+        for (Index slab = 0; slab < store.slabs.count(); ++slab)
+            sums += network.respond(slab, law, NoWear{}, store.lines, left, {1e-6, 0});
+        return sums;
+    }
+    BondSums respond() { return respond(sound); }
+    Real prune(const std::vector<Index>& moved) { return network.prune(p, moved, p.centre); }
+    Vec3 force(Index body) const {
+        return store.lines.load[static_cast<std::size_t>(store.slot_of(body))].force;
+    }
+    std::vector<BondedPair> pairs() const {
+        std::vector<BondedPair> all;
+        for (const auto& bond : network.bonds()) all.push_back(bond.spheres);
+        std::sort(all.begin(), all.end());
+        return all;
+    }
+    bool broken(const BondedPair& pair) const {
+        for (const auto& bond : network.bonds())
+            if (bond.spheres == pair) return bond.memory.broken;
+        FAIL("no such bond");
+        return false;
+    }
+};
+
 }  // namespace
 
 TEST_CASE("bonds rest where they were built") {
-    const Particles p = chain(4);
-    Network<MohrCoulomb> network = bonded(p);
-    network.respond(law, NoWear{}, p, sound, 1e-6);
-    CHECK(network.pairs().size() == 3);
-    CHECK(network.stored() == 0);
-    for (const PairLoad& load : network.loads()) CHECK(load.force == Vec3::Zero());
-    CHECK(network.holds({1, 2}));
-    CHECK(!network.holds({0, 2}));
+    Rig rig(chain(4));
+    CHECK(rig.respond().stored == 0);
+    CHECK(rig.pairs().size() == 3);
+    for (Index b = 0; b < 4; ++b) CHECK(rig.force(b) == Vec3::Zero());
+    CHECK(rig.network.holds({1, 2}));
+    CHECK(!rig.network.holds({0, 2}));
 }
 
 TEST_CASE("a broken link cuts off what hangs on it, and only that") {
-    Particles p = chain(5);
-    Network<MohrCoulomb> network = bonded(p);
-    network.respond(law, NoWear{}, p, sound, 1e-6);
-    CHECK(network.tied_to_ground(p) == std::vector<char>{1, 1, 1, 1, 1});
-    for (std::size_t b = 3; b < 5; ++b) move(p, b, {1e-4, 0, 0});
-    const BondSums sums = network.respond(law, NoWear{}, p, sound, 1e-6);
+    Rig rig(chain(5));
+    rig.respond();
+    CHECK(rig.network.tied_to_ground(rig.p) == std::vector<char>{1, 1, 1, 1, 1});
+    for (Index b = 3; b < 5; ++b) rig.move(b, {1e-4, 0, 0});
+    const BondSums sums = rig.respond();
     CHECK(sums.broken_tension == 1);
     CHECK(sums.broken_shear == 0);
     CHECK(sums.lost_bond == doctest::Approx(0.5 * 4e8 * 1e-8));
-    CHECK(network.broken(2));
-    CHECK(network.tied_to_ground(p) == std::vector<char>{1, 1, 1, 0, 0});
+    CHECK(rig.broken({2, 3}));
+    CHECK(rig.network.tied_to_ground(rig.p) == std::vector<char>{1, 1, 1, 0, 0});
 }
 
 TEST_CASE("a way around keeps a body tied") {
-    Particles p = chain(4);
-    Network<MohrCoulomb> network;
-    network.build(p, {{0, 1}, {1, 2}, {2, 3}, {0, 3}});  // a ring
-    move(p, 2, {0, 1e-4, 0});  // breaks 1-2 and 2-3 in shear or tension; 3 hangs on 0
-    network.respond(law, NoWear{}, p, sound, 1e-6);
-    const auto tied = network.tied_to_ground(p);
+    Rig rig(chain(4), {{0, 1}, {1, 2}, {2, 3}, {0, 3}});  // a ring
+    rig.move(2, {0, 1e-4, 0});  // breaks 1-2 and 2-3 in shear or tension; 3 hangs on 0
+    rig.respond();
+    const auto tied = rig.network.tied_to_ground(rig.p);
     CHECK(tied[1] == 1);
     CHECK(tied[3] == 1);
 }
 
 TEST_CASE(
     "pruning drops open broken bonds with a loose end, keeps the others, renumbers, and hands back energy") {
-    Particles p = chain(5);
-    Network<MohrCoulomb> network = bonded(p);
-    for (std::size_t b = 3; b < 5; ++b) move(p, b, {1e-4, 0, 0});
-    network.respond(law, NoWear{}, p, sound, 1e-6);
+    Rig rig(chain(5));
+    for (Index b = 3; b < 5; ++b) rig.move(b, {1e-4, 0, 0});
+    rig.respond();
     // Both ends standing: a broken bond stays as a contact.
-    CHECK(network.prune(p, identity(5)) == 0);
-    CHECK(network.pairs().size() == 4);
+    CHECK(rig.prune(identity(5)) == 0);
+    CHECK(rig.pairs().size() == 4);
     // One end loose: dropped, so that ordinary contacts may take over.
-    p.kind[3] = p.kind[4] = Kind::grain;
-    CHECK(network.prune(p, identity(5)) == 0);
-    CHECK(network.pairs() == std::vector<Pair>{{0, 1}, {1, 2}, {3, 4}});
-    CHECK(!network.holds({2, 3}));
+    rig.p.kind[3] = rig.p.kind[4] = Kind::grain;
+    CHECK(rig.prune(identity(5)) == 0);
+    CHECK(rig.pairs() == std::vector<BondedPair>{{0, 1}, {1, 2}, {3, 4}});
+    CHECK(!rig.network.holds({2, 3}));
     // A loose end but closed: stays, its overlap is against its own rest length.
-    move(p, 4, {-1e-6, 0, 0});
-    network.respond(law, NoWear{}, p, sound, 1e-6);
-    const Real held = network.stored();
+    rig.arrange(identity(5));
+    rig.move(4, {-1e-6, 0, 0});
+    const Real held = rig.respond().stored;
     CHECK(held > 0);
-    CHECK(network.prune(p, identity(5)) == 0);
-    CHECK(network.pairs().size() == 3);
+    CHECK(rig.prune(identity(5)) == 0);
+    CHECK(rig.pairs().size() == 3);
     // A body that leaves takes its bond's energy along; the rest is renumbered.
-    const auto moved = p.remove({0, 0, 0, 0, 1});
-    CHECK(network.prune(p, moved) == held);
-    CHECK(network.pairs() == std::vector<Pair>{{0, 1}, {1, 2}});
-    const auto again = p.remove({0, 0, 0, 1});
-    CHECK(network.prune(p, again) == 0);
-    CHECK(network.respond(law, NoWear{}, p, sound, 1e-6).broken_tension == 0);
+    auto moved = rig.p.remove({0, 0, 0, 0, 1});
+    CHECK(rig.prune(moved) == held);
+    CHECK(rig.pairs() == std::vector<BondedPair>{{0, 1}, {1, 2}});
+    rig.arrange(moved);
+    moved = rig.p.remove({0, 0, 0, 1});
+    CHECK(rig.prune(moved) == 0);
+    rig.arrange(moved);
+    CHECK(rig.respond().broken_tension == 0);
 }
 
 TEST_CASE("memory of bonds survives renumbering") {
@@ -119,32 +152,28 @@ TEST_CASE("memory of bonds survives renumbering") {
         for (Index n = 0; n < 3; ++n)
             p.add(ball, 2400, {.position = {n * d, 0, 0}, .velocity = {0, 0.01 * n, 0}},
                   n == 0 ? Kind::fixed : Kind::concrete);
-        Network<MohrCoulomb> network;
-        network.build(p, {{1, 2}, {2, 3}});
-        for (int n = 0; n < 5; ++n) network.respond(law, NoWear{}, p, sound, 1e-6);
+        Rig rig(p, {{1, 2}, {2, 3}});
+        for (int n = 0; n < 5; ++n) rig.respond();
         if (remove_first) {
-            const auto moved = p.remove({1, 0, 0, 0});
-            network.prune(p, moved);
+            const auto moved = rig.p.remove({1, 0, 0, 0});
+            rig.prune(moved);
+            rig.arrange(moved);
         }
-        network.respond(law, NoWear{}, p, sound, 1e-6);
-        return network.loads()[1].force;
+        rig.respond();
+        return rig.force(remove_first ? 2 : 3);
     };
     CHECK(sheared(true).y() != 0);
     CHECK(sheared(true) == sheared(false));
 }
 
 TEST_CASE("the weaker of two spheres weakens the bond") {
-    Particles p = chain(3);
     const Real stretch = 0.8 * law.capacity(0.5 * d) / 4e8;  // 80 % of what a sound bond holds
-    move(p, 1, {stretch, 0, 0});
-    move(p, 2, {2 * stretch, 0, 0});
     const auto broken = [&](Real left_of_last) {
-        Network<MohrCoulomb> network;
-        Particles rest = chain(3);
-        network.build(rest, {{0, 1}, {1, 2}});
-        const BondSums sums = network.respond(
-            law, NoWear{}, p, [&](Index body) { return body == 2 ? left_of_last : 1.0; }, 1e-6);
-        CHECK(!network.broken(0));
+        Rig rig(chain(3));
+        rig.move(1, {stretch, 0, 0});
+        rig.move(2, {2 * stretch, 0, 0});
+        const BondSums sums = rig.respond([&](Index body) { return body == 2 ? left_of_last : 1.0; });
+        CHECK(!rig.broken({0, 1}));
         return sums.broken_tension;
     };
     CHECK(broken(1) == 0);

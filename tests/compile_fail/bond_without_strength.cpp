@@ -10,10 +10,16 @@ struct Eternal {
     };
     explicit Eternal(Params) {}
     const Params& params() const noexcept;
-    abrade::BondResponse<Memory> respond(const abrade::BondKinematics&, abrade::Real, const Memory&) const noexcept;
+    abrade::BondResponse<Memory> respond(const abrade::BondKinematics&, abrade::Real,
+                                         const Memory&) const noexcept;
     abrade::Real stiffness() const noexcept;
     abrade::Real tangential_stiffness() const noexcept;
     abrade::Real damping_ratio() const noexcept;
 };
 
-int main() { abrade::simulate({}).contact(abrade::LinearSpring{{.stiffness = 1e6}}).bond(Eternal{{}}).run({.end_time = 1}); }
+int main() {
+    abrade::simulate({})
+        .contact(abrade::LinearSpring{{.stiffness = 1e6}})
+        .bond(Eternal{{}})
+        .run({.end_time = 1});
+}

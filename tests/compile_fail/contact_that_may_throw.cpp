@@ -9,8 +9,8 @@ struct Throwing {
     struct Memory {};
     explicit Throwing(Params) {}
     const Params& params() const noexcept;
-    abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(const abrade::ContactKinematics<abrade::Real>&,
-                                                                        const Memory<abrade::Real>&) const;
+    abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(
+        const abrade::ContactKinematics<abrade::Real>&, const Memory<abrade::Real>&) const;
     abrade::Real stable_dt(abrade::Real, abrade::Real) const noexcept;
     abrade::ContactRigidity rigidity(abrade::Real) const noexcept;
 };

@@ -9,8 +9,8 @@ struct Reckless {
     struct Memory {};
     explicit Reckless(Params) {}
     const Params& params() const noexcept;
-    abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(const abrade::ContactKinematics<abrade::Real>&,
-                                                                        const Memory<abrade::Real>&) const noexcept;
+    abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(
+        const abrade::ContactKinematics<abrade::Real>&, const Memory<abrade::Real>&) const noexcept;
     abrade::ContactRigidity rigidity(abrade::Real) const noexcept;
 };
 

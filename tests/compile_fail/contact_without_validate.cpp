@@ -12,8 +12,8 @@ struct Trusting {
     struct Memory {};
     explicit Trusting(Params) {}
     const Params& params() const noexcept;
-    abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(const abrade::ContactKinematics<abrade::Real>&,
-                                                                        const Memory<abrade::Real>&) const noexcept;
+    abrade::ContactResponse<abrade::Real, Memory<abrade::Real>> respond(
+        const abrade::ContactKinematics<abrade::Real>&, const Memory<abrade::Real>&) const noexcept;
     abrade::Real stable_dt(abrade::Real, abrade::Real) const noexcept;
     abrade::ContactRigidity rigidity(abrade::Real) const noexcept;
 };

@@ -10,4 +10,9 @@ struct Frozen {
     abrade::FluidSample sample(const abrade::Vec3&) const noexcept;
 };
 
-int main() { abrade::simulate({}).contact(abrade::LinearSpring{{.stiffness = 1e6}}).fluid(Frozen{{}}).run({.end_time = 1}); }
+int main() {
+    abrade::simulate({})
+        .contact(abrade::LinearSpring{{.stiffness = 1e6}})
+        .fluid(Frozen{{}})
+        .run({.end_time = 1});
+}

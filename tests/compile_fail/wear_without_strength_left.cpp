@@ -7,7 +7,13 @@ struct Polishing {
     using Params = abrade::NoParams;
     explicit Polishing(Params) {}
     const Params& params() const noexcept;
-    abrade::WearIncrement increment(const abrade::ContactKinematics<abrade::Real>&, const abrade::ContactLoad<abrade::Real>&) const noexcept;
+    abrade::WearIncrement increment(const abrade::ContactKinematics<abrade::Real>&,
+                                    const abrade::ContactLoad<abrade::Real>&) const noexcept;
 };
 
-int main() { abrade::simulate({}).contact(abrade::LinearSpring{{.stiffness = 1e6}}).wear(Polishing{{}}).run({.end_time = 1}); }
+int main() {
+    abrade::simulate({})
+        .contact(abrade::LinearSpring{{.stiffness = 1e6}})
+        .wear(Polishing{{}})
+        .run({.end_time = 1});
+}

@@ -244,7 +244,7 @@ private:
 
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
-        world_.emplace(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_});
+        world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_}));
         stable_ = stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
     }
 

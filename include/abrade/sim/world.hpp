@@ -33,7 +33,7 @@ public:
     /// Overlap over the smaller radius beyond which a run is wrong, whatever it computes.
     static constexpr Real overlap_limit = 0.2;
 
-    World(Scene scene, P policies) : state_(std::move(scene), std::move(policies)) {}
+    explicit World(State<P> state) : state_(std::move(state)) {}
 
     /// Lists and forces at the start, over no time; the ledger begins.
     void open(Real t) {
@@ -95,7 +95,7 @@ public:
     Real renewal_seconds() const noexcept { return lists_.seconds(); }
 
     /// Calls `visit(body, other, contact, load)` for each contact that touches, as things were published
-    /// last; `other` is negative for a wall. The load is without what dashpots add.
+    /// last; `other` is negative for a wall. Dashpots act there with velocities half a step old.
     template <class Visit>
     void each_contact(Visit&& visit) const {
         state_.contacts.each_touching([&](const SlotPair& pair, const auto& memory, const Vec3&) {
