@@ -238,9 +238,9 @@ private:
         p.law = law_.at(d);
         p.normal = p.law.push + p.law.normal_dashpot * a;
         p.limit = law_.friction() * p.normal;
-        p.arm_i = c_.radius_i - 0.5 * d;
-        p.arm_j = c_.radius_j - 0.5 * d;
         p.distance = c_.radius_i + c_.radius_j - d;
+        p.arm_i = c_.radius_i * p.distance / (c_.radius_i + c_.radius_j);
+        p.arm_j = p.distance - p.arm_i;
         p.slip = y[across] * scale_[across] - p.arm_i * y[turn_i] * scale_[turn_i] -
                  p.arm_j * y[turn_j] * scale_[turn_j];
         return p;

@@ -7,7 +7,7 @@ struct Polishing {
     using Params = abrade::NoParams;
     explicit Polishing(Params) {}
     const Params& params() const noexcept;
-    abrade::WearIncrement increment(const abrade::ContactKinematics<abrade::Real>&,
+    abrade::WearIncrement<abrade::Real> increment(const abrade::ContactKinematics<abrade::Real>&,
                                     const abrade::ContactLoad<abrade::Real>&) const noexcept;
 };
 

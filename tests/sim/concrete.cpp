@@ -94,7 +94,7 @@ TEST_CASE(
                   doctest::Approx(lost).epsilon(1e-3));  // 300 steps or more a contact
             CHECK(sim.concrete().worn_volume() ==
                   doctest::Approx(coefficient * 10 * 0.5 * lost).epsilon(1e-3));
-            CHECK(sim.ledger().lost_sliding == 0);
+            CHECK(sim.ledger().lost_sliding < 1e-28);  // round-off of a unit vector, squared
         }
 }
 

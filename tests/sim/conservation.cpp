@@ -91,7 +91,7 @@ TEST_CASE("a head-on impact loses 1/2 m_eff v^2 (1 - e^2), all of it normal") {
         CAPTURE(e);
         CHECK(sim.ledger().lost_normal == doctest::Approx(0.5 * m_eff * 9 * (1 - e * e))
                                               .epsilon(1e-3));  // some 500 steps a contact, second order
-        CHECK(sim.ledger().lost_sliding == 0);
+        CHECK(sim.ledger().lost_sliding < 1e-28);               // round-off of a unit vector, squared
         CHECK((p.velocity[1] - p.velocity[0]).x() == doctest::Approx(3 * e).epsilon(2e-3));
     }
 }

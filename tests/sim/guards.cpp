@@ -72,10 +72,10 @@ TEST_CASE("a NaN from a law is caught in its own step, with the id of the body")
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     auto sim = simulate(scene).contact(Faulty{});
     // 0.5 mm of gap at 1e-5 m a step: touches in step 50, overlaps by 1e-5 in step 51, by more in step 52 at
-    // the latest.
+    // the latest. The force of the places that a step led to acts in the next.
     const RunError error = error_of(sim, {.end_time = 0.1, .time_step = 1e-5});
     CHECK(error.step >= 51);
-    CHECK(error.step <= 52);
+    CHECK(error.step <= 53);
     CHECK(error.time == doctest::Approx(error.step * 1e-5));
     CHECK(error.id == 1);
     CHECK(says(error, "velocity of stone with id 1 is not finite"));

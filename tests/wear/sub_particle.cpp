@@ -90,7 +90,8 @@ TEST_CASE("strength falls in a straight line with the fracture rate") {
     CHECK(wear.strength_left(0.25) == 0.75);
     CHECK(wear.strength_left(1) == 0);
     CHECK(NoWear{}.strength_left(0.5) == 1);
-    CHECK(NoWear{}.increment({}, {Vec3::Zero(), 1, 1, 1}).normal == 0);
+    CHECK(NoWear{}.increment(ContactKinematics<Real>{}, ContactLoad<Real>{Vec3::Zero(), 1, 1, 1}).normal ==
+          0);
 }
 
 TEST_CASE("parameters that make no sense are refused") {

@@ -115,8 +115,8 @@ private:
         Frame(const Vector& x, const Collision& c) noexcept
             : distance(std::sqrt(square(x[0]) + square(x[1]))), overlap(c.radius_i + c.radius_j - distance) {
             normal = Vec3(x[0], x[1], 0) / distance;
-            arm_i = c.radius_i - 0.5 * overlap;
-            arm_j = c.radius_j - 0.5 * overlap;
+            arm_i = c.radius_i * distance / (c.radius_i + c.radius_j);
+            arm_j = distance - arm_i;
         }
         Vec3 tangent() const noexcept { return {-normal.y(), normal.x(), 0}; }
     };

@@ -19,12 +19,34 @@ struct ContactStep {
     Real ahead = 0.5;
 };
 
+/// A law that answers whole packs at once. Others are asked lane by lane.
+template <class L>
+concept AnswersPacks = requires(const L& law, const ContactKinematics<Pack>& contact,
+                                const typename L::template Memory<Pack>& memory) {
+    {
+        law.respond(contact, memory)
+        } -> std::same_as<ContactResponse<Pack, typename L::template Memory<Pack>>>;
+};
+
+namespace detail {
+
+template <class Law>
+struct PackMemoryOf {
+    using type = std::array<typename Law::template Memory<Real>, pack_lanes>;
+};
+template <AnswersPacks Law>
+struct PackMemoryOf<Law> {
+    using type = typename Law::template Memory<Pack>;
+};
+
+}  // namespace detail
+
 /// `pack_lanes` pairs of spheres, or spheres on one plane, and what their contacts remember.
 template <class Law>
 struct alignas(64) ContactPack {
     /// Lines of the two, phantoms in lanes that are left over.
     std::array<LineOffset, pack_lanes> first{}, second{};
-    typename Law::template Memory<Pack> memory{};
+    typename detail::PackMemoryOf<Law>::type memory{};
     Vec3Of<Pack> before = Vec3Of<Pack>::Zero();  ///< velocity at the contact point, as last seen [m/s]
     PackMask touched{};                          ///< when last seen
 };
@@ -69,6 +91,66 @@ void set_memory_of_lane(PackedMemory& all, int lane, const Memory& one) noexcept
         std::memcpy(reinterpret_cast<std::byte*>(&all) + n * sizeof(Pack) +
                         static_cast<std::size_t>(lane) * sizeof(Real),
                     reinterpret_cast<const std::byte*>(&one) + n * sizeof(Real), sizeof(Real));
+}
+
+template <class Memory>
+Memory memory_of_lane(const std::array<Memory, pack_lanes>& all, int lane) noexcept {
+    return all[static_cast<std::size_t>(lane)];
+}
+template <class Memory>
+void set_memory_of_lane(std::array<Memory, pack_lanes>& all, int lane, const Memory& one) noexcept {
+    all[static_cast<std::size_t>(lane)] = one;
+}
+
+inline Vec3 lane_of(const Vec3Of<Pack>& v, int lane) noexcept {
+    return {v.x()[lane], v.y()[lane], v.z()[lane]};
+}
+inline ContactKinematics<Real> lane_of(const ContactKinematics<Pack>& c, int lane) noexcept {
+    return {lane_of(c.normal, lane), c.overlap[lane], lane_of(c.velocity, lane), c.inverse_mass[lane],
+            c.curvature[lane],       c.time_step,     lane_of(c.travel, lane)};
+}
+inline ContactLoad<Real> lane_of(const ContactLoad<Pack>& l, int lane) noexcept {
+    return {lane_of(l.force, lane), l.stored[lane], l.lost_normal[lane], l.lost_tangential[lane]};
+}
+
+/// The law's answer to a pack; commits the memory of the lanes that touch or did.
+template <class Law>
+ContactLoad<Pack> answer(const Law& law, const ContactKinematics<Pack>& contact, ContactPack<Law>& pack,
+                         PackMask touching) noexcept {
+    if constexpr (AnswersPacks<Law>) {
+        const auto [load, memory] = law.respond(contact, pack.memory);
+        pack.memory = memory;
+        return load;
+    } else {
+        ContactLoad<Pack> all{Vec3Of<Pack>::Constant(Pack(0)), 0, 0, 0};
+        for (int lane = 0; lane < pack_lanes; ++lane) {
+            if (!touching[lane] && !pack.touched[lane]) continue;
+            auto& remembered = pack.memory[static_cast<std::size_t>(lane)];
+            const auto [load, memory] = law.respond(lane_of(contact, lane), remembered);
+            remembered = memory;
+            for (int a = 0; a < 3; ++a) all.force[a].set(lane, load.force[a]);
+            all.stored.set(lane, load.stored);
+            all.lost_normal.set(lane, load.lost_normal), all.lost_tangential.set(lane, load.lost_tangential);
+        }
+        return all;
+    }
+}
+
+/// The wear law's, summed over its two kinds.
+template <class Wear>
+Pack worn_off(const Wear& wear, const ContactKinematics<Pack>& contact,
+              const ContactLoad<Pack>& load) noexcept {
+    if constexpr (requires { wear.increment(contact, load); }) {
+        const auto increment = wear.increment(contact, load);
+        return increment.normal + increment.tangential;
+    } else {
+        Pack worn = 0;
+        for (int lane = 0; lane < pack_lanes; ++lane) {
+            const auto increment = wear.increment(lane_of(contact, lane), lane_of(load, lane));
+            worn.set(lane, increment.normal + increment.tangential);
+        }
+        return worn;
+    }
 }
 
 /// combine(first, second) of the lines of each lane, as columns.
@@ -153,8 +235,7 @@ template <KernelKind kind, ContactLaw Law, class Wear>
         contact.travel = Pack(step.time_step) * velocity;
         contact.velocity = velocity + ahead * (velocity - pack.before);
 
-        const auto [answer, memory] = law.respond(contact, pack.memory);
-        pack.memory = memory;
+        const ContactLoad<Pack> answer = detail::answer(law, contact, pack, touching);
         pack.before = velocity;
         pack.touched = touching;
         sums.lost_normal += answer.lost_normal;
@@ -167,8 +248,7 @@ template <KernelKind kind, ContactLaw Law, class Wear>
             Pack sides = 0;
             for (int k = 0; k < pack_lanes; ++k)
                 sides.set(k, run.concrete_sides[p * pack_lanes + static_cast<std::size_t>(k)]);
-            const auto increment = wear.increment(contact, answer);
-            worn = increment.normal + increment.tangential;
+            worn = detail::worn_off(wear, contact, answer);
             sums.concrete_lost_normal += sides * answer.lost_normal;
             sums.concrete_lost_tangential += sides * answer.lost_tangential;
         }

@@ -6,6 +6,9 @@
 #include <abrade/dem/particles.hpp>
 #include <abrade/dem/slabs.hpp>
 #include <abrade/dem/sphere_lines.hpp>
+#include <abrade/geometry/surfaces.hpp>
+
+#include <utility>
 
 namespace abrade {
 

@@ -30,7 +30,6 @@ struct Ledger {
     Real gravity_work = 0;
     Real interaction_work = 0;  ///< done on the bodies by contacts and bonds
     Real fed_kinetic = 0, fed_potential = 0;
-    Real fed_stored = 0;  ///< elastic energy of what was fed into contact
     Real left_kinetic = 0, left_potential = 0, left_stored = 0;
 
     // losses of contacts with concrete, once for each side that is concrete
@@ -56,8 +55,8 @@ struct Ledger {
     /// Works less what the state functions and the losses account for: the integrator's error in energy.
     Real integration_residue() const noexcept {
         const Real elastic = -interaction_work -
-                             (stored_contacts + stored_bonds - stored_start - fed_stored + left_stored) -
-                             lost_normal - lost_sliding - lost_bond;
+                             (stored_contacts + stored_bonds - stored_start + left_stored) - lost_normal -
+                             lost_sliding - lost_bond;
         const Real gravity = -gravity_work - (potential - potential_start - fed_potential + left_potential);
         return elastic + gravity;
     }
@@ -75,7 +74,7 @@ struct Ledger {
         f("drag_input", drag_input), f("drag_work", drag_work);
         f("buoyancy_work", buoyancy_work), f("gravity_work", gravity_work);
         f("interaction_work", interaction_work);
-        f("fed_kinetic", fed_kinetic), f("fed_potential", fed_potential), f("fed_stored", fed_stored);
+        f("fed_kinetic", fed_kinetic), f("fed_potential", fed_potential);
         f("left_kinetic", left_kinetic), f("left_potential", left_potential), f("left_stored", left_stored);
         f("integration_residue", integration_residue()), f("residual", residual());
     }

@@ -72,6 +72,7 @@ struct State {
 
     /// Positions, and velocities as the lines have them.
     void publish_places() {
+        if (store.spheres() == 0) return;  // nothing has moved yet
         for (std::size_t b = 0; b < particles.position.size(); ++b) {
             const auto body = static_cast<Index>(b);
             particles.position[b] = store.position_of(particles, body);
@@ -90,7 +91,7 @@ struct State {
             for (Index b = 0; b < particles.bodies(); ++b)
                 if (particles.kind[at(b)] == Kind::concrete && !tied[at(b)]) {
                     particles.kind[at(b)] = Kind::grain;
-                    concrete.set_gone(particles.site[at(b)]);
+                    if (particles.site[at(b)] >= 0) concrete.set_gone(particles.site[at(b)]);
                     loosened = true;
                 }
         }
