@@ -53,8 +53,8 @@ public:
 
     /// Cuts the slabs into chunks of about equal numbers of spheres; `first_sphere` [slab + 1].
     void share_out(std::span<const Index> first_sphere) {
-        // A chunk pays for its border: eight slabs repay that.
-        Index chunks = 1;
+        // A chunk pays for its border: eight slabs repay that, three where there would be one chunk alone.
+        Index chunks = count_ >= 6 ? 2 : 1;
         while (2 * chunks <= count_ / 8 && chunks < 64) chunks *= 2;
         first_slab_.assign(1, 0);
         const Real total = first_sphere.back();
