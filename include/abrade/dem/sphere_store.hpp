@@ -202,6 +202,9 @@ public:
         place.centre += image.shift;
         lines.motion[at(image.slot)] = lines.motion[at(image.owner)];
     }
+    void refresh_images() noexcept {
+        for (const SphereImage& image : images_) refresh(image);
+    }
     /// Hands what acts on an image to its owner.
     void collect(const SphereImage& image) noexcept {
         SphereLoad &from = lines.load[at(image.slot)], &to = lines.load[at(image.owner)];

@@ -29,6 +29,7 @@ template <class P>
     const Quad gravity = detail::quad(state.scene.gravity);
     SphereLines& lines = state.store.lines;
     for (auto slot = static_cast<std::size_t>(first); slot < static_cast<std::size_t>(last); ++slot) {
+        if (state.flight.flying[slot]) continue;
         SphereMotion& motion = lines.motion[slot];
         SphereLoad& load = lines.load[slot];
         SpherePlace& place = lines.place[slot];
@@ -129,6 +130,17 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
     const SphereLoad& load = lines.load[slot];
     p.centre[first] = p.position[b] = place.centre;
     if (p.inverse_mass[b] == 0) return;
+    if (state.flight.flying[slot]) {
+        FreeFlight flight = state.flight;
+        p.centre[first] = p.position[b] = flight.place(place.centre, motion.velocity, state.scene.gravity);
+        flight.kicks += move.kick;
+        p.velocity[b] = flight.velocity(motion.velocity, state.scene.gravity);
+        p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * motion.rim;
+        p.force[b] = p.mass[b] * state.scene.gravity, p.torque[b].setZero();
+        sums.path =
+            sums.path + detail::quad(Vec3(p.mass[b] * flight.path(motion.velocity, state.scene.gravity)));
+        return;
+    }
     const Vec3 other = sample(place.centre, motion.velocity);
     const KickedSphere after =
         kick(motion, load, detail::quad(other), detail::quad(state.scene.gravity), move.kick);

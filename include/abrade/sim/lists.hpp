@@ -32,6 +32,7 @@ public:
     /// Renews what changes seldom: bodies that left, supply, near pairs.
     void renew(State<P>& state, Real t, Real dt) {
         const auto start = std::chrono::steady_clock::now();
+        state.land();
         wrap(state);
         const Departure departure = departing(state, dt);
         state.accounts.left_stored +=
@@ -83,15 +84,17 @@ private:
 
     /// Picks candidates; false where the list of near pairs would not last.
     bool refine(State<P>& state, Real dt) {
+        state.land();
         Real furthest2 = 0;
         for (std::size_t s = 0; s < built_at_.size(); ++s)
             furthest2 = std::max(furthest2, (state.store.lines.place[s].centre - built_at_[s]).squaredNorm());
         const Real left = list_skin_ - 2 * std::sqrt(furthest2);
         const Real way = 2 * dt * std::sqrt(fastest2(state));
-        if (left < shortest_life * way && age_ > 0) return false;
+        if (left < 4 * way && age_ > 0) return false;
         inner_skin_ = std::min(left, std::max(inner_life_ * way, 0.01 * skin_));
         moved_ = 0;
         state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_);
+        state.take_off();
         choose_life(state.contacts.census());
         return true;
     }

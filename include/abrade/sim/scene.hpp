@@ -59,6 +59,15 @@ struct Scene {
         return space;
     }
 
+    /// The bounds that must not be left: those along periodic axes are none.
+    Box open_bounds() const noexcept {
+        Box space = bounds;
+        for (int a = 0; a < 3; ++a)
+            if (periodic_along[static_cast<std::size_t>(a)])
+                space.low[a] = Box{}.low[a], space.high[a] = Box{}.high[a];
+        return space;
+    }
+
     void validate() const {
         require(gravity.allFinite(), {"Scene.gravity", "finite", "m/s2"}, gravity.sum());
         for (const Plane& wall : walls) wall.validate();

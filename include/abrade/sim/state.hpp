@@ -9,6 +9,36 @@
 
 namespace abrade {
 
+/// Single spheres that nothing can touch before lists are looked through again, and on which only their
+/// weight acts, take all steps until then as one. So do fixed ones, which take none.
+struct FreeFlight {
+    std::vector<char> flying;  ///< [slot]
+    Real kicks = 0;            ///< since they took off: sum of kicks [s]
+    Real drifts = 0;           ///< of drifts [s]
+    Real area = 0;             ///< of each drift times the kicks before it [s2]
+    Real fastest = 0;          ///< as they took off [m/s]
+    Real margin = 0;           ///< from there to the nearest bound of space [m]
+
+    void note(Real kick, Real drift) noexcept { kicks += kick, drifts += drift, area += drift * kicks; }
+    /// Begins anew from the places reached.
+    void begin(const Vec3& gravity) noexcept {
+        margin -= furthest(gravity), fastest += kicks * gravity.norm();
+        kicks = drifts = area = 0;
+    }
+
+    /// No further than this have they come [m].
+    Real furthest(const Vec3& gravity) const noexcept { return fastest * drifts + area * gravity.norm(); }
+
+    Vec3 velocity(const Vec3& start, const Vec3& gravity) const noexcept { return start + kicks * gravity; }
+    Vec3 place(const Vec3& start, const Vec3& velocity, const Vec3& gravity) const noexcept {
+        return start + drifts * velocity + area * gravity;
+    }
+    /// What weight is paired with in the ledger: the sum of kicks times mean velocities [m].
+    Vec3 path(const Vec3& velocity, const Vec3& gravity) const noexcept {
+        return kicks * (velocity + 0.5 * kicks * gravity);
+    }
+};
+
 /// Everything that lasts from step to step. `particles` is as of the last publication; what moves is in
 /// `store`.
 template <class P>
@@ -25,6 +55,7 @@ struct State {
     Scene scene;  ///< its lattice has moved into `concrete`
     Particles particles;
     SphereStore store;
+    FreeFlight flight;
     ContactList<decltype(P::contact)> contacts;
     Network<decltype(P::bond)> network;
     Concrete concrete;
@@ -70,8 +101,57 @@ struct State {
                           {position, now, particles.volume[at(body)]}, scene.gravity);
     }
 
+    /// Brings all that flies up to the present, and books what its weight did.
+    void land() {
+        if (flight.flying.empty() || (flight.kicks == 0 && flight.drifts == 0)) return;
+        struct Path {
+            Vec3 sum = Vec3::Zero();
+            Path& operator+=(const Path& o) noexcept { return sum += o.sum, *this; }
+        };
+        const auto all = parallel_sum<Path>(store.spheres(), [&](Index slot) {
+            if (!flight.flying[at(slot)] || store.lines.motion[at(slot)].inverse_mass == 0) return Path{};
+            SphereMotion& motion = store.lines.motion[at(slot)];
+            SpherePlace& place = store.lines.place[at(slot)];
+            const Vec3 path = flight.path(motion.velocity, scene.gravity);
+            place.centre = flight.place(place.centre, motion.velocity, scene.gravity);
+            motion.velocity = flight.velocity(motion.velocity, scene.gravity);
+            return Path{store.lines.load[at(slot)].mass * path};
+        });
+        accounts.gravity_work += scene.gravity.dot(all.sum);
+        flight.begin(scene.gravity);
+        store.refresh_images();
+    }
+
+    /// Lets fly what is in no candidate contact; `land` must have been called.
+    void take_off() {
+        flight.flying.assign(at(store.spheres()), 0);
+        for (Index slot = 0; slot < store.spheres(); ++slot) {
+            const Index body = particles.body[at(store.sphere_of(slot))];
+            const bool bonded = P::has_bonds && particles.kind[at(body)] == Kind::concrete;
+            flight.flying[at(slot)] = store.clump_of(body) < 0 && !feels_fluid(body) && !bonded;
+        }
+        const auto ground = [&](Index slot) {
+            if (slot >= 0 && slot < store.phantom()) flight.flying[at(store.owner_of(slot))] = 0;
+        };
+        contacts.each_candidate([&](const SlotPair& pair) { ground(pair.first), ground(pair.second); });
+        if constexpr (P::has_bonds)
+            for (const auto& bond : network.bonds()) ground(bond.slots.first), ground(bond.slots.second);
+        Real fastest2 = 0;
+        const Box space = scene.open_bounds();
+        flight.margin = std::numeric_limits<Real>::infinity();
+        for (std::size_t slot = 0; slot < flight.flying.size(); ++slot) {
+            if (!flight.flying[slot] || store.lines.motion[slot].inverse_mass == 0) continue;
+            const Vec3& x = store.lines.place[slot].centre;
+            fastest2 = std::max(fastest2, store.lines.motion[slot].velocity.squaredNorm());
+            flight.margin =
+                std::min({flight.margin, (x - space.low).minCoeff(), (space.high - x).minCoeff()});
+        }
+        flight.fastest = std::sqrt(fastest2);
+    }
+
     /// Positions, and velocities as the lines have them.
     void publish_places() {
+        land();
         if (store.spheres() == 0) return;  // nothing has moved yet
         for (std::size_t b = 0; b < particles.position.size(); ++b) {
             const auto body = static_cast<Index>(b);

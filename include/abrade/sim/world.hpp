@@ -185,7 +185,11 @@ private:
         if (evaluate) book(all.contacts, all.bonds), kicked_ = 0;
         if (move) {
             book(state_.accounts, all.motion);
-            lists_.note_step(move->drift * std::sqrt(all.motion.fastest2));
+            FreeFlight& flight = state_.flight;
+            flight.note(move->kick, move->drift);
+            lists_.note_step(move->drift *
+                             std::max(std::sqrt(all.motion.fastest2),
+                                      flight.fastest + flight.kicks * state_.scene.gravity.norm()));
             check(all.motion);
         }
     }
@@ -275,11 +279,13 @@ private:
     void check(const MotionSums& motion) {
         // (10 km/s)^2: no speed of this field.
         constexpr Real too_fast2 = 1e8;
-        const Box space = open_bounds();
+        const Box space = state_.scene.open_bounds();
         const Vec3 low = detail::first_three(motion.low), high = detail::first_three(motion.high);
         const bool nobody = !(low.x() <= high.x());
+        const bool near_bounds = state_.flight.furthest(state_.scene.gravity) >= state_.flight.margin;
+        if (near_bounds) state_.land();
         const bool sound = motion.fastest2 < too_fast2 && detail::first_three(motion.finite).allFinite();
-        if (sound && (nobody || (space.contains(low) && space.contains(high)))) return;
+        if (sound && !near_bounds && (nobody || (space.contains(low) && space.contains(high)))) return;
         if (trouble_.cause != Trouble::Cause::none) return;
         for (Index b = 0; b < state_.particles.bodies(); ++b) {
             const Vec3 v = state_.store.velocity_of(state_.particles, b);
@@ -292,14 +298,6 @@ private:
                 trouble_ = {Trouble::Cause::lost, b, -1, 0, 0};
         }
     }
-    Box open_bounds() const noexcept {
-        Box space = state_.scene.bounds;
-        for (int a = 0; a < 3; ++a)
-            if (state_.scene.periodic_along[static_cast<std::size_t>(a)])
-                space.low[a] = Box{}.low[a], space.high[a] = Box{}.high[a];
-        return space;
-    }
-
     /// Sediment past the gauge, net.
     void count_passed() {
         if (!state_.scene.gauge) return;

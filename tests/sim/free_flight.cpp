@@ -1,0 +1,87 @@
+// Bodies in free flight take many steps as one: the same way, the same ledger, the same bits for every
+// thread.
+#include <abrade/sim/simulation.hpp>
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace abrade;
+
+namespace {
+
+const LinearSpring law{{.stiffness = 1e5, .restitution = 0.9, .friction = 0.3}};
+
+/// Spheres thrown about in a box with a floor, few enough to fly most of the time.
+Scene thrown(int count) {
+    Scene scene;
+    std::mt19937 random(3);
+    const auto uniform = [&] { return std::uniform_real_distribution<Real>(-1, 1)(random); };
+    scene.periodic_along = {true, true, false};
+    scene.bounds = {{-1, -1, -1}, {1, 1, 100}};
+    for (int n = 0; n < count; ++n)
+        scene.add_sphere(
+            0.01, {.position = {0.1 * (n % 20) - 0.95, 0.1 * (n / 20 % 20) - 0.95, 0.05 + 0.05 * (n / 400)},
+                   .velocity = {uniform(), uniform(), uniform()},
+                   .angular_velocity = {uniform(), 0, 5}});
+    scene.add_wall({0, 0, 0}, {0, 0, 1});
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a thrown sphere follows the parabola of leapfrog, whatever observes it") {
+    const auto fly = [](Real observe_every) {
+        Scene scene;
+        scene.add_sphere(0.01, {.position = {0, 0, 10}, .velocity = {1, 2, 3}});
+        scene.add_sphere(0.01, {.position = {5, 0, 10}, .velocity = {0, 0, -1}});
+        auto sim = simulate(scene).contact(law);
+        sim.run({.end_time = 0.5, .time_step = 1e-4, .observe_every = observe_every});
+        return sim;
+    };
+    const auto sim = fly(0);
+    const Vec3 expected = Vec3(0, 0, 10) + 0.5 * Vec3(1, 2, 3) + 0.125 * Vec3(0, 0, -standard_gravity);
+    CHECK((sim.particles().position[0] - expected).norm() < 1e-12);
+    CHECK((sim.particles().velocity[0] - Vec3(1, 2, 3 - 0.5 * standard_gravity)).norm() < 1e-12);
+    CHECK(sim.ledger().residual_relative() < 1e-13);
+    CHECK(std::abs(sim.ledger().integration_residue()) < 1e-12 * sim.ledger().gravity_work);
+    CHECK(fly(0.01).particles().position[0] == sim.particles().position[0]);
+}
+
+TEST_CASE("thrown spheres that meet, bounce and cross periodic edges: the ledger closes") {
+    auto sim = simulate(thrown(600)).contact(law);
+    sim.run({.end_time = 1, .time_step = 2e-5});
+    const Ledger& e = sim.ledger();
+    CHECK(e.lost_normal > 0.01 * e.kinetic_start);
+    CHECK(e.residual_relative() < 1e-12);
+    CHECK(std::abs(e.integration_residue()) < 2e-3 * e.lost());
+    for (const Vec3& x : sim.particles().position) CHECK(x.z() > 0.008);
+}
+
+TEST_CASE("the same bits with one thread and with two") {
+    const auto run = [](int threads) {
+        const int before = thread_count();
+        set_thread_count(threads);
+        auto sim = simulate(thrown(3000)).contact(law);
+        sim.run({.end_time = 0.3, .time_step = 5e-5});
+        set_thread_count(before);
+        return sim.particles().position;
+    };
+    const auto one = run(1);
+    CHECK(one == run(2));
+    CHECK(one == run(1));
+}
+
+TEST_CASE("a flying body that leaves the bounds is caught in the step in which it does") {
+    Scene scene;
+    scene.gravity.setZero();
+    scene.bounds = {{-1, -1, -1}, {1, 1, 1}};
+    scene.add_sphere(0.01, {.position = {0, 0, 0.5}, .velocity = {0, 0, 1}});
+    auto sim = simulate(scene).contact(law);
+    try {
+        sim.run({.end_time = 1, .time_step = 1e-4});
+        FAIL("not noticed");
+    } catch (const RunError& error) {
+        CHECK(error.time == doctest::Approx(0.5).epsilon(1e-3));
+    }
+}
