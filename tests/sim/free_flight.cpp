@@ -31,12 +31,13 @@ Scene thrown(int count) {
 }  // namespace
 
 TEST_CASE("a thrown sphere follows the parabola of leapfrog, whatever observes it") {
-    const auto fly = [](Real observe_every) {
+    const auto fly = [](Real observe_every, bool free_flight = true) {
         Scene scene;
         scene.add_sphere(0.01, {.position = {0, 0, 10}, .velocity = {1, 2, 3}});
         scene.add_sphere(0.01, {.position = {5, 0, 10}, .velocity = {0, 0, -1}});
         auto sim = simulate(scene).contact(law);
-        sim.run({.end_time = 0.5, .time_step = 1e-4, .observe_every = observe_every});
+        sim.run(
+            {.end_time = 0.5, .time_step = 1e-4, .observe_every = observe_every, .free_flight = free_flight});
         return sim;
     };
     const auto sim = fly(0);
@@ -45,6 +46,7 @@ TEST_CASE("a thrown sphere follows the parabola of leapfrog, whatever observes i
     CHECK((sim.particles().velocity[0] - Vec3(1, 2, 3 - 0.5 * standard_gravity)).norm() < 1e-12);
     CHECK(sim.ledger().residual_relative() < 1e-13);
     CHECK(std::abs(sim.ledger().integration_residue()) < 1e-12 * sim.ledger().gravity_work);
+    CHECK((fly(0, false).particles().position[0] - sim.particles().position[0]).norm() < 1e-12);
     CHECK(fly(0.01).particles().position[0] == sim.particles().position[0]);
 }
 

@@ -85,10 +85,11 @@ TEST_CASE("run() twice is run() once") {
 }
 
 TEST_CASE("the skin of the neighbour list changes no bit of the motion") {
-    // Were a contact found a step late, the motion would differ.
+    // Were a contact found a step late, the motion would differ. In free flight lists decide how many steps
+    // are taken as one, which moves the last digit; so without.
     const auto run = [](Real skin) {
         auto sim = simulate(box_of_stones(18, 8)).contact(law);
-        sim.run({.end_time = 0.125, .time_step = step, .skin = skin});
+        sim.run({.end_time = 0.125, .time_step = step, .skin = skin, .free_flight = false});
         return state(sim.particles());
     };
     const auto wide = run(0.05);
@@ -103,10 +104,11 @@ TEST_CASE("two that race towards each other from just beyond the skin are found 
     const auto run = [](Real skin) {
         Scene scene;
         scene.gravity.setZero();
+        // 64 steps of 0.1 mm.
         scene.add_sphere(0.01, {.position = {-0.0101 - 1e-7, 0, 0}, .velocity = {7, 0, 0}});
         scene.add_sphere(0.01, {.position = {0.0101 + 1e-7, 0, 0}, .velocity = {-7, 0, 0}});
         auto sim = simulate(std::move(scene)).contact(law);
-        sim.run({.end_time = 0.0009765625, .time_step = step, .skin = skin});  // 64 steps of 0.1 mm
+        sim.run({.end_time = 0.0009765625, .time_step = step, .skin = skin, .free_flight = false});
         return state(sim.particles());
     };
     const auto wide = run(0.01);

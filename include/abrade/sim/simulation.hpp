@@ -23,11 +23,14 @@ struct RunError : std::runtime_error {
 };
 
 struct RunOptions {
-    Real end_time = 0;             ///< [s]
-    Real time_step = 0;            ///< [s]; 0: `safety` times the stable step
-    Real safety = 0.5;             ///< share of the stable step that is taken [-]
-    Real observe_every = 0;        ///< [s]; 0: at the start and at the end only
-    Real skin = 0;                 ///< of the neighbour list [m]; 0: a quarter of the smallest radius
+    Real end_time = 0;       ///< [s]
+    Real time_step = 0;      ///< [s]; 0: `safety` times the stable step
+    Real safety = 0.5;       ///< share of the stable step that is taken [-]
+    Real observe_every = 0;  ///< [s]; 0: at the start and at the end only
+    Real skin = 0;           ///< of the neighbour list [m]; 0: a quarter of the smallest radius
+    /// Whether bodies that nothing can touch soon take their steps as one: faster where most fly, the same
+    /// but for round-off.
+    bool free_flight = true;
     std::function<bool()> stop{};  ///< asked now and then; true ends the run cleanly
 };
 
@@ -226,6 +229,7 @@ private:
         const auto& radius = world_->particles().radius;
         const Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
         world_->set_skin(options.skin > 0 ? options.skin : 0.25 * smallest);
+        world_->set_free_flight(options.free_flight);
         if (!opened_) open();
         stopped_ = false;
         time_step_ = options.time_step > 0 ? options.time_step : options.safety * stable_.seconds;

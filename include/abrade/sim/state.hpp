@@ -12,6 +12,7 @@ namespace abrade {
 /// Single spheres that nothing can touch before lists are looked through again, and on which only their
 /// weight acts, take all steps until then as one. So do fixed ones, which take none.
 struct FreeFlight {
+    bool allowed = true;
     std::vector<char> flying;  ///< [slot]
     Real kicks = 0;            ///< since they took off: sum of kicks [s]
     Real drifts = 0;           ///< of drifts [s]
@@ -103,7 +104,8 @@ struct State {
 
     /// Brings all that flies up to the present, and books what its weight did.
     void land() {
-        if (flight.flying.empty() || (flight.kicks == 0 && flight.drifts == 0)) return;
+        if (flight.flying.empty()) flight.begin(scene.gravity);  // nobody was there
+        if (flight.kicks == 0 && flight.drifts == 0) return;
         struct Path {
             Vec3 sum = Vec3::Zero();
             Path& operator+=(const Path& o) noexcept { return sum += o.sum, *this; }
@@ -128,7 +130,8 @@ struct State {
         for (Index slot = 0; slot < store.spheres(); ++slot) {
             const Index body = particles.body[at(store.sphere_of(slot))];
             const bool bonded = P::has_bonds && particles.kind[at(body)] == Kind::concrete;
-            flight.flying[at(slot)] = store.clump_of(body) < 0 && !feels_fluid(body) && !bonded;
+            flight.flying[at(slot)] =
+                flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded;
         }
         const auto ground = [&](Index slot) {
             if (slot >= 0 && slot < store.phantom()) flight.flying[at(store.owner_of(slot))] = 0;

@@ -82,6 +82,7 @@ public:
     void publish_places() { state_.publish_places(); }
 
     void set_skin(Real skin) noexcept { lists_.set_skin(skin); }
+    void set_free_flight(bool allowed) noexcept { state_.flight.allowed = allowed; }
     Trouble take_trouble() noexcept { return std::exchange(trouble_, {}); }
 
     const State<P>& state() const noexcept { return state_; }
