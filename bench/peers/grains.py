@@ -195,7 +195,7 @@ def run_lammps_kind(peer, case, threads):
     numbers = [line.split() for line in text[:text.rindex("Loop time of")].splitlines()]
     numbers = [n for n in numbers if n and re.fullmatch(r"\d+", n[0])]
     contacts = None
-    if numbers and "c_z" in text:
+    if numbers and "c_z" in (decks / peer / deck).read_text():
         contacts = round(0.5 * atoms * float(numbers[-1][-2]))
     return atoms * steps / seconds, contacts, {}
 
@@ -280,7 +280,7 @@ def row_of(case, medians):
 
 
 def table(results, contacts, failures):
-    print(f"\n{unit}, medians; in brackets touching pairs at the end; ratio: ours to the fastest peer")
+    print(f"\n{unit}, medians; in brackets touching pairs of spheres at the end; ratio: ours to the fastest peer")
     print(f"{'case':<12}" + "".join(f"{name:>20}" for name in ("ours", *peers)) + f"{'ratio':>8}")
     for case, row in results.items():
         cells = []
