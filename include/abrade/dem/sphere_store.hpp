@@ -171,19 +171,18 @@ public:
         ImageShift shift;
         auto operator<=>(const ImageRequest&) const = default;
     };
-    /// Makes the images that are asked for, each once. Returns nothing; `image_slot` finds them.
+    /// Makes the images that are asked for, each once; `image_slot` finds them.
     void make_images(std::vector<ImageRequest> requests, const Vec3& period) {
         std::sort(requests.begin(), requests.end());
         requests.erase(std::unique(requests.begin(), requests.end()), requests.end());
         requests_ = std::move(requests);
         images_.clear();
-        lines.resize(sphere_of_.size());
+        lines.resize(sphere_of_.size());  // without the old ones, which new ones must not take after
         lines.resize(sphere_of_.size() + requests_.size());
         first_image_.assign(at(slabs.count()) + 1, 0);
         for (const ImageRequest& r : requests_) {
-            const auto slot = spheres() + static_cast<Index>(images_.size());
-            images_.push_back({slot, r.owner, r.shift.times(period)});
-            lines.load[at(slot)] = {};
+            images_.push_back(
+                {spheres() + static_cast<Index>(images_.size()), r.owner, r.shift.times(period)});
             ++first_image_[at(slab_of_slot(r.owner)) + 1];
         }
         for (std::size_t s = 1; s < first_image_.size(); ++s) first_image_[s] += first_image_[s - 1];
@@ -212,8 +211,8 @@ public:
         from = {};
     }
 
-    /// Puts the member spheres of a clump where it is. `velocity` is that of the way from the places they had
-    /// where a `drift` [s] led here, of now where it is 0; `spin` likewise.
+    /// Puts the member spheres of a clump to where a `drift` [s] has led it. Their velocity is that of the
+    /// way from the places they had, `spin` that of the turn.
     void place_members(const MovingClump& clump, const Particles& particles, const Vec3& spin,
                        Real drift) noexcept {
         const Mat3 rotation = clump.orientation.toRotationMatrix();
@@ -221,10 +220,8 @@ public:
         for (std::size_t m = 0; m < at(clump.count); ++m) {
             SpherePlace& place = lines.place[at(clump.first_slot) + m];
             SphereMotion& motion = lines.motion[at(clump.first_slot) + m];
-            const Vec3 arm = rotation * particles.offset[first + m];
-            const Vec3 centre = clump.position + arm;
-            motion.velocity =
-                drift > 0 ? Vec3((centre - place.centre) / drift) : Vec3(clump.velocity + spin.cross(arm));
+            const Vec3 centre = clump.position + rotation * particles.offset[first + m];
+            motion.velocity = (centre - place.centre) / drift;
             motion.rim = place.radius * spin;
             place.centre = centre;
         }

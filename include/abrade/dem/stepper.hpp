@@ -40,12 +40,8 @@ public:
 
     template <std::invocable<State&, Real, Real> System>
     void do_step(System&& system, State& state, Real t, Real dt) {
-        if constexpr (requires { kick_and_drift(state, dt, dt); }) {
-            kick_and_drift(state, 0.5 * dt, dt);  // states that can do both in one pass
-        } else {
-            kick(state, 0.5 * dt);
-            drift(state, dt);
-        }
+        kick(state, 0.5 * dt);
+        drift(state, dt);
         system(state, t + dt, dt);
         kick(state, 0.5 * dt);
     }

@@ -15,12 +15,6 @@ struct Move {
     Real ahead_in_fluid = 0;
 };
 
-namespace detail {
-
-inline Vec3 first_three(const Quad& q) noexcept { return {q.value[0], q.value[1], q.value[2]}; }
-
-}  // namespace detail
-
 /// Kicks and drifts the single spheres in slots [first, last), and takes their loads off them.
 template <class P>
 [[gnu::flatten]] MotionSums move_spheres(State<P>& state, Index first, Index last,

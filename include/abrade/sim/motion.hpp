@@ -9,6 +9,15 @@
 
 namespace abrade {
 
+namespace detail {
+
+inline constexpr Quad three_ones{{1, 1, 1, 0}};
+inline Quad quad(const Vec3& v) noexcept { return {Quad::Native{v.x(), v.y(), v.z(), 0}}; }
+inline Quad same(Real x) noexcept { return {Quad::Native{x, x, x, x}}; }
+inline Vec3 first_three(const Quad& q) noexcept { return {q.value[0], q.value[1], q.value[2]}; }
+
+}  // namespace detail
+
 /// What moving bodies adds up to [J], and what it notices.
 struct MotionSums {
     Quad interaction{};  ///< work of contacts and bonds; its first three numbers are to be added up [J]
@@ -41,18 +50,8 @@ struct MotionSums {
     Real interaction_work() const noexcept {
         return interaction.value[0] + interaction.value[1] + interaction.value[2];
     }
-    Real gravity_work(const Vec3& gravity) const noexcept {
-        return gravity.dot(Vec3(path.value[0], path.value[1], path.value[2]));
-    }
+    Real gravity_work(const Vec3& gravity) const noexcept { return gravity.dot(detail::first_three(path)); }
 };
-
-namespace detail {
-
-inline constexpr Quad three_ones{{1, 1, 1, 0}};
-inline Quad quad(const Vec3& v) noexcept { return {Quad::Native{v.x(), v.y(), v.z(), 0}}; }
-inline Quad same(Real x) noexcept { return {Quad::Native{x, x, x, x}}; }
-
-}  // namespace detail
 
 /// What a kick does to a single sphere, and the works it does: a force is paired with the mean of the
 /// velocities before and after, so works add up to the change in kinetic energy exactly.

@@ -299,6 +299,7 @@ private:
                 trouble_ = {Trouble::Cause::lost, b, -1, 0, 0};
         }
     }
+
     /// Sediment past the gauge, net.
     void count_passed() {
         if (!state_.scene.gauge) return;
