@@ -17,9 +17,11 @@
 namespace abrade {
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
+#define ABRADE_AVX512
 inline constexpr int pack_lanes = 8;
 inline constexpr std::string_view instruction_set = "AVX-512";
 #elif defined(__AVX2__) && defined(__FMA__)
+#define ABRADE_AVX2
 inline constexpr int pack_lanes = 4;
 inline constexpr std::string_view instruction_set = "AVX2";
 #else
@@ -29,17 +31,30 @@ inline constexpr std::string_view instruction_set = "baseline";
 
 namespace detail {
 using NativeReals [[gnu::vector_size(sizeof(Real) * pack_lanes)]] = Real;
+#if defined(ABRADE_AVX512)
+using NativeBits = __mmask8;  // this machine compares into registers of bits
+#else
 using NativeBits [[gnu::vector_size(sizeof(Real) * pack_lanes)]] = long long;
+#endif
 }  // namespace detail
 
 /// Yes or no in each lane.
 struct PackMask {
     detail::NativeBits bits;
 
+#if defined(ABRADE_AVX512)
+    friend PackMask operator&(PackMask a, PackMask b) noexcept { return {_kand_mask8(a.bits, b.bits)}; }
+    friend PackMask operator|(PackMask a, PackMask b) noexcept { return {_kor_mask8(a.bits, b.bits)}; }
+    friend PackMask operator!(PackMask a) noexcept { return {_knot_mask8(a.bits)}; }
+    bool operator[](int lane) const noexcept { return (bits >> lane & 1) != 0; }
+    void set(int lane) noexcept { bits = static_cast<__mmask8>(bits | 1 << lane); }
+#else
     friend PackMask operator&(PackMask a, PackMask b) noexcept { return {a.bits & b.bits}; }
     friend PackMask operator|(PackMask a, PackMask b) noexcept { return {a.bits | b.bits}; }
     friend PackMask operator!(PackMask a) noexcept { return {~a.bits}; }
     bool operator[](int lane) const noexcept { return bits[lane] != 0; }
+    void set(int lane) noexcept { bits[lane] = -1; }
+#endif
 };
 
 /// `pack_lanes` numbers that are worked on together. Behaves like a number.
@@ -70,25 +85,44 @@ struct Pack {
     Pack& operator-=(Pack b) noexcept { return lanes -= b.lanes, *this; }
     Pack& operator*=(Pack b) noexcept { return lanes *= b.lanes, *this; }
     Pack& operator/=(Pack b) noexcept { return lanes /= b.lanes, *this; }
+#if defined(ABRADE_AVX512)
+    friend PackMask operator<(Pack a, Pack b) noexcept {
+        return {_mm512_cmp_pd_mask(a.lanes, b.lanes, _CMP_LT_OQ)};
+    }
+    friend PackMask operator<=(Pack a, Pack b) noexcept {
+        return {_mm512_cmp_pd_mask(a.lanes, b.lanes, _CMP_LE_OQ)};
+    }
+    friend PackMask operator==(Pack a, Pack b) noexcept {
+        return {_mm512_cmp_pd_mask(a.lanes, b.lanes, _CMP_EQ_OQ)};
+    }
+    friend PackMask operator!=(Pack a, Pack b) noexcept {
+        return {_mm512_cmp_pd_mask(a.lanes, b.lanes, _CMP_NEQ_UQ)};
+    }
+#else
     friend PackMask operator<(Pack a, Pack b) noexcept { return {a.lanes < b.lanes}; }
     friend PackMask operator<=(Pack a, Pack b) noexcept { return {a.lanes <= b.lanes}; }
-    friend PackMask operator>(Pack a, Pack b) noexcept { return {a.lanes > b.lanes}; }
-    friend PackMask operator>=(Pack a, Pack b) noexcept { return {a.lanes >= b.lanes}; }
     friend PackMask operator==(Pack a, Pack b) noexcept { return {a.lanes == b.lanes}; }
     friend PackMask operator!=(Pack a, Pack b) noexcept { return {a.lanes != b.lanes}; }
+#endif
+    friend PackMask operator>(Pack a, Pack b) noexcept { return b < a; }
+    friend PackMask operator>=(Pack a, Pack b) noexcept { return b <= a; }
 };
 
 template <>
 inline constexpr Real tiny<Pack> = tiny<Real>;
 
 inline Pack select(PackMask condition, Pack yes, Pack no) noexcept {
+#if defined(ABRADE_AVX512)
+    return Pack::Native(_mm512_mask_blend_pd(condition.bits, no.lanes, yes.lanes));
+#else
     return condition.bits ? yes.lanes : no.lanes;
+#endif
 }
 // As std::max and std::min: the first where neither is larger, and where one is not a number.
 inline Pack max(Pack a, Pack b) noexcept { return a.lanes < b.lanes ? b.lanes : a.lanes; }
 inline Pack min(Pack a, Pack b) noexcept { return b.lanes < a.lanes ? b.lanes : a.lanes; }
 
-#if defined(__AVX512DQ__)
+#if defined(ABRADE_AVX512)
 namespace detail {
 /// The masked forms of intrinsics: the others make g++ 12 warn, in the user's build, of values never set.
 inline constexpr __mmask8 all_lanes = 0xff;
@@ -96,9 +130,9 @@ inline constexpr __mmask8 all_lanes = 0xff;
 #endif
 
 inline bool any(PackMask mask) noexcept {
-#if defined(__AVX512DQ__)
-    return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask.bits)) != 0;
-#elif defined(__AVX2__) && defined(__FMA__)
+#if defined(ABRADE_AVX512)
+    return mask.bits != 0;
+#elif defined(ABRADE_AVX2)
     return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask.bits)) != 0;
 #elif defined(__SSE2__)
     return _mm_movemask_pd(reinterpret_cast<__m128d>(mask.bits)) != 0;
@@ -109,9 +143,9 @@ inline bool any(PackMask mask) noexcept {
 
 /// Bit k is set where lane k holds.
 inline unsigned lanes_of(PackMask mask) noexcept {
-#if defined(__AVX512DQ__)
-    return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask.bits));
-#elif defined(__AVX2__) && defined(__FMA__)
+#if defined(ABRADE_AVX512)
+    return mask.bits;
+#elif defined(ABRADE_AVX2)
     return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask.bits)));
 #else
     unsigned lanes = 0;
@@ -121,9 +155,9 @@ inline unsigned lanes_of(PackMask mask) noexcept {
 }
 
 inline Pack sqrt(Pack x) noexcept {
-#if defined(__AVX512DQ__)
+#if defined(ABRADE_AVX512)
     return Pack::Native(_mm512_maskz_sqrt_pd(detail::all_lanes, x.lanes));
-#elif defined(__AVX2__) && defined(__FMA__)
+#elif defined(ABRADE_AVX2)
     return Pack::Native(_mm256_sqrt_pd(x.lanes));
 #elif defined(__SSE2__)
     return Pack::Native(_mm_sqrt_pd(x.lanes));
@@ -135,7 +169,7 @@ inline Pack sqrt(Pack x) noexcept {
 /// 1 / sqrt(x) to within 2 units in the last place, for normal x > 0: an estimate of 14 bits and one
 /// step of fourth order where the machine has one.
 inline Pack rsqrt(Pack x) noexcept {
-#if defined(__AVX512DQ__)
+#if defined(ABRADE_AVX512)
     const Pack y = Pack::Native(_mm512_maskz_rsqrt14_pd(detail::all_lanes, x.lanes));
     const Pack h = Pack(1) - x * y * y;
     return y + (y * h) * (Pack(0.5) + h * (Pack(0.375) + Pack(0.3125) * h));
@@ -146,7 +180,7 @@ inline Pack rsqrt(Pack x) noexcept {
 
 /// 1 / x, likewise.
 inline Pack reciprocal(Pack x) noexcept {
-#if defined(__AVX512DQ__)
+#if defined(ABRADE_AVX512)
     Pack y = Pack::Native(_mm512_maskz_rcp14_pd(detail::all_lanes, x.lanes));
     y *= Pack(2) - x * y;
     y *= Pack(2) - x * y;
@@ -157,7 +191,7 @@ inline Pack reciprocal(Pack x) noexcept {
 }
 
 inline Pack rough_reciprocal(Pack x) noexcept {
-#if defined(__AVX512DQ__)
+#if defined(ABRADE_AVX512)
     return Pack::Native(_mm512_maskz_rcp14_pd(detail::all_lanes, x.lanes));
 #else
     return Pack(1) / x;
@@ -199,9 +233,10 @@ using QuadColumns = std::array<Pack, 4>;
 inline QuadColumns columns(const QuadRows& row) noexcept {
     using N = Pack::Native;
     const auto value = [&](std::size_t i) -> const Quad::Native& { return row[i].value; };
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#if defined(ABRADE_AVX512)
     const auto both = [&](std::size_t i) {  // lanes i and i + 4 side by side
-        return N(__builtin_shufflevector(value(i), value(i + 4), 0, 1, 2, 3, 4, 5, 6, 7));
+        return N(
+            _mm512_maskz_insertf64x4(detail::all_lanes, _mm512_castpd256_pd512(value(i)), value(i + 4), 1));
     };
     const N a = both(0), b = both(1), c = both(2), d = both(3);
     const N ab_even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -212,7 +247,7 @@ inline QuadColumns columns(const QuadRows& row) noexcept {
             N(__builtin_shufflevector(ab_odd, cd_odd, 0, 1, 8, 9, 4, 5, 12, 13)),
             N(__builtin_shufflevector(ab_even, cd_even, 2, 3, 10, 11, 6, 7, 14, 15)),
             N(__builtin_shufflevector(ab_odd, cd_odd, 2, 3, 10, 11, 6, 7, 14, 15))};
-#elif defined(__AVX2__) && defined(__FMA__)
+#elif defined(ABRADE_AVX2)
     const N ab_even = __builtin_shufflevector(value(0), value(1), 0, 4, 2, 6);
     const N ab_odd = __builtin_shufflevector(value(0), value(1), 1, 5, 3, 7);
     const N cd_even = __builtin_shufflevector(value(2), value(3), 0, 4, 2, 6);
@@ -231,7 +266,7 @@ inline QuadColumns columns(const QuadRows& row) noexcept {
 /// And back: row[lane][c] = column[c][lane].
 inline QuadRows rows(const QuadColumns& column) noexcept {
     QuadRows row;
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#if defined(ABRADE_AVX512)
     using N = Pack::Native;
     const N &a = column[0].lanes, &b = column[1].lanes, &c = column[2].lanes, &d = column[3].lanes;
     const N ab_even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -247,7 +282,7 @@ inline QuadRows rows(const QuadColumns& column) noexcept {
         row[i].value = __builtin_shufflevector(both[i], both[i], 0, 1, 2, 3);
         row[i + 4].value = __builtin_shufflevector(both[i], both[i], 4, 5, 6, 7);
     }
-#elif defined(__AVX2__) && defined(__FMA__)
+#elif defined(ABRADE_AVX2)
     QuadRows as_rows;
     for (std::size_t i = 0; i < 4; ++i) as_rows[i].value = column[i].lanes;
     const QuadColumns turned = columns(as_rows);
@@ -260,6 +295,42 @@ inline QuadRows rows(const QuadColumns& column) noexcept {
 }
 
 }  // namespace abrade
+
+/// A vector of packs: three packs by name, where an array of them would be kept in memory.
+template <>
+class Eigen::Matrix<abrade::Pack, 3, 1, 0, 3, 1> {
+public:
+    using Pack = abrade::Pack;
+    using Scalar = Pack;
+    Matrix() = default;
+    Matrix(Pack x, Pack y, Pack z) noexcept : x_(x), y_(y), z_(z) {}
+    static Matrix Constant(Pack same) noexcept { return {same, same, same}; }
+    static Matrix Zero() noexcept { return Constant(Pack(0)); }
+
+    Pack x() const noexcept { return x_; }
+    Pack y() const noexcept { return y_; }
+    Pack z() const noexcept { return z_; }
+    Pack& operator[](int axis) noexcept { return axis == 0 ? x_ : axis == 1 ? y_ : z_; }
+    const Pack& operator[](int axis) const noexcept { return axis == 0 ? x_ : axis == 1 ? y_ : z_; }
+
+    Pack dot(const Matrix& o) const noexcept { return x_ * o.x_ + y_ * o.y_ + z_ * o.z_; }
+    Matrix cross(const Matrix& o) const noexcept {
+        return {y_ * o.z_ - z_ * o.y_, z_ * o.x_ - x_ * o.z_, x_ * o.y_ - y_ * o.x_};
+    }
+    friend Matrix operator+(const Matrix& a, const Matrix& b) noexcept {
+        return {a.x_ + b.x_, a.y_ + b.y_, a.z_ + b.z_};
+    }
+    friend Matrix operator-(const Matrix& a, const Matrix& b) noexcept {
+        return {a.x_ - b.x_, a.y_ - b.y_, a.z_ - b.z_};
+    }
+    friend Matrix operator-(const Matrix& a) noexcept { return {-a.x_, -a.y_, -a.z_}; }
+    friend Matrix operator*(Pack s, const Matrix& a) noexcept { return {s * a.x_, s * a.y_, s * a.z_}; }
+    Matrix& operator+=(const Matrix& o) noexcept { return *this = *this + o; }
+    Matrix& operator-=(const Matrix& o) noexcept { return *this = *this - o; }
+
+private:
+    Pack x_, y_, z_;
+};
 
 /// Packs as the number type of Eigen's vectors.
 template <>

@@ -158,7 +158,9 @@ template <class Law, class Combine>
 QuadColumns gather(const ContactPack<Law>& pack, const Combine& combine) noexcept {
     QuadRows row;
 #pragma GCC unroll 8
-    for (std::size_t k = 0; k < row.size(); ++k) row[k] = combine(pack.first[k], pack.second[k]);
+    // Offsets are read anew each time: sixteen of them, kept, would crowd out the numbers.
+    for (std::size_t k = 0; k < row.size(); ++k)
+        row[k] = combine(std::launder(&pack)->first[k], std::launder(&pack)->second[k]);
     return columns(row);
 }
 
@@ -235,8 +237,9 @@ template <KernelKind kind, ContactLaw Law, class Wear>
         contact.travel = Pack(step.time_step) * velocity;
         contact.velocity = velocity + ahead * (velocity - pack.before);
 
+        pack.before = velocity;  // at once, so that it need not be kept
+
         const ContactLoad<Pack> answer = detail::answer(law, contact, pack, touching);
-        pack.before = velocity;
         pack.touched = touching;
         sums.lost_normal += answer.lost_normal;
         sums.lost_tangential += answer.lost_tangential;

@@ -84,19 +84,20 @@ concept ContactLaw = Law<L> && RemembersContacts<L> && requires(const L& law, co
 // --- pieces that contact and bond laws share -------------------------------------------------------
 
 /// A tangential spring carried along with the contact: laid into the present tangent plane without
-/// changing its length, so that the rotation of the frame neither makes nor loses energy.
+/// changing its length, so that the rotation of the frame neither makes nor loses energy. Then a share of it.
 template <class Number>
-Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number>& normal) noexcept {
+Vec3Of<Number> turn_into_plane(const Vec3Of<Number>& spring, const Vec3Of<Number>& normal,
+                               Number share = Number(1)) noexcept {
     // |flat| = L sqrt(1 - q), q = (s . n)^2 / L^2: tiny from step to step, so a series serves.
     const Number along = spring.dot(normal), length2 = spring.dot(spring), along2 = along * along;
     const Number q = along2 * rough_reciprocal(max(length2, Number(tiny<Number>)));
     const Vec3Of<Number> flat = spring - along * normal;
     const Number scale = Number(1) + q * (Number(0.5) + Number(0.375) * q);
     const auto turns_far = q > Number(1e-6);
-    if (!any(turns_far)) return scale * flat;
+    if (!any(turns_far)) return (scale * share) * flat;
     const Number product = length2 * flat.dot(flat), least = Number(tiny<Number>);
     const Number exact = select(product > least, length2 * rsqrt(max(product, least)), Number(0));
-    return select(turns_far, exact, scale) * flat;
+    return (select(turns_far, exact, scale) * share) * flat;
 }
 
 /// How much of the step that led to t_n a contact has lasted: 1, but for the step in which it begins, tau =
@@ -132,6 +133,14 @@ struct NormalSpring {
     }
 };
 
+/// A stiffness [N/m] and one over it.
+template <class Number>
+struct Stiffness {
+    Number value, inverse;
+    Stiffness(Number k) noexcept : Stiffness(k, reciprocal(k)) {}
+    Stiffness(Number k, Number compliance) noexcept : value(k), inverse(compliance) {}
+};
+
 /// A tangential spring and dashpot held under a limit by a slider (Coulomb).
 template <class Number>
 struct SlidingSpring {
@@ -140,37 +149,40 @@ struct SlidingSpring {
     Number stored;          ///< [J]
     Number lost;            ///< by dashpot and slider together, over the step [J], >= 0
 
-    /// Elastic, perfectly plastic: the spring gives way at |k s| = limit; what slips, |trial| - |s|, does so
+    /// Elastic, perfectly plastic: the spring gives way at |k s| = limit; what slips, trial - s, does so
     /// against the mean of the spring's force `before` the step and after it, which books sliding and
     /// release by a falling limit alike to second order. The dashpot acts only as far as the limit leaves it
     /// room. Unlike the usual form, which stretches the spring backwards to make room for the dashpot, this
     /// never books a negative loss.
     static SlidingSpring at(const Vec3Of<Number>& before, const Vec3Of<Number>& trial,
-                            const Vec3Of<Number>& slip, Number limit, Number stiffness, Number dashpot,
+                            const Vec3Of<Number>& slip, Number limit, Stiffness<Number> k, Number dashpot,
                             Real dt) noexcept {
         const Number trial2 = trial.dot(trial), slip2 = slip.dot(slip), least = Number(tiny<Number>);
-        SlidingSpring sticks{-stiffness * trial - dashpot * slip, trial, Number(0.5) * stiffness * trial2,
-                             dashpot * slip2 * Number(dt)};
-        const Number limit2 = limit * limit;
-        const auto slides =
-            (sticks.force.dot(sticks.force) > limit2) | (stiffness * stiffness * trial2 > limit2);
-        if (!any(slides)) return sticks;
+        // |k s + c v|^2 = elastic2 + 2 both + damping2.
+        const Number elastic2 = k.value * k.value * trial2, damping2 = dashpot * dashpot * slip2;
+        const Number both = k.value * dashpot * trial.dot(slip), limit2 = limit * limit;
+        const auto slides = (elastic2 + (both + both) + damping2 > limit2) | (elastic2 > limit2);
 
-        const Number length = sqrt(trial2), kept = min(length, limit / stiffness);
-        const Vec3Of<Number> spring = (kept / max(length, least)) * trial;
-        const Number start = sqrt(before.dot(before));
-        // Largest share c <= 1 of the dashpot with |k s + c g v| <= limit: a quadratic in c.
-        const Number a = dashpot * dashpot * slip2, b = stiffness * dashpot * spring.dot(slip);
-        const Number room = max(limit2 - stiffness * stiffness * kept * kept, Number(0));
-        const Number share =
-            select(a > least, min(Number(1), (sqrt(b * b + a * room) - b) / max(a, least)), Number(0));
-        return {select(slides, Vec3Of<Number>(-stiffness * spring - share * dashpot * slip), sticks.force),
-                select(slides, spring, sticks.spring),
-                select(slides, Number(0.5) * stiffness * kept * kept, sticks.stored),
-                select(slides,
-                       Number(0.5) * stiffness * (start + kept) * (length - kept) +
-                           share * dashpot * slip2 * Number(dt),
-                       sticks.lost)};
+        // With the share of the spring that is kept, and that of the dashpot that acts.
+        const auto answer = [&](Number kept, Number acting, Number slipped) -> SlidingSpring {
+            const Vec3Of<Number> spring = kept * trial;
+            const Number damping = acting * dashpot;
+            return {-k.value * spring - damping * slip, spring, Number(0.5) * k.value * kept * kept * trial2,
+                    slipped + damping * slip2 * Number(dt)};
+        };
+        if (!any(slides)) return answer(Number(1), Number(1), Number(0));
+
+        const auto root = [least](Number x) { return x * rsqrt(max(x, least)); };
+        const Number per_length = rsqrt(max(trial2, least));
+        const Number kept = select(slides, min(Number(1), limit * k.inverse * per_length), Number(1));
+        const Number slipped =
+            max(Number(0.5) * k.value * (Number(1) - kept) * (before.dot(trial) + kept * trial2), Number(0));
+        // The largest share g <= 1 with |k s + g c v| <= limit: a quadratic in g.
+        const Number b = kept * both, room = max(limit2 - kept * kept * elastic2, Number(0));
+        const Number most =
+            max(root(b * b + damping2 * room) - b, Number(0)) * reciprocal(max(damping2, least));
+        const Number acting = select(damping2 > least, min(Number(1), most), Number(0));
+        return answer(kept, select(slides, acting, Number(1)), slipped);
     }
 };
 

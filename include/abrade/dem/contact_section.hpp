@@ -195,7 +195,7 @@ private:
         if (!touched) return;
         detail::set_memory_of_lane(pack.memory, lane, memory);
         for (int a = 0; a < 3; ++a) pack.before[a].set(lane, before[a]);
-        pack.touched.bits[lane] = -1;
+        pack.touched.set(lane);
     }
 
     static bool is_of(const Near& near, const ContactKind& kind) noexcept {

@@ -105,10 +105,12 @@ public:
         const auto touching = contact.overlap > Number(0);
         const Number least = Number(tiny<Number>), far = Number(std::numeric_limits<float>::max());
         const Number overlap = max(contact.overlap, Number(0));
-        const Number half_width2 = overlap * reciprocal(contact.curvature);  // R delta
-        const Number half_width = half_width2 * rsqrt(max(half_width2, least));
+        // The half width of the area of contact, sqrt(R delta), and one over it.
+        const Number root = rsqrt(max(overlap * contact.curvature, least));
+        const Number half_width = overlap * root, per_half_width = contact.curvature * root;
         const Number sn = Number(2 * effective_youngs_) * half_width,
-                     kt = Number(8 * effective_shear_) * half_width;
+                     kt = Number(8 * effective_shear_) * half_width,
+                     compliance = Number(0.125 / effective_shear_) * per_half_width;
 
         const Number approach = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
@@ -126,16 +128,15 @@ public:
         // As k_t grows an incremental spring shortens so that its force stays, and the way adds to it at the
         // mean k_t of the step (for an overlap that grows evenly). As k_t falls the spring stays.
         const bool total = params_.spring == Spring::total, by_springs = params_.slider == Slider::springs;
-        const Number grown =
-            total ? Number(0) : max(Number(1) - memory.stiffness / max(kt, least), Number(0));
+        const Number grown = total ? Number(0) : max(Number(1) - memory.stiffness * compliance, Number(0));
         const Number mean = Number(1) - grown * (Number(0.5) - grown * Number(1.0 / 6));
-        const Vec3Of<Number> before = (Number(1) - grown) * turn_into_plane(memory.spring, contact.normal);
+        const Vec3Of<Number> before = turn_into_plane(memory.spring, contact.normal, Number(1) - grown);
         const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
         const Vec3Of<Number> trial = before + (mean * begun) * way;
         const Number limit = select(
             touching, Number(params_.friction) * (by_springs ? push : max(normal.force, Number(0))), far);
         const Number beside = dashpot * Number(std::sqrt(4 * effective_shear_ / effective_youngs_));
-        auto tangential = SlidingSpring<Number>::at(before, trial, slip, limit, max(kt, least),
+        auto tangential = SlidingSpring<Number>::at(before, trial, slip, limit, {kt, compliance},
                                                     by_springs ? Number(0) : beside, contact.time_step);
         if (by_springs) {
             const Number damping = select(kt * kt * trial.dot(trial) <= limit * limit, beside, Number(0));
