@@ -228,7 +228,9 @@ private:
         if (!world_) build_world();
         const auto& radius = world_->particles().radius;
         const Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
-        world_->set_skin(options.skin > 0 ? options.skin : 0.25 * smallest);
+        const Real skin = options.skin > 0 ? options.skin : 0.25 * smallest;
+        PeriodNeed(world_->particles(), world_->scene().feed).check(world_->scene(), skin);
+        world_->set_skin(skin);
         world_->set_free_flight(options.free_flight);
         if (!opened_) open();
         stopped_ = false;
@@ -322,6 +324,11 @@ private:
                 text += name_of(trouble.body) + " overlaps " + name_of(trouble.other) + " by " +
                         short_text(100 * trouble.measure) + " % of the smaller radius (limit " +
                         short_text(100 * World::overlap_limit) + " %), " + place() + "; " + remedy(trouble);
+                break;
+            case Trouble::Cause::outran_period:
+                text += name_of(trouble.body) + " is so fast that neighbour lists would need a skin wider " +
+                        "than the periodic axes have room for, " + place() +
+                        "; widen Scene.bounds or take a smaller step";
                 break;
             default:
                 text +=

@@ -11,7 +11,7 @@ namespace abrade {
 
 /// What the engine finds wrong with a step.
 struct Trouble {
-    enum class Cause : std::uint8_t { none, not_finite, lost, overlap } cause = Cause::none;
+    enum class Cause : std::uint8_t { none, not_finite, lost, overlap, outran_period } cause = Cause::none;
     Index body = -1, other = -1;  ///< bodies; wall w is -1 - w
     Real measure = 0;             ///< overlap over the smaller radius [-]
     bool bonded = false;          ///< the two are held by a bond, not by a contact
@@ -196,6 +196,7 @@ private:
                                       flight.fastest + flight.kicks * state_.scene.gravity.norm()));
             check(all.motion);
             if (too_deep_) find_overlap(*move);
+            if (lists_.outrun() && trouble_.cause == Trouble::Cause::none) report_fastest();
         }
     }
 
@@ -310,6 +311,13 @@ private:
     void report_bond(const BondSums& sums) {
         const auto& bond = state_.network.bonds()[at(sums.deepest_bond)];
         trouble_ = {Trouble::Cause::overlap, bond.bodies.first, bond.bodies.second, sums.deepest, true, {}};
+    }
+
+    void report_fastest() {
+        trouble_ = {Trouble::Cause::outran_period, 0};
+        const auto speed = [&](Index b) { return state_.store.velocity_of(state_.particles, b).norm(); };
+        for (Index b = 1; b < state_.particles.bodies(); ++b)
+            if (speed(b) > speed(trouble_.body)) trouble_.body = b;
     }
 
     void check(const MotionSums& motion) {
