@@ -57,16 +57,16 @@ void scenes(const std::filesystem::path& folder) {
         Curve over_step{.title = c.title};
         for (const Real safety : safeties) {
             const History h = c.run(safety);
-            over_step.x.push_back(safety), over_step.y.push_back(h.residue.back());
+            over_step.x.push_back(safety), over_step.y.push_back(100 * h.residue.back());
             if (safety == 0.5) residual.push_back({.title = c.title, .x = h.steps, .y = h.residual});
         }
         residue.push_back(over_step);
     }
-    residual.push_back({.title = "gate", .x = {0, 9e4}, .y = {1e-12, 1e-12}, .style = CurveStyle::dashed});
+    residual.push_back({.title = "gate", .x = {0, 6e4}, .y = {1e-12, 1e-12}, .style = CurveStyle::dashed});
     residue.push_back(
-        {.title = "second order", .x = {0.1, 0.8}, .y = {1e-4, 64e-4}, .style = CurveStyle::dashed});
+        {.title = "second order", .x = {0.1, 0.8}, .y = {1e-2, 64e-2}, .style = CurveStyle::dashed});
     draw(LineChart{.title = "Residual of the ledger: round-off",
-                   .x = {.label = "steps", .min = 0, .max = 9e4},
+                   .x = {.label = "steps", .min = 0, .max = 6e4},
                    .y = {.label = "residual / energy that passed through",
                          .min = 1e-18,
                          .max = 1e-11,
@@ -74,8 +74,8 @@ void scenes(const std::filesystem::path& folder) {
                    .curves = residual},
          folder / "verification_ledger_residual.png");
     draw(LineChart{.title = "Integration residue: the square of the step",
-                   .x = {.label = "time step / stable step", .min = 0.04, .max = 1, .logarithmic = true},
-                   .y = {.label = "integration residue / energy lost", .logarithmic = true},
+                   .x = {.label = "time step / stable step", .min = 0.08, .max = 1, .logarithmic = true},
+                   .y = {.label = "integration residue / energy lost", .unit = "%", .logarithmic = true},
                    .curves = residue},
          folder / "verification_ledger_residue.png");
 }
