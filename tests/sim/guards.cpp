@@ -208,8 +208,9 @@ TEST_CASE("a step too coarse for the impact: the message has the step that runs 
         CAPTURE(restitution);
         const Careless law({.stiffness = restitution < 1 ? 2.1e5 : 2.85e5, .restitution = restitution});
         // In the first, small way the error is that of a few steps; then the first that touches goes too far.
-        for (const auto& [gap, coarse] :
+        for (const auto& try_with :
              {std::pair(1e-6, 1e-4), std::pair(1e-4, 2.2e-4), std::pair(1e-4, 4.7e-4)}) {
+            const Real gap = try_with.first, coarse = try_with.second;
             if (restitution < 1 && gap < 1e-5) continue;  // just deep enough without damping only
             CAPTURE(coarse);
             Scene scene;
