@@ -172,16 +172,16 @@ TEST_CASE("slabs, chunks and images: the same forces as pair by pair, in open an
     const Clump twin = make_clump("twin", {{{-0.006, 0, 0}, 0.009}, {{0.006, 0, 0}, 0.01}});
     std::mt19937 random(4);
     const auto uniform = [&] { return std::uniform_real_distribution<Real>(0, 1)(random); };
-    for (const Vec3& period : {Vec3(0, 0, 0), Vec3(1.2, 0, 0), Vec3(0, 0.1, 0), Vec3(1.2, 0.1, 0.12)}) {
+    for (const Vec3& period : {Vec3(0, 0, 0), Vec3(0.3, 0, 0), Vec3(0, 0.1, 0), Vec3(0.3, 0.1, 0.12)}) {
         Rig rig;
         rig.period = period;
-        for (int n = 0; n < 4500; ++n) {
-            const Vec3 at(1.2 * uniform(), 0.1 * uniform(), 0.12 * uniform());
+        for (int n = 0; n < 1125; ++n) {
+            const Vec3 at(0.3 * uniform(), 0.1 * uniform(), 0.12 * uniform());
             rig.p.add(n % 5 == 0 ? twin : ball, 2650,
                       {.position = at, .velocity = {uniform() - 0.5, uniform() - 0.5, 0}}, Kind::stone);
         }
         rig.list();
-        CHECK(rig.store.slabs.count() > 8);
+        CHECK(rig.store.slabs.count() >= 6);
         CHECK(rig.store.slabs.chunks() > 1);
         rig.respond(0);
         const auto count = static_cast<std::size_t>(rig.p.spheres());

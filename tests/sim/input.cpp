@@ -1,5 +1,6 @@
 // What cannot be run is refused before the first step, with field, rule, value and remedy.
 #include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/dem/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>
@@ -73,42 +74,84 @@ TEST_CASE("a time that has passed cannot be run to") {
 TEST_CASE("stones: radius, density, position, velocity") {
     for (const Real bad : {0.0, -0.02, nan_}) {
         CHECK(has(message_of([&] { Scene().add_sphere(bad, {}); }),
-                  "Scene.add_sphere.radius must be finite and > 0"));
+                  "Scene.stones[0].radius must be finite and > 0, got " + to_text(bad) + " m"));
         Scene scene;
         CHECK(has(message_of([&] {
                       simulate(scene.add_sphere(0.02, {}, bad)).contact(law).run({.end_time = 1e-3});
                   }),
-                  "density must be finite and > 0"));
+                  "Scene.stones[0].density must be finite and > 0, got " + to_text(bad) + " kg/m3"));
     }
-    for (int axis = 0; axis < 3; ++axis) {
-        BodyState state;
-        state.position[axis] = nan_;
-        Scene scene;
-        scene.add_sphere(0.02, state);
-        const std::string said = run(scene, {.end_time = 1e-3});
-        CHECK(has(said, "position"));
-        CHECK(has(said, "nan"));
-        state = {};
-        state.velocity[axis] = nan_;
-        Scene moving;
-        moving.add_sphere(0.02, state);
-        CHECK(has(run(moving, {.end_time = 1e-3}), "finite"));
-    }
-    Scene outside;
+    // Whichever stone it is, it is named, with the component.
+    for (int axis = 0; axis < 3; ++axis)
+        for (const Real bad : {nan_, std::numeric_limits<Real>::infinity()}) {
+            const auto said = [&](auto change) {
+                Scene scene = one_stone();
+                scene.add_sphere(0.02, {.position = {1, 0, 0}}).add_sphere(0.02, {.position = {2, 0, 0}});
+                change(scene.stones[1].state);
+                return run(scene, {.end_time = 1e-3});
+            };
+            const std::string value = std::string(".") + "xyz"[axis] + " must be finite, got " + to_text(bad);
+            CHECK(said([&](BodyState& s) { s.position[axis] = bad; }) ==
+                  "Scene.stones[1].position" + value + " m");
+            CHECK(said([&](BodyState& s) { s.velocity[axis] = bad; }) ==
+                  "Scene.stones[1].velocity" + value + " m/s");
+            CHECK(said([&](BodyState& s) { s.angular_velocity[axis] = bad; }) ==
+                  "Scene.stones[1].angular_velocity" + value + " rad/s");
+            CHECK(has(said([&](BodyState& s) { s.orientation.coeffs()[axis] = bad; }),
+                      "Scene.stones[1].orientation must be of length 1, got "));
+        }
+    Scene outside = one_stone();
     outside.bounds = {{-1, -1, -1}, {1, 1, 1}};
-    outside.add_sphere(0.02, {.position = {3, 0, 0}});
-    CHECK(has(run(outside, {.end_time = 1e-3}), "Scene.stones[0].position must be inside Scene.bounds"));
-    Scene infinite;
-    infinite.add_sphere(0.02, {.position = {std::numeric_limits<Real>::infinity(), 0, 0}});
-    CHECK(has(run(infinite, {.end_time = 1e-3}), "finite"));
+    outside.add_sphere(0.02, {.position = {0, 3, 0}});
+    CHECK(run(outside, {.end_time = 1e-3}) ==
+          "Scene.stones[1].position.y must be inside Scene.bounds, from -1 to 1, got 3 m; move the stone or "
+          "widen the bounds");
+    // A clump is plain data: what was changed after make_clump() is looked at, too.
+    for (const Real bad : {0.0, -0.01, nan_}) {
+        Scene scene = one_stone();
+        scene.add_stone(make_stone(StoneShape::angular, 0.02), {.position = {1, 0, 0}});
+        scene.stones[1].clump.members[3].radius = bad;
+        CHECK(run(scene, {.end_time = 1e-3}) ==
+              "Scene.stones[1].clump.members[3].radius must be finite and > 0, got " + to_text(bad) + " m");
+    }
+}
+
+TEST_CASE("contact laws: stiffness, restitution, friction") {
+    for (const Real bad : {0.0, -1.0, nan_, std::numeric_limits<Real>::infinity()}) {
+        CHECK(has(message_of([&] { LinearSpring{{.stiffness = bad}}; }),
+                  "LinearSpring.stiffness must be finite and > 0, got " + to_text(bad) + " N/m; stones on"));
+        CHECK(has(message_of([&] { HertzMindlin{{.youngs = bad}}; }),
+                  "HertzMindlin.youngs must be finite and > 0, got " + to_text(bad) + " Pa; 1e7 Pa is soft"));
+        CHECK(has(message_of([&] { MohrCoulomb{{.tensile = 1, .stiffness = bad}}; }),
+                  "MohrCoulomb.stiffness must be finite and > 0, got " + to_text(bad) + " N/m"));
+    }
+    for (const Real bad : {0.0, -0.5, 1.01, nan_}) {
+        CHECK(message_of([&] { LinearSpring{{.stiffness = 1, .restitution = bad}}; }) ==
+              "LinearSpring.restitution must be in (0, 1], got " + to_text(bad));
+        CHECK(message_of([&] { HertzMindlin{{.youngs = 1e9, .restitution = bad}}; }) ==
+              "HertzMindlin.restitution must be in (0, 1], got " + to_text(bad));
+    }
+    for (const Real bad : {-0.1, nan_}) {
+        CHECK(has(message_of([&] { LinearSpring{{.stiffness = 1, .friction = bad}}; }),
+                  "LinearSpring.friction must be finite and >= 0"));
+        CHECK(has(message_of([&] { HertzMindlin{{.youngs = 1, .friction = bad}}; }),
+                  "HertzMindlin.friction must be finite and >= 0"));
+    }
 }
 
 TEST_CASE("walls, gravity, concrete") {
     CHECK_THROWS_AS(Scene().add_wall({0, 0, 0}, {0, 0, 0}), InputError);
     CHECK_THROWS_AS(Scene().add_wall({0, 0, 0}, {0, 0, nan_}), InputError);
+    CHECK(has(message_of([&] {
+                  Scene().add_wall({0, 0, 0}, {0, 0, 1}).add_wall({0, 0, 0}, {0, nan_, 1});
+              }),
+              "Scene.walls[1].normal must be finite"));
     Scene scene = one_stone();
+    scene.add_wall({0, 0, -1}, {0, 0, 1}).add_wall({0, nan_, 1}, {0, 0, -1});
+    CHECK(run(scene, {.end_time = 1e-3}) == "Scene.walls[1].point.y must be finite, got nan m");
+    scene = one_stone();
     scene.gravity.x() = nan_;
-    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.gravity must be finite"));
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.gravity.x must be finite, got nan m/s2"));
     scene = one_stone();
     scene.concrete = ConcreteBlock{flat_lattice(0.1, 0.1, {}), -1};
     CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.concrete.density"));
@@ -162,6 +205,11 @@ TEST_CASE("stones that overlap too far at the start are refused, both named") {
     CHECK(has(text, "stone with id 1"));
     CHECK(has(text, "got 29.99"));
     CHECK(has(text, "move them apart"));
+    Scene sunk = one_stone();
+    sunk.add_wall({-1, 0, 0}, {1, 0, 0}).add_wall({0, 0, -0.01}, {0, 0, 1});
+    CHECK(has(run(sunk, {.end_time = 0.1}),
+              "overlap of stone with id 0 with Scene.walls[1] must be at most 20 % of the smaller radius, "
+              "got 50 %"));
 }
 
 TEST_CASE("a simulation that refused its input runs once the input is mended") {
@@ -205,7 +253,7 @@ TEST_CASE("bounds, outlet and gauge are checked") {
     scene = one_stone();
     scene.stones.clear();
     scene.bounds = {{1, 1, 1}, {-1, -1, -1}};
-    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.bounds must be low < high"));
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.bounds along x must be low < high"));
 }
 
 TEST_CASE("nothing moves: the observer is still called at its times") {

@@ -64,8 +64,11 @@ inline void require_not_negative(Real value, std::string_view field, std::string
                                  std::string_view remedy = {}) {
     require(value >= 0 && std::isfinite(value), {field, "finite and >= 0", unit, remedy}, value);
 }
+/// Names the component: "Scene.stones[3].velocity.y must be finite, got nan m/s".
 inline void require_finite(const Vec3& value, std::string_view field, std::string_view unit = {}) {
-    for (int a = 0; a < 3; ++a) require(std::isfinite(value[a]), {field, "finite", unit}, value[a]);
+    for (int a = 0; a < 3; ++a)
+        if (!std::isfinite(value[a]))
+            fail({std::string(field) + '.' + "xyz"[a], "finite", unit}, to_text(value[a]));
 }
 
 }  // namespace abrade

@@ -90,14 +90,13 @@ struct Particles {
         position.push_back(state.position);
         velocity.push_back(held ? Vec3(Vec3::Zero()) : state.velocity);
         orientation.push_back(state.orientation.normalized());
-        const Vec3 spin_in_body = orientation.back().conjugate() * state.angular_velocity;
-        angular_momentum.push_back(
-            held ? Vec3(Vec3::Zero()) : Vec3(orientation.back() * Vec3(inertia.cwiseProduct(spin_in_body))));
         force.push_back(Vec3::Zero());
         torque.push_back(Vec3::Zero());
         mass.push_back(m);
         inverse_mass.push_back(held ? 0 : 1 / m);
         inverse_inertia.push_back(held ? Vec3(Vec3::Zero()) : Vec3(inertia.cwiseInverse()));
+        angular_momentum.push_back(held ? Vec3(Vec3::Zero())
+                                        : momentum_of(b, inertia, state.angular_velocity));
         volume.push_back(clump.volume);
         kind.push_back(body_kind);
         id.push_back(next_id++);
@@ -137,6 +136,14 @@ struct Particles {
     }
 
 private:
+    /// Angular momentum of an angular velocity, both in the world frame. Where all axes are alike, nothing is
+    /// turned into the principal frame and back: a sphere must not feel how it is oriented, in no digit.
+    Vec3 momentum_of(Index b, const Vec3& inertia, const Vec3& spin) const noexcept {
+        if (isotropic(b)) return inertia.x() * spin;
+        const Quaternion& turned = orientation[static_cast<std::size_t>(b)];
+        return turned * Vec3(inertia.cwiseProduct(Vec3(turned.conjugate() * spin)));
+    }
+
     void for_each_body_column(auto&& f) {
         f(position), f(velocity), f(orientation), f(angular_momentum), f(force), f(torque), f(mass),
             f(inverse_mass);

@@ -4,6 +4,7 @@
 #include <abrade/core/require.hpp>
 
 #include <limits>
+#include <string>
 
 namespace abrade {
 
@@ -14,9 +15,10 @@ struct Plane {
 
     Real distance(const Vec3& x) const noexcept { return normal.dot(x - point); }
 
-    void validate() const {
-        require(point.allFinite(), {"Plane.point", "finite", "m"}, point.sum());
-        require(std::abs(normal.norm() - 1) < 1e-9, {"Plane.normal", "of length 1", "", "normalise it"},
+    /// `name` says in messages which plane is meant.
+    void validate(const std::string& name = "Plane") const {
+        require_finite(point, name + ".point", "m");
+        require(std::abs(normal.norm() - 1) < 1e-9, {name + ".normal", "of length 1", "", "normalise it"},
                 normal.norm());
     }
 };

@@ -1,6 +1,7 @@
 #pragma once
 // The lists of near pairs and of candidates: how long they last, and what happens when they are renewed.
 
+#include <abrade/sim/period.hpp>
 #include <abrade/sim/state.hpp>
 
 #include <chrono>
@@ -46,6 +47,11 @@ public:
         supply(state, t, dt);
         const Real fastest = std::sqrt(fastest2(state));
         list_skin_ = std::max(skin_, 2 * shortest_life * dt * fastest);
+        if (const Vec3 period = state.scene.periodic().period; !period.isZero()) {
+            const Real room = PeriodNeed(state.particles, state.scene.feed).widest_skin(period);
+            list_skin_ = std::min(list_skin_, room);
+            outrun_ = list_skin_ < 8 * dt * fastest;  // what `refine` asks for
+        }
         state.store.arrange(state.particles, departure.moved, list_skin_, state.scene.periodic());
         const auto [smallest, largest] =
             std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
@@ -60,6 +66,8 @@ public:
         seconds_ += std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
     }
     Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
+    /// Whether bodies are too fast for any skin that the period of space has room for.
+    bool outrun() const noexcept { return outrun_; }
 
 private:
     /// Steps that lists last at least.
@@ -249,8 +257,9 @@ private:
     Real skin_ = 0, list_skin_ = 0;       ///< asked for, of the present list [m]
     Real inner_skin_ = 0, moved_ = 0;     ///< of the candidates; how far anything may have come since [m]
     Real seconds_ = 0, inner_life_ = 32;  ///< [s], [steps]
-    Index age_ = 0;                       ///< steps since the last renewal
-    std::vector<Vec3> built_at_;          ///< [slot] where the list was made [m]
+    bool outrun_ = false;
+    Index age_ = 0;               ///< steps since the last renewal
+    std::vector<Vec3> built_at_;  ///< [slot] where the list was made [m]
 };
 
 }  // namespace abrade

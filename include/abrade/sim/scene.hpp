@@ -38,7 +38,7 @@ struct Scene {
 
     /// A single sphere; returns the scene so that calls can be chained.
     Scene& add_sphere(Real radius, const BodyState& state, Real density = 2650) {
-        require_positive(radius, "Scene.add_sphere.radius", "m");
+        require_positive(radius, "Scene.stones[" + std::to_string(stones.size()) + "].radius", "m");
         return add_stone(make_clump("sphere", {{Vec3::Zero(), radius}}), state, density);
     }
     Scene& add_stone(Clump clump, const BodyState& state, Real density = 2650) {
@@ -46,7 +46,9 @@ struct Scene {
         return *this;
     }
     Scene& add_wall(const Vec3& point, const Vec3& normal) {
-        require(normal.norm() > 0, {"Scene.add_wall.normal", "longer than 0"}, normal.norm());
+        require(normal.norm() > 0 && normal.allFinite(),
+                {"Scene.walls[" + std::to_string(walls.size()) + "].normal", "finite and longer than 0"},
+                normal.norm());
         walls.push_back({point, normal.normalized()});
         return *this;
     }
@@ -69,20 +71,15 @@ struct Scene {
     }
 
     void validate() const {
-        require(gravity.allFinite(), {"Scene.gravity", "finite", "m/s2"}, gravity.sum());
-        for (const Plane& wall : walls) wall.validate();
-        for (std::size_t n = 0; n < stones.size(); ++n) {
-            const std::string name = "Scene.stones[" + std::to_string(n) + "]";
-            const BodyState& state = stones[n].state;
-            require_positive(stones[n].density, name + ".density", "kg/m3");
-            require_finite(state.velocity, name + ".velocity", "m/s");
-            require_finite(state.angular_velocity, name + ".angular_velocity", "rad/s");
-            require(bounds.contains(state.position),
-                    {name + ".position", "inside Scene.bounds", "m", "move the stone or widen the bounds"},
-                    state.position.norm());
-        }
-        require((bounds.high - bounds.low).minCoeff() > 0, {"Scene.bounds", "low < high", "m"},
-                (bounds.high - bounds.low).minCoeff());
+        require_finite(gravity, "Scene.gravity", "m/s2");
+        for (int a = 0; a < 3; ++a)
+            require(bounds.low[a] < bounds.high[a],
+                    {std::string("Scene.bounds along ") + "xyz"[a], "low < high, high - low", "m"},
+                    bounds.high[a] - bounds.low[a]);
+        for (std::size_t n = 0; n < walls.size(); ++n)
+            walls[n].validate("Scene.walls[" + std::to_string(n) + "]");
+        for (std::size_t n = 0; n < stones.size(); ++n)
+            validate(stones[n], "Scene.stones[" + std::to_string(n) + "]");
         for (std::size_t a = 0; a < 3; ++a) {
             const Real size = bounds.high[static_cast<int>(a)] - bounds.low[static_cast<int>(a)];
             require(!periodic_along[a] || std::isfinite(size),
@@ -96,6 +93,31 @@ struct Scene {
                     0);
         }
         if (feed) feed->validate();
+    }
+
+private:
+    void validate(const Stone& stone, const std::string& name) const {
+        const BodyState& state = stone.state;
+        require_positive(stone.density, name + ".density", "kg/m3");
+        require(!stone.clump.members.empty(),
+                {name + ".clump", "of at least one sphere", "spheres", "make clumps with make_clump()"}, 0);
+        for (std::size_t m = 0; m < stone.clump.members.size(); ++m) {
+            const std::string member = name + ".clump.members[" + std::to_string(m) + "]";
+            require_positive(stone.clump.members[m].radius, member + ".radius", "m");
+            require_finite(stone.clump.members[m].centre, member + ".centre", "m");
+        }
+        require_positive(stone.clump.volume, name + ".clump.volume", "m3", "make clumps with make_clump()");
+        require_finite(state.position, name + ".position", "m");
+        require_finite(state.velocity, name + ".velocity", "m/s");
+        require_finite(state.angular_velocity, name + ".angular_velocity", "rad/s");
+        require(std::abs(state.orientation.norm() - 1) < 1e-6,
+                {name + ".orientation", "of length 1", "", "normalise it"}, state.orientation.norm());
+        for (int a = 0; a < 3; ++a)
+            require(state.position[a] >= bounds.low[a] && state.position[a] <= bounds.high[a],
+                    {name + ".position." + "xyz"[a],
+                     "inside Scene.bounds, from " + to_text(bounds.low[a]) + " to " + to_text(bounds.high[a]),
+                     "m", "move the stone or widen the bounds"},
+                    state.position[a]);
     }
 };
 

@@ -228,7 +228,9 @@ private:
         if (!world_) build_world();
         const auto& radius = world_->particles().radius;
         const Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
-        world_->set_skin(options.skin > 0 ? options.skin : 0.25 * smallest);
+        const Real skin = options.skin > 0 ? options.skin : 0.25 * smallest;
+        PeriodNeed(world_->particles(), world_->scene().feed).check(world_->scene(), skin);
+        world_->set_skin(skin);
         world_->set_free_flight(options.free_flight);
         if (!opened_) open();
         stopped_ = false;
@@ -278,13 +280,30 @@ private:
     }
 
     std::string name_of(Index body) const {
-        if (body < 0) return "a boundary";
+        if (body < 0) return "Scene.walls[" + std::to_string(-1 - body) + "]";
         static constexpr std::string_view kinds[] = {"stone", "concrete sphere", "concrete grain",
                                                      "fixed sphere"};
         const Particles& p = world_->particles();
         const auto b = static_cast<std::size_t>(body);
         return std::string(kinds[static_cast<std::size_t>(p.kind[b])]) + " with id " +
                std::to_string(p.id[b]);
+    }
+
+    /// What would have kept the two apart.
+    std::string remedy(const Trouble& trouble) const {
+        if (trouble.bonded) return "stiffer bonds or a smaller load are needed";
+        const ImpactRemedy found =
+            ImpactInquiry<C>(contact_, trouble.contact, time_step_, World::overlap_limit).remedy();
+        if (found.met_at == 0) return "something presses them together: stiffer springs are needed";
+        const std::string met = "they met at " + short_text(found.met_at) + " m/s along their normal: ";
+        if (found.time_step > 0)
+            return met + "a time step of " + short_text(0.999 * found.time_step) +
+                   " s would have been enough: then they reach " + short_text(100 * found.deepest) + " %";
+        return met + "no time step is enough, alone they reach " + short_text(100 * found.deepest) +
+               " %; springs " + short_text(1.001 * found.times_as_stiff) +
+               " times as stiff would have been, with a step of " +
+               short_text(time_step_ / std::sqrt(found.times_as_stiff)) + " s, or a speed of " +
+               short_text(0.999 * found.speed) + " m/s";
     }
 
     [[noreturn]] void raise(const Trouble& trouble) {
@@ -304,8 +323,12 @@ private:
             case Trouble::Cause::overlap:
                 text += name_of(trouble.body) + " overlaps " + name_of(trouble.other) + " by " +
                         short_text(100 * trouble.measure) + " % of the smaller radius (limit " +
-                        short_text(100 * World::overlap_limit) + " %), " + place() +
-                        "; stiffer springs or a smaller step are needed";
+                        short_text(100 * World::overlap_limit) + " %), " + place() + "; " + remedy(trouble);
+                break;
+            case Trouble::Cause::outran_period:
+                text += name_of(trouble.body) + " is so fast that neighbour lists would need a skin wider " +
+                        "than the periodic axes have room for, " + place() +
+                        "; widen Scene.bounds or take a smaller step";
                 break;
             default:
                 text +=

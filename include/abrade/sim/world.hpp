@@ -2,6 +2,7 @@
 // Everything that moves, and one step of it.
 
 #include <abrade/sim/advance.hpp>
+#include <abrade/sim/impact.hpp>
 #include <abrade/sim/lists.hpp>
 
 #include <chrono>
@@ -10,10 +11,11 @@ namespace abrade {
 
 /// What the engine finds wrong with a step.
 struct Trouble {
-    enum class Cause : std::uint8_t { none, not_finite, lost, overlap } cause = Cause::none;
-    Index body = -1, other = -1;  ///< bodies; `other` is negative for a boundary
+    enum class Cause : std::uint8_t { none, not_finite, lost, overlap, outran_period } cause = Cause::none;
+    Index body = -1, other = -1;  ///< bodies; wall w is -1 - w
     Real measure = 0;             ///< overlap over the smaller radius [-]
-    Real speed = 0;               ///< of approach [m/s]
+    bool bonded = false;          ///< the two are held by a bond, not by a contact
+    DeepContact contact{};        ///< where it was one that overlapped
 };
 
 /// Wall time of parts of a step [s], summed over threads.
@@ -40,6 +42,7 @@ public:
         now_ = t;
         lists_.renew(state_, now_, 0);
         publish();
+        if (too_deep_) find_overlap(Move{});
         Ledger& start = state_.accounts;
         start.kinetic_start = ledger_.kinetic;
         start.potential_start = ledger_.potential;
@@ -192,6 +195,8 @@ private:
                              std::max(std::sqrt(all.motion.fastest2),
                                       flight.fastest + flight.kicks * state_.scene.gravity.norm()));
             check(all.motion);
+            if (too_deep_) find_overlap(*move);
+            if (lists_.outrun() && trouble_.cause == Trouble::Cause::none) report_fastest();
         }
     }
 
@@ -248,7 +253,7 @@ private:
         stored_contacts_ = contacts.stored, stored_bonds_ = bonds.stored;
         state_.broken_tension += bonds.broken_tension, state_.broken_shear += bonds.broken_shear;
         state_.pattern_changed |= bonds.broken_tension + bonds.broken_shear > 0;
-        if (contacts.deepest > overlap_limit * (1 + state_.size_ratio)) find_overlap();
+        too_deep_ |= contacts.deepest > overlap_limit * (1 + state_.size_ratio);
         if (bonds.deepest > overlap_limit) report_bond(bonds);
     }
     void book(Ledger& to, const MotionSums& motion) const {
@@ -258,23 +263,61 @@ private:
         to.buoyancy_work += motion.buoyancy;
     }
 
-    /// The sums of a step told that something may be wrong: finds out what.
-    void find_overlap() {
-        state_.contacts.each_touching([&](const SlotPair& pair, const auto&, const Vec3&) {
-            const auto contact = contact_between(state_.store.lines, state_.scene.walls, pair, 0);
-            const SpherePlace& first = state_.store.lines.place[at(pair.first)];
-            const Real smaller =
-                pair.second < 0 ? first.radius
-                                : std::min(first.radius, state_.store.lines.place[at(pair.second)].radius);
-            const Real share = contact.overlap / smaller;
-            if (share > std::max(overlap_limit, trouble_.measure))
-                trouble_ = {Trouble::Cause::overlap, body_in(pair.first), body_in(pair.second), share,
-                            -contact.velocity.dot(contact.normal)};
+    /// The sums of an evaluation told that something may be too deep: finds out what. The lines have made
+    /// `last` since then.
+    void find_overlap(const Move& last) {
+        too_deep_ = false;
+        SphereLines then = state_.store.lines;
+        for (std::size_t slot = 0; slot < then.place.size(); ++slot)
+            if (then.motion[slot].inverse_mass > 0)
+                then.place[slot].centre -= last.drift * then.motion[slot].velocity;
+        state_.contacts.each_touching([&](const SlotPair& pair, const auto&, const Vec3& before) {
+            const auto contact = contact_between(then, state_.scene.walls, pair, 0);
+            const Real first = then.place[at(pair.first)].radius,
+                       second = pair.second < 0 ? 0 : then.place[at(pair.second)].radius;
+            DeepContact deep{.reach = first + second,
+                             .smaller_radius = pair.second < 0 ? first : std::min(first, second),
+                             .on_plane = pair.second < 0,
+                             .inverse_mass = contact.inverse_mass,
+                             .curvature = contact.curvature};
+            const Real share = contact.overlap / deep.smaller_radius;
+            if (!(share > std::max(overlap_limit, trouble_.measure))) return;
+            const Vec3& n = contact.normal;
+            deep.apart = (deep.reach - contact.overlap) * n;
+            const Real slower = (contact.velocity - before).dot(n);
+            if (last.kick > 0) deep.slowing = slower / last.kick;
+            deep.velocity = then.motion[at(pair.first)].velocity - slower * n;
+            deep.inverse_mass_along = mobility(then, pair.first, -n);
+            if (!deep.on_plane) {
+                deep.velocity -= then.motion[at(pair.second)].velocity;
+                deep.inverse_mass_along += mobility(then, pair.second, n);
+            }
+            trouble_ = {
+                Trouble::Cause::overlap, body_in(pair.first), body_in(pair.second), share, false, deep};
         });
     }
+
+    /// How much a force at a sphere's rim along the normal n accelerates that rim [1/kg].
+    Real mobility(const SphereLines& lines, Index slot, const Vec3& n) const {
+        const Index own = state_.store.owner_of(slot);
+        const Index clump = state_.store.clump_of(body_in(slot));
+        if (clump < 0) return lines.motion[at(slot)].inverse_mass;
+        const MovingClump& c = state_.store.clumps[at(clump)];
+        const Vec3 lever = (state_.store.lines.place[at(own)].centre - c.position).cross(n);
+        const Vec3 in_body = c.orientation.conjugate() * lever;
+        return c.inverse_mass + in_body.dot(Vec3(c.inverse_inertia.cwiseProduct(in_body)));
+    }
+
     void report_bond(const BondSums& sums) {
         const auto& bond = state_.network.bonds()[at(sums.deepest_bond)];
-        trouble_ = {Trouble::Cause::overlap, bond.bodies.first, bond.bodies.second, sums.deepest, 0};
+        trouble_ = {Trouble::Cause::overlap, bond.bodies.first, bond.bodies.second, sums.deepest, true, {}};
+    }
+
+    void report_fastest() {
+        trouble_ = {Trouble::Cause::outran_period, 0};
+        const auto speed = [&](Index b) { return state_.store.velocity_of(state_.particles, b).norm(); };
+        for (Index b = 1; b < state_.particles.bodies(); ++b)
+            if (speed(b) > speed(trouble_.body)) trouble_.body = b;
     }
 
     void check(const MotionSums& motion) {
@@ -292,11 +335,11 @@ private:
             const Vec3 v = state_.store.velocity_of(state_.particles, b);
             const bool turns_soundly = state_.store.turns_soundly(state_.particles, b);
             if (!(v.squaredNorm() < too_fast2) || !turns_soundly) {
-                trouble_ = {Trouble::Cause::not_finite, b, -1, 0, 0};
+                trouble_ = {Trouble::Cause::not_finite, b};
                 return;
             }
             if (!space.contains(state_.store.position_of(state_.particles, b)))
-                trouble_ = {Trouble::Cause::lost, b, -1, 0, 0};
+                trouble_ = {Trouble::Cause::lost, b};
         }
     }
 
@@ -321,6 +364,7 @@ private:
     bool evaluated_ = false;           ///< loads are those of the present places
     bool whole_ = true;                ///< velocities are those of the present, not of half a step ago
     Real stored_contacts_ = 0, stored_bonds_ = 0;  ///< [J]
+    bool too_deep_ = false;                        ///< some contact may be, as of the last evaluation
     Trouble trouble_;
     StepSeconds timed_;
 };
