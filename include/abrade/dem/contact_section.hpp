@@ -86,18 +86,16 @@ public:
                 where_[static_cast<std::size_t>(lane_[l])] = static_cast<Index>(l);
         std::swap(packs_, old_packs_);
         begin_packs();
-        candidates_ = touching_ = 0;
-        for (std::size_t n = 0; n < near_.size(); ++n) {
-            const Index old = where_[n];
-            if (old < 0 && !(gap(lines, planes, n) < skin)) continue;
-            ++candidates_, touching_ += old >= 0 ? 1 : 0;
-            if (old < 0) {
-                add_lane(n, Memory{}, Vec3::Zero(), false);
-                continue;
-            }
-            const ContactPack<Law>& from = old_packs_[static_cast<std::size_t>(old) / lanes];
-            const int lane = static_cast<int>(static_cast<std::size_t>(old) % lanes);
-            add_lane(n, detail::memory_of_lane<Memory>(from.memory, lane), before_of_lane(from, lane), true);
+        std::size_t first = 0;
+        for (const ContactKind& kind : kinds_) {
+            std::size_t last = first;
+            while (last < near_.size() && is_of(near_[last], kind)) ++last;
+            // Those that touch come first: packs without one are passed over.
+            for (std::size_t n = first; n < last; ++n)
+                if (where_[n] >= 0) keep_lane(n, static_cast<std::size_t>(where_[n]));
+            for (std::size_t n = first; n < last; ++n)
+                if (where_[n] < 0 && gap(lines, planes, n) < skin) add_lane(n, Memory{}, Vec3::Zero(), false);
+            first = last;
         }
     }
 
@@ -166,7 +164,14 @@ private:
 
     void begin_packs() {
         packs_.clear(), lane_.clear(), runs_.clear(), concrete_sides_.clear();
-        filled_ = lanes;
+        filled_ = lanes, candidates_ = touching_ = 0;
+    }
+
+    /// Puts near pair n, which had `old` among the lanes before, into the next one.
+    void keep_lane(std::size_t n, std::size_t old) {
+        const ContactPack<Law>& from = old_packs_[old / lanes];
+        const int lane = static_cast<int>(old % lanes);
+        add_lane(n, detail::memory_of_lane<Memory>(from.memory, lane), before_of_lane(from, lane), true);
     }
 
     /// Puts near pair n into the next lane; pairs come in the order of their kinds.
@@ -191,8 +196,9 @@ private:
         if (near_[n].pair.second >= 0) pack.second[filled_] = line_offset(near_[n].pair.second);
         const std::size_t place = (packs_.size() - 1) * lanes + filled_;
         lane_[place] = static_cast<Index>(n), concrete_sides_[place] = near_[n].concrete_sides;
-        ++filled_;
+        ++filled_, ++candidates_;
         if (!touched) return;
+        ++touching_;
         detail::set_memory_of_lane(pack.memory, lane, memory);
         for (int a = 0; a < 3; ++a) pack.before[a].set(lane, before[a]);
         pack.touched.set(lane);

@@ -125,8 +125,8 @@ public:
     Index size() const noexcept { return static_cast<Index>(members_.size()); }
     const Member& member(Index m) const noexcept { return members_[static_cast<std::size_t>(m)]; }
 
-    /// Calls `visit(member)` for the members after `after` in the grid's order that are nearer than `skin`
-    /// to a sphere of `radius` at x.
+    /// Calls `visit(member)` for the members that are nearer than `skin` to a sphere of `radius` at x: all of
+    /// them where `after` is -1, or those that follow in the grid's order where it is the sphere's own place.
     template <class Visit>
     void visit_near(const Vec3& x, Real radius, Real skin, Index after, Visit&& visit) const {
         const Real reach = radius + largest_radius + skin;
@@ -136,8 +136,14 @@ public:
             if (to[a] < 0 || from[a] >= static_cast<Real>(count_[static_cast<std::size_t>(a)])) return;
         const Index j_first = clamp(from.y(), 1), j_last = clamp(to.y(), 1);
         const Index k_first = clamp(from.z(), 2), k_last = clamp(to.z(), 2);
-        for (Index i = clamp(from.x(), 0); i <= clamp(to.x(), 0); ++i)
-            for (Index j = j_first; j <= j_last; ++j) {
+        const Index i_last = clamp(to.x(), 0);
+        Index i = clamp(from.x(), 0), j = j_first;
+        if (after >= 0) {  // rows before its own hold earlier members only
+            const Vec3 own = (x - low_) / cell_;
+            i = clamp(own.x(), 0), j = clamp(own.y(), 1);
+        }
+        for (; i <= i_last; ++i, j = j_first)
+            for (; j <= j_last; ++j) {
                 // Cells of one row along z are contiguous.
                 const Index last = start_[index(i, j, k_last) + 1];
                 for (Index m = std::max(start_[index(i, j, k_first)], after + 1); m < last; m += pack_lanes) {
@@ -185,7 +191,11 @@ inline std::vector<CellGrid> cell_grids(const NeighbourQuery& q, std::span<const
     Vec3 low = q.centre[0], high = low;
     for (const Vec3& x : q.centre) low = low.cwiseMin(x), high = high.cwiseMax(x);
     std::vector<std::vector<CellGrid::Member>> members(2 * levels);
-    const auto of = [&](std::size_t s) -> auto& { return members[2 * level[s] + (q.passive[s] ? 1 : 0)]; };
+    const auto grid_of = [&](std::size_t s) { return 2 * level[s] + (q.passive[s] ? 1 : 0); };
+    const auto of = [&](std::size_t s) -> auto& { return members[grid_of(s)]; };
+    std::vector<std::size_t> count(members.size(), 0);
+    for (std::size_t s = 0; s < q.centre.size(); ++s) ++count[grid_of(s)];
+    for (std::size_t m = 0; m < members.size(); ++m) members[m].reserve(count[m] + count[m] / 4);
     for (std::size_t s = 0; s < q.centre.size(); ++s) {
         const Vec3& x = q.centre[s];
         of(s).push_back({static_cast<Index>(s), {}, x});

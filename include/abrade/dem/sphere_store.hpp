@@ -117,7 +117,7 @@ public:
         slabs.fit(fit);
 
         const std::vector<Index> order = order_of(particles, position, fit);
-        SphereLines next;
+        SphereLines& next = spare_;  // kept from last time: fresh memory costs more than what is done here
         next.resize(count);
         std::vector<MovingClump> next_clumps;
         std::vector<Index> next_sphere_of(count);
@@ -159,7 +159,7 @@ public:
         if (singles) first_clump_slot_[at(slab)] = slot;
         first_slot_[at(slab) + 1] = slot, first_clump_[at(slab) + 1] = static_cast<Index>(next_clumps.size());
         slabs.share_out(first_slot_);
-        lines = std::move(next), clumps = std::move(next_clumps), sphere_of_ = std::move(next_sphere_of);
+        std::swap(lines, spare_), clumps = std::move(next_clumps), sphere_of_ = std::move(next_sphere_of);
         images_.clear();
         first_image_.assign(at(slabs.count()) + 1, 0);
         phantom_ = lines.add_phantoms();
@@ -253,7 +253,7 @@ private:
         lines.place[slot] = {particles.centre[sphere], radius};
         lines.motion[slot] = {particles.velocity[b] + spin.cross(arm), particles.inverse_mass[b],
                               radius * spin, 1 / radius};
-        lines.load[slot].mass = particles.mass[b];
+        lines.load[slot] = {.mass = particles.mass[b]};
     }
 
     /// Bodies slab by slab, in each slab single spheres first, then by cells, so that neighbours in space are
@@ -291,6 +291,7 @@ private:
     std::vector<ImageRequest> requests_;                                             ///< likewise
     std::vector<Index> first_image_{0, 0};                                           ///< [slab]
     Index phantom_ = 0;
+    SphereLines spare_;  ///< of the arrangement before
 };
 
 }  // namespace abrade

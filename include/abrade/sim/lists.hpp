@@ -103,15 +103,15 @@ private:
         moved_ = 0;
         state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_);
         state.take_off();
-        choose_life(state.contacts.census());
+        choose_life(state.contacts.census(), state.store.spheres());
         return true;
     }
 
     /// Candidates that live longer are picked less often, but are more: both cost about the same when
-    /// life times those that do not touch equals the pairs looked through.
-    void choose_life(const ContactCensus& census) noexcept {
+    /// life times those that do not touch equals the pairs and spheres looked through.
+    void choose_life(const ContactCensus& census, Index spheres) noexcept {
         const Real idle = static_cast<Real>(census.candidates - census.touching) + 1;
-        const Real best = std::sqrt(inner_life_ * static_cast<Real>(census.near) / idle);
+        const Real best = std::sqrt(inner_life_ * (static_cast<Real>(census.near) + spheres) / idle);
         inner_life_ =
             std::clamp(best, std::max(shortest_life, 0.5 * inner_life_), std::min(256.0, 2 * inner_life_));
     }
