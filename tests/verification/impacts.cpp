@@ -53,6 +53,7 @@ TEST_CASE("restitution comes out as it was put in, at 50 steps a contact, from a
 }
 
 TEST_CASE("linear spring-dashpot: time of contact and greatest overlap (dem04)") {
+    Real worst_depth = 0, worst_time = 0, worst_duration = 0;
     for (const auto& row : reference_table("dem04_linear_spring_dashpot_analytic.csv")) {
         // The table lets the contact pull, so it ends when the overlap does; the damping is given, not e.
         const Real k = row.at("k"), mass = row.at("mstar"), zeta = std::abs(row.at("zeta"));
@@ -61,7 +62,7 @@ TEST_CASE("linear spring-dashpot: time of contact and greatest overlap (dem04)")
         const LinearSpring law{{.stiffness = k, .restitution = e}};
         CHECK(law.damping_ratio() == doctest::Approx(zeta).epsilon(1e-9).scale(1));
         const Real dt = row.at("t_c_us") * 1e-6 / 500;
-        Real deepest = 0, at_deepest = 0, begin = -1;
+        Real deepest = 0, at_deepest = 0, begin = -1, last_push = 0;
         Scene scene;
         scene.gravity.setZero();
         scene.add_wall({0, 0, 0}, {0, 0, 1});
@@ -74,11 +75,23 @@ TEST_CASE("linear spring-dashpot: time of contact and greatest overlap (dem04)")
                     const Real overlap = radius - s.particles().position[0].z();
                     if (overlap > 0 && begin < 0) begin = s.time() - overlap;  // at 1 m/s
                     if (overlap > deepest) deepest = overlap, at_deepest = s.time();
+                    if (s.particles().force[0].z() > 0) last_push = s.time();
                 });
+        // A contact that may not pull ends when its force is spent, at 2 acos(zeta) / omega_d: without
+        // damping that is the table's t_c. To a step of 1/500.
+        const Real omega = std::sqrt(k / mass * (1 - zeta * zeta)), duration = 2 * std::acos(zeta) / omega;
+        if (zeta == 0) CHECK(duration == doctest::Approx(row.at("t_c_us") * 1e-6).epsilon(1e-5));
+        CHECK(pi / omega == doctest::Approx(row.at("t_c_us") * 1e-6).epsilon(1e-5));
+        CHECK(last_push - begin == doctest::Approx(duration).epsilon(0.005));
         CHECK(deepest == doctest::Approx(row.at("delta_max_um") * 1e-6).epsilon(0.005));
         CHECK(at_deepest - begin ==
               doctest::Approx(row.at("t_max_us") * 1e-6).epsilon(0.01));  // to a step of 1/500
+        worst_depth = std::max(worst_depth, std::abs(deepest / (row.at("delta_max_um") * 1e-6) - 1));
+        worst_time = std::max(worst_time, std::abs((at_deepest - begin) / (row.at("t_max_us") * 1e-6) - 1));
+        worst_duration = std::max(worst_duration, std::abs((last_push - begin) / duration - 1));
     }
+    MESSAGE("relative errors: greatest overlap " << worst_depth << ", its time " << worst_time
+                                                 << ", duration " << worst_duration);
 }
 
 TEST_CASE("oblique impact in gross sliding: rebound speed and spin (dem06)") {

@@ -24,6 +24,7 @@ struct Scene {
         Clump clump{};
         Real density = 2650;  ///< [kg/m3]
         BodyState state{};
+        bool fixed = false;  ///< never moves, whatever hits it
     };
 
     Vec3 gravity{0, 0, -standard_gravity};  ///< [m/s2]
@@ -43,6 +44,14 @@ struct Scene {
     }
     Scene& add_stone(Clump clump, const BodyState& state, Real density = 2650) {
         stones.push_back({std::move(clump), density, state});
+        return *this;
+    }
+    /// A stone that never moves: of a rough bed, or an obstacle.
+    Scene& add_fixed(Clump clump, const Vec3& position,
+                     const Quaternion& orientation = Quaternion::Identity()) {
+        stones.push_back({.clump = std::move(clump),
+                          .state = {.position = position, .orientation = orientation},
+                          .fixed = true});
         return *this;
     }
     Scene& add_wall(const Vec3& point, const Vec3& normal) {

@@ -49,7 +49,7 @@ struct State {
         if (scene.feed) feed.emplace(*scene.feed);
         if (scene.concrete) add_concrete(*scene.concrete);
         for (const Scene::Stone& stone : scene.stones)
-            particles.add(stone.clump, stone.density, stone.state, Kind::stone);
+            particles.add(stone.clump, stone.density, stone.state, stone.fixed ? Kind::fixed : Kind::stone);
     }
 
     P policies;
