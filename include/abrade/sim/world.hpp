@@ -10,9 +10,9 @@ namespace abrade {
 
 /// What the engine finds wrong with a step.
 struct Trouble {
-    enum class Cause : std::uint8_t { none, not_finite, lost, overlap } cause = Cause::none;
+    enum class Cause : std::uint8_t { none, not_finite, lost, overlap, step_too_long } cause = Cause::none;
     Index body = -1, other = -1;  ///< bodies; `other` is negative for a boundary
-    Real measure = 0;             ///< overlap over the smaller radius [-]
+    Real measure = 0;             ///< overlap over the smaller radius [-]; a stable step [s]
     Real speed = 0;               ///< of approach [m/s]
 };
 
