@@ -9,6 +9,8 @@
 
 namespace abrade::charts {
 
+constexpr Real ball_diameter = 0.02, pressed_by = 1e-9, stone_density = 2650;  ///< [m], [m], [kg/m3]
+
 /// Bodies at rest, pressed together only just: then contacts are as good as linear, and a row does not
 /// buckle.
 struct Bed {
@@ -16,6 +18,7 @@ struct Bed {
         Clump clump{};
         BodyState state{};
         Kind kind = Kind::stone;
+        Real mass() const { return stone_density * clump.volume; }  ///< [kg]
     };
     std::vector<Body> bodies{};
     std::vector<Plane> walls{};
@@ -28,8 +31,6 @@ struct Bed {
         return scene;
     }
 };
-
-constexpr Real ball_diameter = 0.02, pressed_by = 1e-9, stone_density = 2650;  ///< [m], [m], [kg/m3]
 
 inline Bed::Body ball_at(const Vec3& position, Kind kind = Kind::stone) {
     return {make_clump("ball", {{Vec3::Zero(), 0.5 * ball_diameter}}), {.position = position}, kind};
@@ -86,13 +87,12 @@ Bed poured_bed(const Clump& clump, Real width, int layers, const Settling& law) 
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY())})
         scene.add_wall(Vec3::Zero(), axis).add_wall(side * axis, -axis);
-    for (int stop = 0; stop < 200; ++stop) {
+    for (int stop = 0; stop < 12; ++stop) {
         auto sim = simulate(scene).contact(law);
-        sim.run({.end_time = stop == 0 ? 0.4 : 0.02});
+        sim.run({.end_time = stop == 0 ? 0.6 : 0.02});
         const Particles& p = sim.particles();
         for (std::size_t b = 0; b < p.position.size(); ++b)
             scene.stones[b].state = {.position = p.position[b], .orientation = p.orientation[b]};
-        if (stop > 0 && sim.ledger().kinetic < 1e-17) break;
     }
     Bed bed{.bodies = {}, .walls = scene.walls, .gravity = scene.gravity, .shaking = 1e-6};
     for (const Scene::Stone& stone : scene.stones) bed.bodies.push_back({clump, stone.state, Kind::stone});
@@ -112,6 +112,17 @@ public:
     /// What `StableStepNow` says [s].
     Real predicted() const {
         return StableStepNow(world_.state()).of_touching(std::numeric_limits<Real>::infinity()).seconds;
+    }
+    /// Normal stiffness of the stiffest contact [N/m].
+    Real stiffest() const {
+        Real most = 0;
+        world_.each_contact([&](Index, Index, const ContactKinematics<Real>& contact, const auto&) {
+            if constexpr (requires { world_.state().policies.contact.rigidity(contact); })
+                most = std::max(most, world_.state().policies.contact.rigidity(contact).normal);
+            else
+                most = world_.state().policies.contact.rigidity(0.0).normal;
+        });
+        return most;
     }
     /// Whether kinetic energy grows a thousandfold over what it started with, or had fallen to by damping;
     /// but not over less than a millionth of the start, where round-off lies.
