@@ -51,7 +51,7 @@ Summary stability(const OutputFolder& folder) {
         measure(rows, beds[1], row_bed(20), law_name, law);
         measure(rows, beds[2], crystal_bed(2), law_name, law);
         measure(rows, beds[3], poured_bed(ball, 1.05 * ball_diameter, 3, law(0.5, 0.0)), law_name, law);
-        measure(rows, beds[4], poured_bed(stone, 0.036, 2, law(0.5, 0.0)), law_name, law);
+        measure(rows, beds[4], poured_bed(stone, 0.042, 2, law(0.5, 0.0)), law_name, law);
     };
     all("LinearSpring", linear_law);
     all("HertzMindlin", hertz_law);
