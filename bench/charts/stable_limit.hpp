@@ -68,6 +68,27 @@ inline Bed crystal_bed(int cells) {
     return bed;
 }
 
+/// Bricks of eight overlapping balls, stacked five wide, deep and high, the outermost fixed: each other one
+/// touches its neighbours with 24 balls, none of them on a line through its centre.
+inline Bed clump_bed() {
+    std::vector<Sphere> balls;
+    const Real r = 0.5 * ball_diameter;
+    for (int n = 0; n < 8; ++n)
+        balls.push_back({r * Vec3(n % 2 ? 1 : -1, n / 2 % 2 ? 0.9 : -0.9, n / 4 ? 0.8 : -0.8), r});
+    const Clump clump = make_clump("brick", balls);  // its axes may have changed places
+    const Vec3 pitch = (2 * (clump.members[0].centre.cwiseAbs().array() + r) - pressed_by).matrix();
+    Bed bed;
+    for (int x = 0; x < 5; ++x)
+        for (int y = 0; y < 5; ++y)
+            for (int z = 0; z < 5; ++z) {
+                const bool rim = std::min({x, y, z}) == 0 || std::max({x, y, z}) == 4;
+                bed.bodies.push_back({clump,
+                                      {.position = pitch.cwiseProduct(Vec3(x, y, z))},
+                                      rim ? Kind::fixed : Kind::stone});
+            }
+    return bed;
+}
+
 /// `layers` of nine bodies, poured into a box and brought to rest under their weight: they are stopped again
 /// and again until they hardly start to move any more. They keep no tangential springs.
 template <class Settling>

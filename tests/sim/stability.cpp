@@ -123,21 +123,24 @@ Real predicted_step(const System& s) {
 
 }  // namespace
 
-TEST_CASE("contacts as they stand: pair, row and crystal, LinearSpring") {
+TEST_CASE("contacts as they stand: pair, row, crystal and clumps, LinearSpring") {
     check_limits("pair", pair_bed(), linear_law, true);
     check_limits("row", row_bed(20), linear_law);
     check_limits("crystal", crystal_bed(2), linear_law);
+    check_limits("clumps", clump_bed(), linear_law);
 }
 
-TEST_CASE("contacts as they stand: pair, row and crystal, HertzMindlin") {
+TEST_CASE("contacts as they stand: pair, row, crystal and clumps, HertzMindlin") {
     check_limits("pair", pair_bed(), hertz_law, true);
     check_limits("row", row_bed(20), hertz_law);
     check_limits("crystal", crystal_bed(2), hertz_law);
+    check_limits("clumps", clump_bed(), hertz_law);
 }
 
 TEST_CASE("contacts as they stand: a poured packing") {
     const Clump ball = make_clump("ball", {{Vec3::Zero(), 0.5 * ball_diameter}});
     check_limits("balls", poured_bed(ball, 1.05 * ball_diameter, 2, linear_law(0.5, 0)), linear_law);
+    check_limits("balls", poured_bed(ball, 1.05 * ball_diameter, 2, hertz_law(0.5, 0)), hertz_law);
 }
 
 TEST_CASE("bonded block, with and without damping") {
