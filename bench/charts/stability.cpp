@@ -82,7 +82,7 @@ Summary stability(const OutputFolder& folder) {
 
     PanelChart map{.title = "Largest stable step, measured, over 2/omega of a lone elastic contact",
                    .x = {.label = "restitution", .min = 0.05, .max = 1.05},
-                   .y = {.label = "step over 2/omega", .min = 0.01, .max = 3, .logarithmic = true},
+                   .y = {.label = "step over 2/omega", .min = 0.005, .max = 3, .logarithmic = true},
                    .names = beds};
     PanelChart shares{.title = "Predicted over measured stable step: must lie between 0.5 and 1",
                       .x = map.x,

@@ -139,8 +139,8 @@ TEST_CASE("contacts as they stand: pair, row, crystal and clumps, HertzMindlin")
 
 TEST_CASE("contacts as they stand: a poured packing") {
     const Clump ball = make_clump("ball", {{Vec3::Zero(), 0.5 * ball_diameter}});
-    check_limits("balls", poured_bed(ball, 1.05 * ball_diameter, 2, linear_law(0.5, 0)), linear_law);
-    check_limits("balls", poured_bed(ball, 1.05 * ball_diameter, 2, hertz_law(0.5, 0)), hertz_law);
+    check_limits("balls", poured_bed(ball, 1.05 * ball_diameter, 3, linear_law(0.5, 0)), linear_law);
+    check_limits("balls", poured_bed(ball, 1.05 * ball_diameter, 3, hertz_law(0.5, 0)), hertz_law);
 }
 
 TEST_CASE("bonded block, with and without damping") {
