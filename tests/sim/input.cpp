@@ -56,10 +56,10 @@ TEST_CASE("run options: each is checked") {
 TEST_CASE("a time step above the stable one: the message has the stable step, what sets it and the remedy") {
     auto probe = simulate(one_stone()).contact(law);
     probe.run({.end_time = 0});
-    const Real stable = probe.stable_time_step().seconds;
+    const Real stable = probe.stable_step_now().seconds;
     const std::string said = run(one_stone(), {.end_time = 1, .time_step = 1.01 * stable});
     CHECK(has(said, "RunOptions.time_step must be at most the stable step of " + to_text(stable) +
-                        " s (contacts of the lightest stone), got " + to_text(1.01 * stable) + " s"));
+                        " s (first touch of the lightest stone), got " + to_text(1.01 * stable) + " s"));
     CHECK(has(said, "take a smaller step"));
     CHECK(run(one_stone(), {.end_time = 10 * stable, .time_step = 0.99 * stable}) == "nothing was thrown");
 }

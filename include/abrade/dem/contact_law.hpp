@@ -45,13 +45,13 @@ struct ContactRigidity {
     Real damping_ratio = 0;           ///< share of critical damping [-]
 };
 
-/// Stable step [s] of a sphere in the midst of twelve others, the most that can touch it, three of them
-/// damping at a time. With k_n, k_t the springs, m the mass and dashpots c = 2 zeta sqrt(k m/2):
+/// A step [s] to begin with for a sphere that may come into the midst of twelve others, the most that can
+/// touch it. With k_n, k_t the springs, m the mass and dashpots c = 2 zeta sqrt(k m/2):
 ///   dt = 2 / (sqrt(omega^2 + c^2) + c),
 ///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(2 (c_n + 2 c_t), 10 c_t) / m.
 /// omega^2: twice the stiffness of twelve contacts, of which four point along any axis (8 k_n) while all
-/// twelve hold it from turning, against the inertia 0.4 m r^2. c counts in full, not by half: dashpots see a
-/// velocity predicted from the last acceleration.
+/// twelve hold it from turning, against the inertia 0.4 m r^2. c is that of three contacts: collisions, not
+/// pressed beds. What contacts allow as they stand is for the engine to see (sim/stability.hpp).
 inline Real stable_dt_among_twelve(const ContactRigidity& contact, Real mass) noexcept {
     const Real kn = contact.normal, kt = contact.tangential;
     const Real root = 2 * contact.damping_ratio * std::sqrt(0.5 * mass);
@@ -64,9 +64,10 @@ inline Real stable_dt_among_twelve(const ContactRigidity& contact, Real mass) no
 /// A contact law is a pure function of kinematics and memory.
 /// - `Memory<Number>` value-initialises to "no contact yet";
 /// - `respond` handles overlap <= 0 too: no force, the memory cleared, what it still stored booked as lost;
-/// - `stable_dt(mass, radius)` is a time step [s] that is safe for a sphere of that mass and radius in the
-///   densest surroundings;
-/// - `rigidity(radius)` lets the engine sum up what acts on one body.
+/// - `stable_dt(mass, radius)` is a time step [s] to begin with, for a sphere of that mass and radius in
+///   dense surroundings;
+/// - `rigidity(radius)` lets the engine sum up what acts on one body. A law whose contacts stiffen also
+///   offers `rigidity(contact)`, of a contact as it stands.
 // clang-format off
 template <class L>
 concept RemembersContacts = requires { typename L::template Memory<Real>; } &&
@@ -165,9 +166,9 @@ struct SlidingSpring {
 
         // With the share of the spring that is kept, and that of the dashpot that acts.
         const auto answer = [&](Number kept, Number acting, Number slipped) -> SlidingSpring {
-            const Vec3Of<Number> spring = kept * trial;
+            const Vec3Of<Number> left = kept * trial;
             const Number damping = acting * dashpot;
-            return {-k.value * spring - damping * slip, spring, Number(0.5) * k.value * kept * kept * trial2,
+            return {-k.value * left - damping * slip, left, Number(0.5) * k.value * kept * kept * trial2,
                     slipped + damping * slip2 * Number(dt)};
         };
         if (!any(slides)) return answer(Number(1), Number(1), Number(0));

@@ -168,17 +168,30 @@ public:
     Real effective_shear() const noexcept { return effective_shear_; }    ///< G* [Pa]
     Real damping_ratio() const noexcept { return damping_ratio_; }
 
-    /// Tangents of the force at the largest overlap, against an equal sphere.
+    /// Tangents of the force at the largest overlap, against an equal sphere; without friction nothing acts
+    /// across the normal.
     ContactRigidity rigidity(Real radius) const noexcept {
-        const Real half_width = radius * std::sqrt(0.5 * params_.largest_overlap);
-        return {2 * effective_youngs_ * half_width, 8 * effective_shear_ * half_width,
-                std::sqrt(5.0 / 6) * damping_ratio_};
+        return of_friction(tangents(radius * std::sqrt(0.5 * params_.largest_overlap)));
+    }
+    /// The same of a contact as it stands.
+    ContactRigidity rigidity(const ContactKinematics<Real>& contact) const noexcept {
+        return of_friction(tangents(std::sqrt(std::max(contact.overlap, 0.0) / contact.curvature)));
     }
     Real stable_dt(Real mass, Real radius) const noexcept {
-        return stable_dt_among_twelve(rigidity(radius), mass);
+        return stable_dt_among_twelve(tangents(radius * std::sqrt(0.5 * params_.largest_overlap)), mass);
     }
 
 private:
+    /// Where the area of contact has this half width [m].
+    ContactRigidity tangents(Real half_width) const noexcept {
+        return {2 * effective_youngs_ * half_width, 8 * effective_shear_ * half_width,
+                std::sqrt(5.0 / 6) * damping_ratio_};
+    }
+    ContactRigidity of_friction(ContactRigidity contact) const noexcept {
+        if (params_.friction == 0) contact.tangential = 0;
+        return contact;
+    }
+
     Params params_;
     Real effective_youngs_ = 0, effective_shear_ = 0, damping_ratio_ = 0;
 };

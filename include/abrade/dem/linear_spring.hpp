@@ -90,11 +90,12 @@ public:
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
     Real damping_ratio() const noexcept { return damping_ratio_; }
 
+    /// Without friction nothing acts across the normal.
     ContactRigidity rigidity(Real /*radius*/) const noexcept {
-        return {stiffness(), tangential_stiffness(), damping_ratio_};
+        return {stiffness(), params_.friction > 0 ? tangential_stiffness() : 0, damping_ratio_};
     }
-    Real stable_dt(Real mass, Real radius) const noexcept {
-        return stable_dt_among_twelve(rigidity(radius), mass);
+    Real stable_dt(Real mass, Real /*radius*/) const noexcept {
+        return stable_dt_among_twelve({stiffness(), tangential_stiffness(), damping_ratio_}, mass);
     }
 
 private:

@@ -2,37 +2,14 @@
 // One simulation from four policies: the builder, the loop and its guards.
 
 #include <abrade/dem/linear_spring.hpp>
+#include <abrade/sim/run_options.hpp>
 #include <abrade/sim/snapshot.hpp>
-#include <abrade/sim/stability.hpp>
-#include <abrade/sim/world.hpp>
+#include <abrade/sim/trouble_text.hpp>
 
 #include <chrono>
-#include <functional>
 #include <ostream>
 
 namespace abrade {
-
-/// A run that went wrong: caught in the step where it arose. `Simulation::last_good()` holds the last state
-/// known to be sound.
-struct RunError : std::runtime_error {
-    RunError(const std::string& what, Index step_, Real time_, Index id_)
-        : std::runtime_error(what), step(step_), time(time_), id(id_) {}
-    Index step;  ///< in which it arose
-    Real time;   ///< [s]
-    Index id;    ///< of the body
-};
-
-struct RunOptions {
-    Real end_time = 0;       ///< [s]
-    Real time_step = 0;      ///< [s]; 0: `safety` times the stable step
-    Real safety = 0.5;       ///< share of the stable step that is taken [-]
-    Real observe_every = 0;  ///< [s]; 0: at the start and at the end only
-    Real skin = 0;           ///< of the neighbour list [m]; 0: a quarter of the smallest radius
-    /// Whether bodies that nothing can touch soon take their steps as one: faster where most fly, the same
-    /// but for round-off.
-    bool free_flight = true;
-    std::function<bool()> stop{};  ///< asked now and then; true ends the run cleanly
-};
 
 /// Stands in the contact slot until `.contact(law)` fills it.
 struct ContactLawIsMissing {};
@@ -124,9 +101,12 @@ public:
 
     Real time() const noexcept { return time_; }  ///< [s]
     Index steps() const noexcept { return step_; }
-    Real time_step() const noexcept { return time_step_; }  ///< [s]
-    const StableStep& stable_time_step() const noexcept { return stable_; }
-    bool stopped() const noexcept { return stopped_; }  ///< by RunOptions::stop
+    Real time_step() const noexcept { return time_step_; }                   ///< [s]
+    const StableStep& stable_time_step() const noexcept { return stable_; }  ///< of dense surroundings
+    /// What contacts and bonds allow as they stand, and a first touch of each body.
+    StableStep stable_step_now() const { return StableStepNow(world().state()).of_all(); }
+    Index times_shortened() const noexcept { return shortened_; }  ///< the step, for contacts as they stood
+    bool stopped() const noexcept { return stopped_; }             ///< by RunOptions::stop
     Real wall_seconds() const noexcept { return wall_seconds_; }
     const Ledger& ledger() const noexcept { return ledger_; }  ///< as of the last observation
     // These throw std::logic_error before the first run: there is nothing to show yet.
@@ -170,6 +150,8 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     static constexpr Index steps_between_checks = 64, steps_between_snapshots = 400;
+    /// Share of what contacts allow as they stand that is taken where `safety` would have taken more [-].
+    static constexpr Real share_of_now = 0.9;
 
     static Real seconds_since(Clock::time_point start) {
         return std::chrono::duration<Real>(Clock::now() - start).count();
@@ -188,13 +170,17 @@ private:
             balance();
             observer(std::as_const(*this));
         };
-        const Index steps = steps_to(options.end_time);
-        if (steps > 0) time_step_ = (options.end_time - start) / steps;  // so that the last step ends on time
-        Real next_observation = start + options.observe_every;
+        Real begun = 0, next_observation = start + options.observe_every;
+        Index steps = 0, n = 0;
+        const auto plan = [&] {
+            begun = time_, n = 0, steps = steps_to(options.end_time);
+            if (steps > 0) time_step_ = (options.end_time - begun) / steps;  // so that the last ends on time
+        };
+        plan();
         show();
-        for (Index n = 0; n < steps && !stopped_; ++n) {
-            const bool last = n + 1 == steps;
-            do_step(start + n * time_step_);
+        while (n < steps && !stopped_) {
+            do_step(begun + n * time_step_);
+            const bool last = ++n == steps;
             if (last) time_ = options.end_time;
             if (step_ % steps_between_checks == 0 && options.stop && options.stop()) stopped_ = true;
             if (last || stopped_ ||
@@ -202,8 +188,19 @@ private:
                 next_observation += options.observe_every;
                 show();
             }
+            if (step_ % steps_between_snapshots == 0 && !last && shorten(options)) plan();
         }
         wall_seconds_ = wall_before + seconds_since(clock_start);
+    }
+
+    /// Sees whether contacts, as they stand, still allow the step. One that was asked for is not changed.
+    bool shorten(const RunOptions& options) {
+        const StableStep now = StableStepNow(world_->state()).of_touching(time_step_);
+        if (!(now.seconds < time_step_) || now.seconds == 0) return false;
+        if (options.time_step > 0) raise({Trouble::Cause::step_too_long, now.body, -1, now.seconds});
+        time_step_ = share_of_now * now.seconds;
+        ++shortened_;
+        return true;
     }
 
     Index steps_to(Real end_time) const {
@@ -234,13 +231,19 @@ private:
         world_->set_free_flight(options.free_flight);
         if (!opened_) open();
         stopped_ = false;
-        time_step_ = options.time_step > 0 ? options.time_step : options.safety * stable_.seconds;
-        require(time_step_ <= stable_.seconds,
+        if (options.time_step > 0) {
+            const StableStep now = stable_step_now();
+            require(
+                options.time_step <= now.seconds,
                 {"RunOptions.time_step",
-                 "at most the stable step of " + to_text(stable_.seconds) + " s (" +
-                     std::string(stable_.limit) + ")",
+                 "at most the stable step of " + to_text(now.seconds) + " s (" + std::string(now.limit) + ")",
                  "s", "take a smaller step, softer springs or heavier spheres"},
-                time_step_);
+                options.time_step);
+            time_step_ = options.time_step;
+        } else {
+            time_step_ = options.safety * stable_.seconds;
+            shorten(options);
+        }
         if (!std::isfinite(time_step_)) {  // nothing moves
             const Real left = std::max(options.end_time - time_, 1e-300);
             time_step_ = options.observe_every > 0 ? std::min(options.observe_every, left) : left;
@@ -258,8 +261,9 @@ private:
     void open() {
         world_->open(time_);
         if (const Trouble trouble = world_->take_trouble(); trouble.cause == Trouble::Cause::overlap) {
+            const TroubleText say(*world_, time_step_);
             const std::string what =
-                "Scene: overlap of " + name_of(trouble.body) + " with " + name_of(trouble.other);
+                "Scene: overlap of " + say.name_of(trouble.body) + " with " + say.name_of(trouble.other);
             world_.reset();
             require(false,
                     {what, "at most " + to_text(100 * World::overlap_limit) + " % of the smaller radius", "%",
@@ -279,64 +283,12 @@ private:
             raise(trouble);
     }
 
-    std::string name_of(Index body) const {
-        if (body < 0) return "Scene.walls[" + std::to_string(-1 - body) + "]";
-        static constexpr std::string_view kinds[] = {"stone", "concrete sphere", "concrete grain",
-                                                     "fixed sphere"};
-        const Particles& p = world_->particles();
-        const auto b = static_cast<std::size_t>(body);
-        return std::string(kinds[static_cast<std::size_t>(p.kind[b])]) + " with id " +
-               std::to_string(p.id[b]);
-    }
-
-    /// What would have kept the two apart.
-    std::string remedy(const Trouble& trouble) const {
-        if (trouble.bonded) return "stiffer bonds or a smaller load are needed";
-        const ImpactRemedy found =
-            ImpactInquiry<C>(contact_, trouble.contact, time_step_, World::overlap_limit).remedy();
-        if (found.met_at == 0) return "something presses them together: stiffer springs are needed";
-        const std::string met = "they met at " + short_text(found.met_at) + " m/s along their normal: ";
-        if (found.time_step > 0)
-            return met + "a time step of " + short_text(0.999 * found.time_step) +
-                   " s would have been enough: then they reach " + short_text(100 * found.deepest) + " %";
-        return met + "no time step is enough, alone they reach " + short_text(100 * found.deepest) +
-               " %; springs " + short_text(1.001 * found.times_as_stiff) +
-               " times as stiff would have been, with a step of " +
-               short_text(time_step_ / std::sqrt(found.times_as_stiff)) + " s, or a speed of " +
-               short_text(0.999 * found.speed) + " m/s";
-    }
-
     [[noreturn]] void raise(const Trouble& trouble) {
         world_->publish_places();
-        const Particles& p = world_->particles();
-        const auto b = static_cast<std::size_t>(trouble.body);
-        const auto place = [&] {
-            return "x = (" + short_text(p.position[b].x()) + ", " + short_text(p.position[b].y()) + ", " +
-                   short_text(p.position[b].z()) + ") m, speed " + short_text(p.velocity[b].norm()) + " m/s";
-        };
-        std::string text = "step " + std::to_string(step_) + " (t = " + short_text(time_) +
-                           " s, dt = " + short_text(time_step_) + " s): ";
-        switch (trouble.cause) {
-            case Trouble::Cause::lost:
-                text += name_of(trouble.body) + " left the world's bounds, " + place();
-                break;
-            case Trouble::Cause::overlap:
-                text += name_of(trouble.body) + " overlaps " + name_of(trouble.other) + " by " +
-                        short_text(100 * trouble.measure) + " % of the smaller radius (limit " +
-                        short_text(100 * World::overlap_limit) + " %), " + place() + "; " + remedy(trouble);
-                break;
-            case Trouble::Cause::outran_period:
-                text += name_of(trouble.body) + " is so fast that neighbour lists would need a skin wider " +
-                        "than the periodic axes have room for, " + place() +
-                        "; widen Scene.bounds or take a smaller step";
-                break;
-            default:
-                text +=
-                    "velocity of " + name_of(trouble.body) + " is not finite or beyond 10 km/s, " + place();
-                break;
-        }
-        text += "; the last good state is that of t = " + short_text(last_good_.time) + " s";
-        throw RunError(text, step_, time_, p.id[b]);
+        throw RunError("step " + std::to_string(step_) + " (t = " + short_text(time_) + " s, dt = " +
+                           short_text(time_step_) + " s): " + TroubleText(*world_, time_step_).of(trouble) +
+                           "; the last good state is that of t = " + short_text(last_good_.time) + " s",
+                       step_, time_, particles().id[static_cast<std::size_t>(trouble.body)]);
     }
 
     void balance() { ledger_ = world_->publish(); }
@@ -360,7 +312,7 @@ private:
     StableStep stable_;
     Snapshot last_good_;
     Real time_ = 0, time_step_ = 0;
-    Index step_ = 0, remembered_ = 0;
+    Index step_ = 0, remembered_ = 0, shortened_ = 0;
     bool opened_ = false, stopped_ = false;
     Real wall_seconds_ = 0;
 };

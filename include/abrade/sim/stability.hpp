@@ -1,8 +1,8 @@
 #pragma once
-// The largest stable time step of a scene, from its masses and springs.
+// Stable time steps: one to begin with, from the scene, and what contacts and bonds allow as they stand.
 
-#include <abrade/bond/network.hpp>
-#include <abrade/sim/feed.hpp>
+#include <abrade/dem/body_stiffness.hpp>
+#include <abrade/sim/state.hpp>
 
 #include <limits>
 #include <string_view>
@@ -12,54 +12,12 @@ namespace abrade {
 struct StableStep {
     Real seconds = std::numeric_limits<Real>::infinity();
     std::string_view limit = "nothing moves";  ///< what sets it
+    Index body = -1;                           ///< that sets it, -1: one still to be fed
 
-    void lower(Real candidate, std::string_view reason) noexcept {
-        if (candidate < seconds) seconds = candidate, limit = reason;
+    void lower(Real candidate, std::string_view reason, Index whose = -1) noexcept {
+        if (candidate < seconds) seconds = candidate, limit = reason, body = whose;
     }
 };
-
-namespace detail {
-
-/// Stiffness and damping that act on one sphere, as a matrix over (displacement, rotation x radius) divided
-/// by (mass, inertia / radius^2). Twice the largest row sum bounds omega^2 of the whole system: a spring
-/// 1/2 k |a_i - a_j|^2 is at most k (|a_i|^2 + |a_j|^2), and no eigenvalue exceeds the largest row sum
-/// (S. Gerschgorin, 1931).
-class SphereStiffness {
-public:
-    explicit SphereStiffness(Real mass) noexcept : per_mass_(1 / mass), per_inertia_(1 / (0.4 * mass)) {}
-
-    /// A link along the unit vector n, at one radius from the centre.
-    void add(const Vec3& n, Real normal, Real tangential) noexcept {
-        const Mat3 along = n * n.transpose();
-        const Mat3 across = Mat3::Identity() - along;
-        translation_ += normal * along + tangential * across;
-        rotation_ += tangential * across;
-        lever_ += tangential * n;
-    }
-    /// `count` links from anywhere.
-    void add_anywhere(int count, Real normal, Real tangential) noexcept {
-        translation_.diagonal().array() += count * std::max(normal, tangential);
-        rotation_.diagonal().array() += count * tangential;
-    }
-
-    Real bound() const noexcept {
-        const Real coupling = lever_.cwiseAbs().sum() * std::sqrt(per_mass_ * per_inertia_);
-        const Real moving = translation_.cwiseAbs().rowwise().sum().maxCoeff() * per_mass_;
-        const Real turning = rotation_.cwiseAbs().rowwise().sum().maxCoeff() * per_inertia_;
-        return 2 * (std::max(moving, turning) + coupling);
-    }
-
-private:
-    Real per_mass_, per_inertia_;
-    Mat3 translation_ = Mat3::Zero(), rotation_ = Mat3::Zero();
-    Vec3 lever_ = Vec3::Zero();
-};
-
-/// 2 / (sqrt(omega^2 + c^2) + c) for omega^2 and c bounded as above. c counts in full, not by half: dashpots
-/// see a velocity predicted from the last acceleration.
-inline Real damped_step(Real omega2, Real c) noexcept { return 2 / (std::sqrt(omega2 + c * c) + c); }
-
-}  // namespace detail
 
 /// A clump is as stable as a sphere of this mass: its own, or what its smallest inertia amounts to at its
 /// farthest point.
@@ -67,55 +25,91 @@ inline Real stability_mass(Real mass, Real smallest_inertia, Real bounding_radiu
     return std::min(mass, smallest_inertia / (0.4 * square(bounding_radius)));
 }
 
-/// Stable step of bodies under a contact law, and of bonded spheres under the bonds that they really have
-/// and up to two contacts more.
+/// So many stones may touch a bonded sphere at once, beside its bonds.
+inline constexpr int contacts_of_concrete = 2;
+
+namespace detail {
+
+inline BodyStiffness::Body stiff_body(const Particles& particles, Index b, const Quaternion& orientation) {
+    const auto i = static_cast<std::size_t>(b);
+    return {particles.inverse_mass[i], particles.inverse_inertia[i], orientation};
+}
+
+/// Farthest point of a body from its centre, and its largest sphere [m].
+struct Extent {
+    Real reach = 0, largest = 0;
+};
+inline Extent extent_of(const Particles& particles, Index body) {
+    const auto b = static_cast<std::size_t>(body);
+    const auto first = static_cast<std::size_t>(particles.first_sphere[b]);
+    Extent e;
+    for (std::size_t s = first; s < first + static_cast<std::size_t>(particles.sphere_count[b]); ++s) {
+        e.reach = std::max(e.reach, particles.offset[s].norm() + particles.radius[s]);
+        e.largest = std::max(e.largest, particles.radius[s]);
+    }
+    return e;
+}
+
+/// Calls `visit(body, normal, arm, link, partner_moves)` for both ends of each bond.
+template <BondLaw B, class Visit>
+void each_end(const Network<B>& network, const B& law, const Particles& particles, Visit&& visit) {
+    const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+    for (const auto& bond : network.bonds()) {
+        const Vec3 apart =
+            particles.centre[at(bond.spheres.first)] - particles.centre[at(bond.spheres.second)];
+        const Vec3 n = apart.normalized();
+        const Real lambda = apart.norm() / (particles.radius[at(bond.spheres.first)] +
+                                            particles.radius[at(bond.spheres.second)]);
+        const LinkRigidity link = LinkRigidity::damped(law.stiffness(), law.tangential_stiffness(),
+                                                       law.damping_ratio(), bond.effective_mass);
+        const auto moves = [&](Index body) { return particles.inverse_mass[at(body)] > 0; };
+        visit(bond.bodies.first, n, Vec3(-lambda * particles.radius[at(bond.spheres.first)] * n), link,
+              moves(bond.bodies.second));
+        visit(bond.bodies.second, n, Vec3(lambda * particles.radius[at(bond.spheres.second)] * n), link,
+              moves(bond.bodies.first));
+    }
+}
+
+}  // namespace detail
+
+/// A step to begin with: for stones what the law says of dense surroundings, for bonded spheres what the
+/// bonds that they have and two contacts more allow.
 template <ContactLaw C, BondLaw B>
 StableStep stable_step(const C& contact, const B& bond, const Particles& particles, const Network<B>& network,
                        const std::optional<FeedParams>& feed) {
     StableStep step;
     const auto at = [](Index i) { return static_cast<std::size_t>(i); };
-    const auto dashpot = [](Real ratio, Real k, Real mass) { return 2 * ratio * std::sqrt(k * mass); };
-    std::vector<Index> held(at(particles.bodies()), -1);  // [body] its place among those below
-    std::vector<detail::SphereStiffness> stiffness, damping;
-    for (const auto& bonded : network.bonds()) {
-        const Vec3 n =
-            (particles.centre[at(bonded.spheres.first)] - particles.centre[at(bonded.spheres.second)])
-                .normalized();
-        for (const Index body : {bonded.bodies.first, bonded.bodies.second}) {
-            if (particles.inverse_mass[at(body)] == 0) continue;
-            if (held[at(body)] < 0) {
-                held[at(body)] = static_cast<Index>(stiffness.size());
-                stiffness.emplace_back(particles.mass[at(body)]),
-                    damping.emplace_back(particles.mass[at(body)]);
-            }
-            stiffness[at(held[at(body)])].add(n, bond.stiffness(), bond.tangential_stiffness());
-            damping[at(held[at(body)])].add(
-                n, dashpot(bond.damping_ratio(), bond.stiffness(), bonded.effective_mass),
-                dashpot(bond.damping_ratio(), bond.tangential_stiffness(), bonded.effective_mass));
-        }
-    }
+    std::vector<Index> held(at(particles.bodies()), -1);  // [body] its place among the bonded
+    std::vector<BodyStiffness> bonded;
+    detail::each_end(network, bond, particles,
+                     [&](Index b, const Vec3& n, const Vec3& arm, const LinkRigidity& link, bool moves) {
+                         if (particles.inverse_mass[at(b)] == 0) return;
+                         if (held[at(b)] < 0) {
+                             held[at(b)] = static_cast<Index>(bonded.size());
+                             bonded.emplace_back();
+                         }
+                         bonded[at(held[at(b)])].add(
+                             detail::stiff_body(particles, b, particles.orientation[at(b)]), n, arm, link,
+                             moves);
+                     });
     for (Index b = 0; b < particles.bodies(); ++b) {
         const auto i = at(b);
         if (particles.inverse_mass[i] == 0) continue;
         const Real mass = particles.mass[i];
+        const detail::Extent extent = detail::extent_of(particles, b);
         if (held[i] < 0) {
-            Real reach = 0;
-            for (Index s = particles.first_sphere[i];
-                 s < particles.first_sphere[i] + particles.sphere_count[i]; ++s)
-                reach = std::max(reach, particles.offset[at(s)].norm() + particles.radius[at(s)]);
             step.lower(contact.stable_dt(
-                           stability_mass(mass, 1 / particles.inverse_inertia[i].maxCoeff(), reach), reach),
-                       "contacts of the lightest stone");
+                           stability_mass(mass, 1 / particles.inverse_inertia[i].maxCoeff(), extent.reach),
+                           extent.reach),
+                       "contacts of the lightest stone", b);
             continue;
         }
-        const Real radius = particles.radius[at(particles.first_sphere[i])];
-        const ContactRigidity touch = contact.rigidity(radius);
-        detail::SphereStiffness &k = stiffness[at(held[i])], &c = damping[at(held[i])];
-        k.add_anywhere(2, touch.normal, touch.tangential);
-        c.add_anywhere(2, dashpot(touch.damping_ratio, touch.normal, mass),
-                       dashpot(touch.damping_ratio, touch.tangential, mass));
-        step.lower(detail::damped_step(k.bound(), c.bound()), "bonded concrete");
-        step.lower(contact.stable_dt(mass, radius), "contacts of loose concrete");
+        const ContactRigidity touch = contact.rigidity(extent.largest);
+        BodyStiffness& own = bonded[at(held[i])];
+        own.add_anywhere(detail::stiff_body(particles, b, particles.orientation[i]), contacts_of_concrete,
+                         LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio, mass));
+        step.lower(own.step(step.seconds), "bonded concrete", b);
+        step.lower(contact.stable_dt(mass, extent.largest), "contacts of loose concrete", b);
     }
     if (feed)
         for (const StoneClass& stones : feed->classes) {
@@ -127,5 +121,145 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
         }
     return step;
 }
+
+/// What contacts and bonds allow as they stand (see BodyStiffness: never more than the true limit, never less
+/// than half of it), up to `most` [s]; and what a first touch of each body allows.
+template <class P>
+class StableStepNow {
+public:
+    explicit StableStepNow(const State<P>& state) : state_(state), held_(at(state.particles.bodies()), -1) {}
+
+    /// Of all bodies.
+    StableStep of_all(Real most = std::numeric_limits<Real>::infinity()) {
+        StableStep step = first_touch(most);
+        const Particles& p = state_.particles;
+        for (Index b = 0; b < p.bodies(); ++b) {
+            hold(b);
+            if (p.kind[at(b)] != Kind::concrete || held_[at(b)] < 0) continue;
+            const ContactRigidity touch = state_.policies.contact.rigidity(detail::extent_of(p, b).largest);
+            own_[at(held_[at(b)])].add_anywhere(
+                body_of(b), contacts_of_concrete,
+                LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio, p.mass[at(b)]));
+        }
+        return lowered(step, true);
+    }
+    /// Of bodies that touch others, where that is less than `most`; for a look now and then, as it passes
+    /// over all bodies that a cheap bound shows to be safe.
+    StableStep of_touching(Real most) {
+        StableStep step{most, "the step taken"};
+        std::vector<Real> sum(at(state_.particles.bodies()), 0);
+        each_contact_end([&](const End& end) {
+            sum[at(end.body)] += square(most) * end.most(end.link.normal, end.link.tangential) +
+                                 4 * most * end.most(end.link.normal_dashpot, end.link.tangential_dashpot);
+        });
+        for (Index b = 0; b < state_.particles.bodies(); ++b)
+            if (!(sum[at(b)] <= (state_.particles.site[at(b)] >= 0 ? 0 : 4))) hold(b);
+        return own_.empty() ? step : lowered(step, P::has_bonds);
+    }
+
+private:
+    static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// One body's side of a contact.
+    struct End {
+        Index body;
+        Vec3 normal, arm;
+        LinkRigidity link;
+        bool partner_moves;
+        Real inverse_mass, inverse_inertia;  ///< the latter the largest
+        /// Bounds the link's share of K or C.
+        Real most(Real along, Real across) const noexcept {
+            const Real turning = arm.squaredNorm() * inverse_inertia, mass = inverse_mass;
+            const Real lever = arm.cross(normal).squaredNorm() * inverse_inertia;
+            return (partner_moves ? 2 : 1) * (along * (mass + lever) + 2 * across * (mass + turning));
+        }
+    };
+
+    void hold(Index body) {
+        if (held_[at(body)] >= 0 || state_.particles.inverse_mass[at(body)] == 0) return;
+        held_[at(body)] = static_cast<Index>(own_.size());
+        own_.emplace_back();
+    }
+    BodyStiffness::Body body_of(Index b) const {
+        const Index clump = state_.store.clump_of(b);
+        return detail::stiff_body(
+            state_.particles, b,
+            clump < 0 ? Quaternion(Quaternion::Identity()) : state_.store.clumps[at(clump)].orientation);
+    }
+
+    StableStep lowered(StableStep step, bool with_bonds) {
+        const auto add = [&](Index b, const Vec3& n, const Vec3& arm, const LinkRigidity& link, bool moves) {
+            const Index own = held_[at(b)];
+            if (own >= 0) own_[at(own)].add(body_of(b), n, arm, link, moves);
+        };
+        each_contact_end([&](const End& e) { add(e.body, e.normal, e.arm, e.link, e.partner_moves); });
+        if (with_bonds) detail::each_end(state_.network, state_.policies.bond, state_.particles, add);
+        for (Index b = 0; b < state_.particles.bodies(); ++b) {
+            if (held_[at(b)] < 0) continue;
+            const bool bonded = state_.particles.kind[at(b)] == Kind::concrete;
+            step.lower(own_[at(held_[at(b)])].step(step.seconds),
+                       bonded ? "bonds and contacts as they stand" : "contacts as they stand", b);
+        }
+        return step;
+    }
+
+    /// One contact of each body with one like it, at any point of its surface.
+    StableStep first_touch(Real most) const {
+        StableStep step{most, "nothing moves"};
+        const Particles& p = state_.particles;
+        for (Index b = 0; b < p.bodies(); ++b) {
+            const auto i = at(b);
+            if (p.inverse_mass[i] == 0) continue;
+            const detail::Extent extent = detail::extent_of(p, b);
+            const ContactRigidity touch = state_.policies.contact.rigidity(extent.largest);
+            const auto link =
+                LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio, 0.5 * p.mass[i]);
+            const bool sphere = p.sphere_count[i] == 1;
+            const Real turning = p.inverse_mass[i] + square(extent.reach) * p.inverse_inertia[i].maxCoeff();
+            const auto strongest = [&](Real along, Real across) {
+                return 2 * std::max(along * (sphere ? p.inverse_mass[i] : turning), across * turning);
+            };
+            step.lower(damped_step(strongest(link.normal, link.tangential),
+                                   strongest(link.normal_dashpot, link.tangential_dashpot)),
+                       "first touch of the lightest stone", b);
+        }
+        return step;
+    }
+
+    template <class Visit>
+    void each_contact_end(Visit&& visit) const {
+        const SphereLines& lines = state_.store.lines;
+        state_.contacts.each_touching([&](const SlotPair& pair, const auto&, const Vec3&) {
+            const auto contact = contact_between(lines, state_.scene.walls, pair, 0);
+            if (!(contact.inverse_mass > 0)) return;
+            const ContactRigidity touch = rigidity_of(contact, lines.place[at(pair.first)].radius);
+            const auto link = LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio,
+                                                   1 / contact.inverse_mass);
+            const Real first_mass = lines.motion[at(pair.first)].inverse_mass;
+            const Real second_mass = pair.second < 0 ? 0 : lines.motion[at(pair.second)].inverse_mass;
+            const auto end = [&](Index slot, Real sign, bool partner_moves) {
+                const Index owner = state_.store.owner_of(slot);
+                const Index body = state_.particles.body[at(state_.store.sphere_of(owner))];
+                const SpherePlace& place = lines.place[at(owner)];
+                const Vec3 from_centre = place.centre - state_.store.position_of(state_.particles, body);
+                visit(End{body, contact.normal, Vec3(from_centre + sign * place.radius * contact.normal),
+                          link, partner_moves, state_.particles.inverse_mass[at(body)],
+                          state_.particles.inverse_inertia[at(body)].maxCoeff()});
+            };
+            if (first_mass > 0) end(pair.first, -1, second_mass > 0);
+            if (second_mass > 0) end(pair.second, 1, first_mass > 0);
+        });
+    }
+    ContactRigidity rigidity_of(const ContactKinematics<Real>& contact, Real radius) const {
+        if constexpr (requires { state_.policies.contact.rigidity(contact); })
+            return state_.policies.contact.rigidity(contact);
+        else
+            return state_.policies.contact.rigidity(radius);
+    }
+
+    const State<P>& state_;
+    std::vector<Index> held_;         ///< [body] its place in own_, -1: not looked at
+    std::vector<BodyStiffness> own_;  ///< of the bodies looked at
+};
 
 }  // namespace abrade

@@ -1,0 +1,36 @@
+#pragma once
+// How a run is asked for, and what it throws when it goes wrong.
+
+#include <abrade/core/types.hpp>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace abrade {
+
+/// A run that went wrong: caught in the step where it arose. `Simulation::last_good()` holds the last state
+/// known to be sound.
+struct RunError : std::runtime_error {
+    RunError(const std::string& what, Index step_, Real time_, Index id_)
+        : std::runtime_error(what), step(step_), time(time_), id(id_) {}
+    Index step;  ///< in which it arose
+    Real time;   ///< [s]
+    Index id;    ///< of the body
+};
+
+struct RunOptions {
+    Real end_time = 0;  ///< [s]
+    /// [s]; at most `Simulation::stable_step_now()`. 0: `safety` times the stable step of dense surroundings,
+    /// and shorter where contacts as they stand need it.
+    Real time_step = 0;
+    Real safety = 0.5;       ///< share of the stable step that is taken [-]
+    Real observe_every = 0;  ///< [s]; 0: at the start and at the end only
+    Real skin = 0;           ///< of the neighbour list [m]; 0: a quarter of the smallest radius
+    /// Whether bodies that nothing can touch soon take their steps as one: faster where most fly, the same
+    /// but for round-off.
+    bool free_flight = true;
+    std::function<bool()> stop{};  ///< asked now and then; true ends the run cleanly
+};
+
+}  // namespace abrade
