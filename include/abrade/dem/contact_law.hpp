@@ -22,6 +22,11 @@ struct ContactKinematics {
     /// halfway, which is what the positions really did. A spring fed with anything else gains or loses
     /// energy.
     Vec3Of<Number> travel = Vec3Of<Number>::Zero();
+
+    // What laws that resist rolling see beside (`ResistsRolling`); nobody fills it in for the others.
+    Vec3Of<Number> spin = Vec3Of<Number>::Zero();  ///< angular velocity of i relative to j [rad/s]
+    Vec3Of<Number> turn = Vec3Of<Number>::Zero();  ///< as `travel`: dt times the spin halfway [rad]
+    Number inverse_turning = Number(0);            ///< 1/(m_i r_i^2) + 1/(m_j r_j^2) [1/(kg m2)]
 };
 
 /// The answer. Losses are energies over the step that is centred on t_n, and are never negative.
@@ -31,6 +36,10 @@ struct ContactLoad {
     Number stored;           ///< elastic energy, a state function [J]
     Number lost_normal;      ///< [J]
     Number lost_tangential;  ///< [J]
+
+    // Of laws that resist rolling alone.
+    Vec3Of<Number> couple = Vec3Of<Number>::Zero();  ///< on i, its opposite on j [N m]
+    Number lost_rolling = Number(0);                 ///< [J]
 };
 
 template <class Number, class Memory>
@@ -43,21 +52,25 @@ struct ContactResponse {
 struct ContactRigidity {
     Real normal = 0, tangential = 0;  ///< [N/m]
     Real damping_ratio = 0;           ///< share of critical damping [-]
+    Real rolling = 0;                 ///< of a rolling spring, over radius^2 [N/m]
+    Real rolling_damping_ratio = 0;   ///< share of critical damping [-]
 };
 
 /// Stable step [s] of a sphere in the midst of twelve others, the most that can touch it, three of them
 /// damping at a time. With k_n, k_t the springs, m the mass and dashpots c = 2 zeta sqrt(k m/2):
 ///   dt = 2 / (sqrt(omega^2 + c^2) + c),
-///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(2 (c_n + 2 c_t), 10 c_t) / m.
+///   omega^2 = max(8 (k_n + 2 k_t), 40 (k_t + k_r)) / m,  c = max(2 (c_n + 2 c_t), 10 (c_t + c_r)) / m.
 /// omega^2: twice the stiffness of twelve contacts, of which four point along any axis (8 k_n) while all
-/// twelve hold it from turning, against the inertia 0.4 m r^2. c counts in full, not by half: dashpots see a
-/// velocity predicted from the last acceleration.
+/// twelve hold it from turning, against the inertia 0.4 m r^2; k_r, c_r of a rolling spring, over r^2, with
+/// c_r = 2 zeta sqrt(1.4 m k_r) as on a plane. c counts in full, not by half: dashpots see a velocity
+/// predicted from the last acceleration.
 inline Real stable_dt_among_twelve(const ContactRigidity& contact, Real mass) noexcept {
     const Real kn = contact.normal, kt = contact.tangential;
     const Real root = 2 * contact.damping_ratio * std::sqrt(0.5 * mass);
     const Real cn = root * std::sqrt(kn), ct = root * std::sqrt(kt);
-    const Real omega2 = std::max(8 * (kn + 2 * kt), 40 * kt) / mass;
-    const Real c = std::max(2 * (cn + 2 * ct), 10 * ct) / mass;
+    const Real kr = contact.rolling, cr = 2 * contact.rolling_damping_ratio * std::sqrt(1.4 * mass * kr);
+    const Real omega2 = std::max(8 * (kn + 2 * kt), 40 * (kt + kr)) / mass;
+    const Real c = std::max(2 * (cn + 2 * ct), 10 * (ct + cr)) / mass;
     return 2 / (std::sqrt(omega2 + c * c) + c);
 }
 
@@ -80,6 +93,10 @@ concept ContactLaw = Law<L> && RemembersContacts<L> && requires(const L& law, co
     { law.rigidity(Real{}) } -> std::same_as<ContactRigidity>;
 };
 // clang-format on
+
+/// Asks for the spin of its contacts and answers with a couple. `resists_rolling` may be left out.
+template <class L>
+concept ResistsRolling = L::resists_rolling;
 
 // --- pieces that contact and bond laws share -------------------------------------------------------
 

@@ -16,6 +16,8 @@ inline ContactKinematics<Real> contact_between(const SphereLines& lines, std::sp
     contact.time_step = dt;
     contact.inverse_mass = motion.inverse_mass;
     contact.curvature = motion.curvature;
+    contact.inverse_turning = motion.inverse_mass * square(motion.curvature);
+    contact.spin = motion.curvature * motion.rim;
     Vec3 velocity = motion.velocity, rim = motion.rim;
     Real lambda = 1;
     if (pair.second < 0) {
@@ -31,11 +33,13 @@ inline ContactKinematics<Real> contact_between(const SphereLines& lines, std::sp
         contact.overlap = reach - distance;
         contact.inverse_mass += lines.motion[j].inverse_mass;
         contact.curvature += lines.motion[j].curvature;
+        contact.inverse_turning += lines.motion[j].inverse_mass * square(lines.motion[j].curvature);
+        contact.spin -= lines.motion[j].curvature * lines.motion[j].rim;
         velocity -= lines.motion[j].velocity, rim += lines.motion[j].rim;
         lambda = distance / reach;
     }
     contact.velocity = velocity - lambda * rim.cross(contact.normal);
-    contact.travel = dt * contact.velocity;
+    contact.travel = dt * contact.velocity, contact.turn = dt * contact.spin;
     return contact;
 }
 
@@ -60,7 +64,7 @@ public:
         kept_.clear();
         Real gone = 0;
         for (const ContactSection<Law>& section : sections_)
-            section.each_touching([&](const SlotPair& pair, const Memory& memory, const Vec3& before) {
+            section.each_touching([&](const SlotPair& pair, const Memory& memory, const auto& before) {
                 const auto lasting = [&](Index slot) {
                     return moved[at(store.sphere_of(store.owner_of(slot)))];
                 };
@@ -201,7 +205,7 @@ private:
         std::vector<Index> start(at(spheres) + 1, 0);
         for (const auto& k : kept_) ++start[at(k.first) + 1];
         for (std::size_t s = 1; s < start.size(); ++s) start[s] += start[s - 1];
-        std::vector<KeptContact<Memory>> sorted(kept_.size());
+        std::vector<KeptContact<Law>> sorted(kept_.size());
         std::vector<Index> next(start.begin(), start.end() - 1);
         for (const auto& k : kept_) sorted[at(next[at(k.first)]++)] = k;
         kept_ = std::move(sorted);
@@ -246,7 +250,7 @@ private:
     }
 
     std::vector<ContactSection<Law>> sections_;  ///< [slab]
-    std::vector<KeptContact<Memory>> kept_;      ///< sorted by first sphere
+    std::vector<KeptContact<Law>> kept_;         ///< sorted by first sphere
     std::vector<Index> slab_;                    ///< [slot]
     std::vector<std::uint8_t> concrete_;         ///< [slot] 1 where its body is concrete
 };

@@ -111,7 +111,7 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
         const Real radius = particles.radius[at(particles.first_sphere[i])];
         const ContactRigidity touch = contact.rigidity(radius);
         detail::SphereStiffness &k = stiffness[at(held[i])], &c = damping[at(held[i])];
-        k.add_anywhere(2, touch.normal, touch.tangential);
+        k.add_anywhere(2, touch.normal, touch.tangential + touch.rolling);
         c.add_anywhere(2, dashpot(touch.damping_ratio, touch.normal, mass),
                        dashpot(touch.damping_ratio, touch.tangential, mass));
         step.lower(detail::damped_step(k.bound(), c.bound()), "bonded concrete");

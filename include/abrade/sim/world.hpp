@@ -102,7 +102,7 @@ public:
     /// last; `other` is negative for a wall. Dashpots act there with velocities half a step old.
     template <class Visit>
     void each_contact(Visit&& visit) const {
-        state_.contacts.each_touching([&](const SlotPair& pair, const auto& memory, const Vec3&) {
+        state_.contacts.each_touching([&](const SlotPair& pair, const auto& memory, const auto&) {
             const auto contact = contact_between(state_.store.lines, state_.scene.walls, pair, 0);
             visit(body_in(pair.first), body_in(pair.second), contact,
                   state_.policies.contact.respond(contact, memory).load);
@@ -247,6 +247,7 @@ private:
         Ledger& a = state_.accounts;
         a.lost_normal += contacts.lost_normal + bonds.lost_normal;
         a.lost_sliding += contacts.lost_tangential + bonds.lost_tangential;
+        a.lost_rolling += contacts.lost_rolling;
         a.lost_bond += bonds.lost_bond;
         a.concrete_lost_normal += contacts.concrete_lost_normal + bonds.concrete_lost_normal;
         a.concrete_lost_sliding += contacts.concrete_lost_tangential + bonds.concrete_lost_tangential;
@@ -271,7 +272,7 @@ private:
         for (std::size_t slot = 0; slot < then.place.size(); ++slot)
             if (then.motion[slot].inverse_mass > 0)
                 then.place[slot].centre -= last.drift * then.motion[slot].velocity;
-        state_.contacts.each_touching([&](const SlotPair& pair, const auto&, const Vec3& before) {
+        state_.contacts.each_touching([&](const SlotPair& pair, const auto&, const auto& before) {
             const auto contact = contact_between(then, state_.scene.walls, pair, 0);
             const Real first = then.place[at(pair.first)].radius,
                        second = pair.second < 0 ? 0 : then.place[at(pair.second)].radius;
@@ -284,7 +285,7 @@ private:
             if (!(share > std::max(overlap_limit, trouble_.measure))) return;
             const Vec3& n = contact.normal;
             deep.apart = (deep.reach - contact.overlap) * n;
-            const Real slower = (contact.velocity - before).dot(n);
+            const Real slower = (contact.velocity - before.velocity).dot(n);
             if (last.kick > 0) deep.slowing = slower / last.kick;
             deep.velocity = then.motion[at(pair.first)].velocity - slower * n;
             deep.inverse_mass_along = mobility(then, pair.first, -n);
