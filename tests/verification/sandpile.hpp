@@ -21,6 +21,9 @@ using Law = RollingResistance<HertzMindlin>;
 constexpr Real half_width = 0.035, channel_end = -0.220, floor_height = -0.570;
 constexpr Real hopper_slope = 0.57 / 0.47, hopper_top = 0.66;
 constexpr Real gate_opens = 4.5;  ///< [s]
+/// Published: 4 MPa. Discs so soft overlap by over a fifth of their radius as the first of them meet the floor
+/// at 3.3 m/s, which the engine refuses.
+constexpr Real youngs = 16e6;  ///< [Pa]
 
 /// A smaller pile takes a share of the discs and lengths that go with it; the discs stay as they are.
 struct Size {
@@ -29,7 +32,7 @@ struct Size {
 };
 
 inline Law law(Law::Model model) {
-    return Law{{.contact = {.youngs = 4e6, .poisson = 0.49, .restitution = 0.7, .friction = 0.8},
+    return Law{{.contact = {.youngs = youngs, .poisson = 0.49, .restitution = 0.7, .friction = 0.8},
                 .friction = 0.3,
                 .stiffness_factor = 3,  // discs
                 .model = model}};
@@ -53,7 +56,8 @@ inline Scene hopper(const Size& size) {
     Scene scene;
     scene.gravity = {0, 0, -9.81};
     scene.add_wall({0, 0, size.lengths * floor_height}, {0, 0, 1});
-    Lattice walls{.radius = 0.004, .count_across = 1, .count_layers = 1};
+    Lattice walls;
+    walls.radius = 0.004, walls.count_across = walls.count_layers = 1;
     const Real l = size.lengths;
     for (const Real side : {-1.0, 1.0}) {
         const Vec3 corner(side * half_width, 0, 0),

@@ -7,6 +7,8 @@
 #include <abrade/core/law.hpp>
 #include <abrade/core/pack.hpp>
 
+#include <compare>
+
 namespace abrade {
 
 /// One pair of touching (or nearly touching) bodies at time t_n.
@@ -93,6 +95,50 @@ concept ContactLaw = Law<L> && RemembersContacts<L> && requires(const L& law, co
     { law.rigidity(Real{}) } -> std::same_as<ContactRigidity>;
 };
 // clang-format on
+
+namespace detail {
+template <class L>
+struct PairLawOf {
+    using type = L;
+};
+template <class L>
+requires requires { typename L::OfPair; }
+struct PairLawOf<L> {
+    using type = typename L::OfPair;
+};
+}  // namespace detail
+
+/// The law that answers one contact: of a table of laws (dem/material_pairs.hpp) what it holds, of any other
+/// that law itself.
+template <class L>
+using PairLaw = typename detail::PairLawOf<L>::type;
+
+/// What may stand in the contact slot: a contact law, or a table of them by materials.
+// clang-format off
+template <class L>
+concept ContactPolicy = Law<L> && ContactLaw<PairLaw<L>> && requires(const L& laws) {
+    { laws.stable_dt(Real{}, Real{}) } -> std::same_as<Real>;
+    { laws.rigidity(Real{}) } -> std::same_as<ContactRigidity>;
+};
+// clang-format on
+
+/// What the two of a contact are made of: numbers into a table of laws, the smaller first.
+struct MaterialPair {
+    Index low = 0, high = 0;
+    static constexpr MaterialPair of(Index a, Index b) noexcept {
+        return a < b ? MaterialPair{a, b} : MaterialPair{b, a};
+    }
+    auto operator<=>(const MaterialPair&) const = default;
+};
+
+/// The one law that is meant.
+template <class L>
+const PairLaw<L>& law_between(const L& laws, [[maybe_unused]] MaterialPair materials) noexcept {
+    if constexpr (std::same_as<PairLaw<L>, L>)
+        return laws;
+    else
+        return laws.between(materials);
+}
 
 /// Asks for the spin of its contacts and answers with a couple. `resists_rolling` may be left out.
 template <class L>

@@ -30,8 +30,9 @@ struct ContactSums {
 
 /// What sets packs apart: each kind has packs of its own, so that none has to ask.
 struct ContactKind {
-    Index plane = -1;    ///< -1: spheres with each other
-    bool wears = false;  ///< concrete is among them
+    Index plane = -1;          ///< -1: spheres with each other
+    MaterialPair materials{};  ///< one pair of them: one law
+    bool wears = false;        ///< concrete is among them
     auto operator<=>(const ContactKind&) const = default;
 };
 
@@ -52,6 +53,15 @@ struct KeptContact {
     SeenMotion<Law, Real> before{};
 };
 
+/// A contact that touched when last evaluated.
+template <class Law>
+struct TouchingContact {
+    SlotPair pair{};
+    MaterialPair materials{};
+    typename Law::template Memory<Real> memory{};
+    SeenMotion<Law, Real> before{};
+};
+
 /// The contacts that one slab is in charge of. `near` pairs are those within the skin of the list; of them
 /// `refine` picks candidates, those that may touch before it is called again, and only they are evaluated.
 template <ContactLaw Law>
@@ -62,6 +72,7 @@ public:
 
     struct Near {
         SlotPair pair;
+        MaterialPair materials{};
         std::uint8_t concrete_sides = 0;
         Index kept = -1;  ///< into what contacts of the last list remember, -1: nothing
     };
@@ -104,13 +115,15 @@ public:
         }
     }
 
-    /// Evaluates the law once for each candidate, commits its memory and adds its answer to the loads.
-    template <class Wear>
-    ContactSums respond(const Law& law, const Wear& wear, std::span<const Plane> planes, SphereLines& lines,
+    /// Evaluates the law once for each candidate, commits its memory and adds its answer to the loads. `laws`
+    /// is a Law, or a table of them by materials.
+    template <class Laws, class Wear>
+    ContactSums respond(const Laws& laws, const Wear& wear, std::span<const Plane> planes, SphereLines& lines,
                         const ContactStep& step) noexcept {
         PackSums sums;
         for (const Run& run : runs_) {
             const ContactKind kind = kinds_[run.kind];
+            const Law& law = law_between(laws, kind.materials);
             const auto packs = std::span(packs_).subspan(run.first, run.last - run.first);
             const PackRun shared{kind.plane < 0 ? nullptr : &planes[static_cast<std::size_t>(kind.plane)],
                                  concrete_sides_.data() + run.first * lanes};
@@ -128,16 +141,17 @@ public:
                 largest(sums.deepest)};
     }
 
-    /// Calls `visit(pair, memory, before)` for each contact that touched when last evaluated.
+    /// Calls `visit(TouchingContact)` for each contact that touched when last evaluated.
     template <class Visit>
     void each_touching(Visit&& visit) const {
         for (std::size_t l = 0; l < lane_.size(); ++l) {
             const ContactPack<Law>& pack = packs_[l / lanes];
             const int lane = static_cast<int>(l % lanes);
             if (lane_[l] < 0 || !pack.touched[lane]) continue;
-            visit(near_[static_cast<std::size_t>(lane_[l])].pair,
-                  detail::memory_of_lane<Memory>(pack.memory, lane),
-                  detail::memory_of_lane<Seen>(pack.before, lane));
+            const Near& near = near_[static_cast<std::size_t>(lane_[l])];
+            visit(TouchingContact<Law>{near.pair, near.materials,
+                                       detail::memory_of_lane<Memory>(pack.memory, lane),
+                                       detail::memory_of_lane<Seen>(pack.before, lane)});
         }
     }
     /// Calls `visit(pair)` for each candidate.
@@ -200,8 +214,8 @@ private:
     }
 
     static bool is_of(const Near& near, const ContactKind& kind) noexcept {
-        return kind ==
-               ContactKind{near.pair.second < 0 ? -1 - near.pair.second : -1, near.concrete_sides > 0};
+        return kind == ContactKind{near.pair.second < 0 ? -1 - near.pair.second : -1, near.materials,
+                                   near.concrete_sides > 0};
     }
 
     std::vector<Near> near_;

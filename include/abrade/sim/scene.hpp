@@ -16,6 +16,7 @@ struct ConcreteBlock {
     Lattice lattice{};
     Real density = 2400;  ///< of the spheres [kg/m3]
     FractureVolume fracture_volume = FractureVolume::cell;
+    Index material = 0;  ///< number in a table of laws (MaterialPairs)
 };
 
 /// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.
@@ -45,11 +46,11 @@ struct Scene {
         stones.push_back({std::move(clump), density, state});
         return *this;
     }
-    Scene& add_wall(const Vec3& point, const Vec3& normal) {
+    Scene& add_wall(const Vec3& point, const Vec3& normal, Index material = 0) {
         require(normal.norm() > 0 && normal.allFinite(),
                 {"Scene.walls[" + std::to_string(walls.size()) + "].normal", "finite and longer than 0"},
                 normal.norm());
-        walls.push_back({point, normal.normalized()});
+        walls.push_back({point, normal.normalized(), material});
         return *this;
     }
 

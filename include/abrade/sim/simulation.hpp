@@ -2,6 +2,7 @@
 // One simulation from four policies: the builder, the loop and its guards.
 
 #include <abrade/dem/linear_spring.hpp>
+#include <abrade/sim/materials.hpp>
 #include <abrade/sim/snapshot.hpp>
 #include <abrade/sim/stability.hpp>
 #include <abrade/sim/world.hpp>
@@ -65,8 +66,9 @@ public:
     template <class L>
     auto contact(L law) && {
         check_not_run();
-        static_assert(ContactLaw<L>, "Simulation::contact(law): the law misses what the notes below name");
-        if constexpr (ContactLaw<L>)
+        static_assert(ContactLaw<PairLaw<L>>,
+                      "Simulation::contact(law): the law misses what the notes below name");
+        if constexpr (ContactPolicy<L>)
             return Simulation<L, B, W, F, D>{std::move(scene_), std::move(law),    std::move(bond_),
                                              std::move(wear_),  std::move(fluid_), std::move(drag_)};
         else
@@ -250,7 +252,9 @@ private:
 
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
-        world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_}));
+        State<PoliciesOf> state(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_});
+        if constexpr (PoliciesOf::has_materials) require_laws_for(contact_, state.particles, scene_);
+        world_.emplace(std::move(state));
         stable_ = stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
     }
 
@@ -346,7 +350,7 @@ private:
         remembered_ = step_;
     }
 
-    using PoliciesOf = Policies<std::conditional_t<ContactLaw<C>, C, LinearSpring>, B, W, F, D>;
+    using PoliciesOf = Policies<std::conditional_t<ContactPolicy<C>, C, LinearSpring>, B, W, F, D>;
     using World = abrade::World<PoliciesOf>;
 
     Scene scene_;

@@ -69,7 +69,7 @@ inline Real stability_mass(Real mass, Real smallest_inertia, Real bounding_radiu
 
 /// Stable step of bodies under a contact law, and of bonded spheres under the bonds that they really have
 /// and up to two contacts more.
-template <ContactLaw C, BondLaw B>
+template <ContactPolicy C, BondLaw B>
 StableStep stable_step(const C& contact, const B& bond, const Particles& particles, const Network<B>& network,
                        const std::optional<FeedParams>& feed) {
     StableStep step;

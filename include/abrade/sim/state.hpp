@@ -57,7 +57,7 @@ struct State {
     Particles particles;
     SphereStore store;
     FreeFlight flight;
-    ContactList<decltype(P::contact)> contacts;
+    ContactList<PairLaw<decltype(P::contact)>> contacts;
     Network<decltype(P::bond)> network;
     Concrete concrete;
     std::optional<Feed> feed;
@@ -192,8 +192,9 @@ private:
             });
             // Without bonds there is nothing to hold the spheres together: they stand as a rigid bed.
             const bool held = !P::has_bonds || in_wall || site.layer + 1 == lattice.count_layers;
-            const Index body = particles.add(sphere, block.density, {.position = site.centre},
-                                             held ? Kind::fixed : Kind::concrete);
+            const Index body =
+                particles.add(sphere, block.density, {.position = site.centre, .material = block.material},
+                              held ? Kind::fixed : Kind::concrete);
             particles.site[at(body)] = s;
         }
         if constexpr (P::has_bonds) {

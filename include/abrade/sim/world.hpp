@@ -91,7 +91,7 @@ public:
     const State<P>& state() const noexcept { return state_; }
     const Scene& scene() const noexcept { return state_.scene; }
     const Particles& particles() const noexcept { return state_.particles; }  ///< as last published
-    const ContactList<decltype(P::contact)>& contacts() const noexcept { return state_.contacts; }
+    const ContactList<PairLaw<decltype(P::contact)>>& contacts() const noexcept { return state_.contacts; }
     const Network<decltype(P::bond)>& network() const noexcept { return state_.network; }
     const Concrete& concrete() const noexcept { return state_.concrete; }
     Real gauge_volume() const noexcept { return state_.gauge_volume; }  ///< solid, net downstream [m3]
@@ -102,10 +102,13 @@ public:
     /// last; `other` is negative for a wall. Dashpots act there with velocities half a step old.
     template <class Visit>
     void each_contact(Visit&& visit) const {
-        state_.contacts.each_touching([&](const SlotPair& pair, const auto& memory, const auto&) {
+        state_.contacts.each_touching([&](const auto& touching) {
+            const SlotPair& pair = touching.pair;
             const auto contact = contact_between(state_.store.lines, state_.scene.walls, pair, 0);
             visit(body_in(pair.first), body_in(pair.second), contact,
-                  state_.policies.contact.respond(contact, memory).load);
+                  law_between(state_.policies.contact, touching.materials)
+                      .respond(contact, touching.memory)
+                      .load);
         });
     }
 
@@ -272,7 +275,8 @@ private:
         for (std::size_t slot = 0; slot < then.place.size(); ++slot)
             if (then.motion[slot].inverse_mass > 0)
                 then.place[slot].centre -= last.drift * then.motion[slot].velocity;
-        state_.contacts.each_touching([&](const SlotPair& pair, const auto&, const auto& before) {
+        state_.contacts.each_touching([&](const auto& touching) {
+            const SlotPair& pair = touching.pair;
             const auto contact = contact_between(then, state_.scene.walls, pair, 0);
             const Real first = then.place[at(pair.first)].radius,
                        second = pair.second < 0 ? 0 : then.place[at(pair.second)].radius;
@@ -285,7 +289,7 @@ private:
             if (!(share > std::max(overlap_limit, trouble_.measure))) return;
             const Vec3& n = contact.normal;
             deep.apart = (deep.reach - contact.overlap) * n;
-            const Real slower = (contact.velocity - before.velocity).dot(n);
+            const Real slower = (contact.velocity - touching.before.velocity).dot(n);
             if (last.kick > 0) deep.slowing = slower / last.kick;
             deep.velocity = then.motion[at(pair.first)].velocity - slower * n;
             deep.inverse_mass_along = mobility(then, pair.first, -n);
