@@ -97,7 +97,8 @@ TEST_CASE("constant torque holds nothing: on the slope where the spring rests, i
 }
 
 TEST_CASE("a sphere stays on top of another below tan(phi) = mu_r / 2: the effective radius is half") {
-    for (const auto& [share, stays] : {std::pair(0.8, true), std::pair(1.2, false)}) {
+    for (const bool stays : {true, false}) {
+        const Real share = stays ? 0.8 : 1.2;
         const Real mu_r = 0.4, phi = std::atan(0.5 * share * mu_r);
         Scene scene;
         scene.add_wall({0, 0, -r}, {0, 0, 1});
