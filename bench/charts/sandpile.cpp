@@ -1,5 +1,5 @@
-// Draws the pictures of docs/verification/sandpile.md: chart_sandpile [FOLDER], which is made where it is
-// not.
+// Draws the pictures of docs/verification/sandpile.md: chart_sandpile [FOLDER [MODEL]]. The folder is made
+// where it is not; MODEL is epsd or constant, both without it.
 //
 // A run takes minutes. What it gave is kept in FOLDER as sandpile_MODEL.csv and sandpile_MODEL_discs.csv, and
 // taken from there the next time.
@@ -22,8 +22,8 @@ struct Case {
     Law::Model model;
     Real seconds;  ///< after the gate opened
 };
-const Case cases[] = {{"epsd", "spring, dashpot, slider", "epsd_model", Law::Model::elastic_plastic, 15.2},
-                      {"constant", "constant torque", "constant_model", Law::Model::constant_torque, 15.2}};
+const Case cases[] = {{"epsd", "spring, dashpot, slider", "epsd_model", Law::Model::elastic_plastic, 16.5},
+                      {"constant", "constant torque", "constant_model", Law::Model::constant_torque, 16.5}};
 
 std::vector<std::vector<Real>> rows_of(const std::filesystem::path& path) {
     std::ifstream file(path);
@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
         std::filesystem::create_directories(folder);
         std::vector<Curve> curves;
         for (const Case& c : cases) {
+            if (argc > 2 && c.name != argv[2]) continue;
             const auto heights = folder / ("sandpile_" + c.name + ".csv"),
                        discs = folder / ("sandpile_" + c.name + "_discs.csv");
             if (!std::filesystem::exists(heights) || !std::filesystem::exists(discs)) run(c, heights, discs);
