@@ -22,7 +22,7 @@ struct Case {
     Law::Model model;
     Real seconds;  ///< after the gate opened
 };
-const Case cases[] = {{"epsd", "spring, dashpot, slider", "epsd_model", Law::Model::elastic_plastic, 16.5},
+const Case cases[] = {{"epsd", "elastic-plastic", "epsd_model", Law::Model::elastic_plastic, 16.5},
                       {"constant", "constant torque", "constant_model", Law::Model::constant_torque, 16.5}};
 
 std::vector<std::vector<Real>> rows_of(const std::filesystem::path& path) {
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
             if (!std::filesystem::exists(heights) || !std::filesystem::exists(discs)) run(c, heights, discs);
             Curve ours{.title = c.title};
             for (const auto& row : rows_of(heights)) ours.x.push_back(row[0]), ours.y.push_back(row[1]);
-            Curve published{.title = "published: " + c.title, .style = CurveStyle::points};
+            Curve published{.title = "published, " + c.title, .style = CurveStyle::points};
             for (const auto& row : reference_table("dem13_sandpile_height_rolling_friction.csv"))
                 if (row.is("model", c.published))
                     published.x.push_back(row.at("t_s")), published.y.push_back(row.at("height_m"));
