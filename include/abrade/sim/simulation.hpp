@@ -2,7 +2,6 @@
 // One simulation from four policies: the builder, the loop and its guards.
 
 #include <abrade/dem/linear_spring.hpp>
-#include <abrade/sim/materials.hpp>
 #include <abrade/sim/snapshot.hpp>
 #include <abrade/sim/stability.hpp>
 #include <abrade/sim/world.hpp>
@@ -63,11 +62,10 @@ public:
 
     // --- the four slots --------------------------------------------------------------------------
 
-    template <class L>
+    template <class L, class One = PairLaw<L>>
     auto contact(L law) && {
         check_not_run();
-        static_assert(ContactLaw<PairLaw<L>>,
-                      "Simulation::contact(law): the law misses what the notes below name");
+        static_assert(ContactLaw<One>, "Simulation::contact(law): the law misses what the notes below name");
         if constexpr (ContactPolicy<L>)
             return Simulation<L, B, W, F, D>{std::move(scene_), std::move(law),    std::move(bond_),
                                              std::move(wear_),  std::move(fluid_), std::move(drag_)};
@@ -252,9 +250,7 @@ private:
 
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
-        State<PoliciesOf> state(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_});
-        if constexpr (PoliciesOf::has_materials) require_laws_for(contact_, state.particles, scene_);
-        world_.emplace(std::move(state));
+        world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_}));
         stable_ = stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
     }
 
@@ -296,8 +292,8 @@ private:
     /// What would have kept the two apart.
     std::string remedy(const Trouble& trouble) const {
         if (trouble.bonded) return "stiffer bonds or a smaller load are needed";
-        const ImpactRemedy found =
-            ImpactInquiry<C>(contact_, trouble.contact, time_step_, World::overlap_limit).remedy();
+        const auto& law = law_between(contact_, trouble.contact.materials);
+        const auto found = ImpactInquiry(law, trouble.contact, time_step_, World::overlap_limit).remedy();
         if (found.met_at == 0) return "something presses them together: stiffer springs are needed";
         const std::string met = "they met at " + short_text(found.met_at) + " m/s along their normal: ";
         if (found.time_step > 0)

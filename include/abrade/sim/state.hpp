@@ -4,6 +4,7 @@
 #include <abrade/bond/network.hpp>
 #include <abrade/dem/contact_list.hpp>
 #include <abrade/sim/ledger.hpp>
+#include <abrade/sim/materials.hpp>
 #include <abrade/sim/policies.hpp>
 #include <abrade/sim/scene.hpp>
 
@@ -50,6 +51,7 @@ struct State {
         if (scene.concrete) add_concrete(*scene.concrete);
         for (const Scene::Stone& stone : scene.stones)
             particles.add(stone.clump, stone.density, stone.state, Kind::stone);
+        if constexpr (P::has_materials) require_laws_for(policies.contact, particles, scene);
     }
 
     P policies;

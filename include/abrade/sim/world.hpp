@@ -288,6 +288,7 @@ private:
             const Real share = contact.overlap / deep.smaller_radius;
             if (!(share > std::max(overlap_limit, trouble_.measure))) return;
             const Vec3& n = contact.normal;
+            deep.materials = touching.materials;
             deep.apart = (deep.reach - contact.overlap) * n;
             const Real slower = (contact.velocity - touching.before.velocity).dot(n);
             if (last.kick > 0) deep.slowing = slower / last.kick;
