@@ -9,10 +9,11 @@
 
 namespace abrade {
 
-/// Springs and dashpots of one contact or bond, along its normal and across it.
+/// Springs and dashpots of one contact or bond, along its normal and across it, and those against turning.
 struct LinkRigidity {
     Real normal = 0, tangential = 0;                  ///< [N/m]
     Real normal_dashpot = 0, tangential_dashpot = 0;  ///< [N s/m]
+    Real turning = 0, turning_dashpot = 0;            ///< [N m], [N m s]
 
     /// Dashpots of a share zeta of critical damping, c = 2 zeta sqrt(k m), m the effective mass [kg].
     static LinkRigidity damped(Real normal, Real tangential, Real zeta, Real mass) noexcept {
@@ -57,6 +58,8 @@ public:
         add(direction(body, n, arm), times * link.normal, times * link.normal_dashpot);
         for (const Vec3& t : {across, Vec3(n.cross(across))})
             add(direction(body, t, arm), times * link.tangential, times * link.tangential_dashpot);
+        stiffness_.diagonal().tail<3>() += times * link.turning * body.inverse_inertia;
+        damping_.diagonal().tail<3>() += times * link.turning_dashpot * body.inverse_inertia;
     }
     /// `count` links of a solid sphere from anywhere. One alone: its normal spring has k_n/m, its tangential
     /// one, which also turns the sphere of inertia 2/5 m r^2, 7/2 k_t/m.
@@ -65,6 +68,8 @@ public:
         stiffness_.diagonal().array() += per_mass * std::max(link.normal, 3.5 * link.tangential);
         damping_.diagonal().array() +=
             per_mass * std::max(link.normal_dashpot, 3.5 * link.tangential_dashpot);
+        stiffness_.diagonal().tail<3>() += 2 * count * link.turning * body.inverse_inertia;
+        damping_.diagonal().tail<3>() += 2 * count * link.turning_dashpot * body.inverse_inertia;
     }
 
     /// Whether a step is stable that is known to be so if a cheap bound, the largest row sum, says so.

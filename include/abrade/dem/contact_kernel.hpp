@@ -41,19 +41,31 @@ struct PackMemoryOf<Law> {
 
 }  // namespace detail
 
+/// How the two of a contact moved when last seen: what dashpots look ahead from.
+template <class Law, class Number>
+struct SeenMotion {
+    Vec3Of<Number> velocity = Vec3Of<Number>::Zero();  ///< at the contact point [m/s]
+};
+template <ResistsRolling Law, class Number>
+struct SeenMotion<Law, Number> {
+    Vec3Of<Number> velocity = Vec3Of<Number>::Zero();  ///< at the contact point [m/s]
+    Vec3Of<Number> spin = Vec3Of<Number>::Zero();      ///< [rad/s]
+};
+
 /// `pack_lanes` pairs of spheres, or spheres on one plane, and what their contacts remember.
 template <class Law>
 struct alignas(64) ContactPack {
     /// Lines of the two, phantoms in lanes that are left over.
     std::array<LineOffset, pack_lanes> first{}, second{};
     typename detail::PackMemoryOf<Law>::type memory{};
-    Vec3Of<Pack> before = Vec3Of<Pack>::Zero();  ///< velocity at the contact point, as last seen [m/s]
-    PackMask touched{};                          ///< when last seen
+    SeenMotion<Law, Pack> before{};
+    PackMask touched{};  ///< when last seen
 };
 
 /// Sums over packs, lane by lane.
 struct PackSums {
     Pack lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
+    Pack lost_rolling = 0;                                        ///< [J]
     Pack concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< once for each side of concrete [J]
     /// Overlap times (1/r_i + 1/r_j), planes as an equal sphere: at least 1 + r_small/r_large times overlap
     /// over the smaller radius [-].
@@ -61,6 +73,7 @@ struct PackSums {
 
     PackSums& operator+=(const PackSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential, stored += other.stored;
+        lost_rolling += other.lost_rolling;
         concrete_lost_normal += other.concrete_lost_normal;
         concrete_lost_tangential += other.concrete_lost_tangential;
         deepest = max(deepest, other.deepest);
@@ -106,11 +119,14 @@ inline Vec3 lane_of(const Vec3Of<Pack>& v, int lane) noexcept {
     return {v.x()[lane], v.y()[lane], v.z()[lane]};
 }
 inline ContactKinematics<Real> lane_of(const ContactKinematics<Pack>& c, int lane) noexcept {
-    return {lane_of(c.normal, lane), c.overlap[lane], lane_of(c.velocity, lane), c.inverse_mass[lane],
-            c.curvature[lane],       c.time_step,     lane_of(c.travel, lane)};
+    return {lane_of(c.normal, lane), c.overlap[lane],       lane_of(c.velocity, lane),
+            c.inverse_mass[lane],    c.curvature[lane],     c.time_step,
+            lane_of(c.travel, lane), lane_of(c.spin, lane), lane_of(c.turn, lane),
+            c.inverse_turning[lane]};
 }
 inline ContactLoad<Real> lane_of(const ContactLoad<Pack>& l, int lane) noexcept {
-    return {lane_of(l.force, lane), l.stored[lane], l.lost_normal[lane], l.lost_tangential[lane]};
+    return {lane_of(l.force, lane),  l.stored[lane],          l.lost_normal[lane],
+            l.lost_tangential[lane], lane_of(l.couple, lane), l.lost_rolling[lane]};
 }
 
 /// The law's answer to a pack; commits the memory of the lanes that touch or did.
@@ -131,6 +147,10 @@ ContactLoad<Pack> answer(const Law& law, const ContactKinematics<Pack>& contact,
             for (int a = 0; a < 3; ++a) all.force[a].set(lane, load.force[a]);
             all.stored.set(lane, load.stored);
             all.lost_normal.set(lane, load.lost_normal), all.lost_tangential.set(lane, load.lost_tangential);
+            if constexpr (ResistsRolling<Law>) {
+                for (int a = 0; a < 3; ++a) all.couple[a].set(lane, load.couple[a]);
+                all.lost_rolling.set(lane, load.lost_rolling);
+            }
         }
         return all;
     }
@@ -158,10 +178,35 @@ template <class Law, class Combine>
 QuadColumns gather(const ContactPack<Law>& pack, const Combine& combine) noexcept {
     QuadRows row;
 #pragma GCC unroll 8
-    // Offsets are read anew each time: sixteen of them, kept, would crowd out the numbers.
-    for (std::size_t k = 0; k < row.size(); ++k)
-        row[k] = combine(std::launder(&pack)->first[k], std::launder(&pack)->second[k]);
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] = combine(pack.first[k], pack.second[k]);
     return columns(row);
+}
+
+/// Angular velocity of i relative to j [rad/s], and 1/(m_i r_i^2) + 1/(m_j r_j^2) [1/(kg m2)].
+template <bool on_plane, class Law>
+QuadColumns gather_spins(const ContactPack<Law>& pack, const LineReader& at) noexcept {
+    const auto turning = [&](LineOffset sphere) {
+        const Quad* motion = at.motion(sphere);  // of the rim, and 1/r
+        const Real curvature = motion[1].value[3];
+        return motion[1] * Quad{{curvature, curvature, curvature, curvature * motion[0].value[3]}};
+    };
+    return gather(pack, [&](LineOffset i, LineOffset j) {
+        return on_plane ? turning(i) : turning(i) + Quad{{-1, -1, -1, 1}} * turning(j);
+    });
+}
+
+/// Levers are torques over radii: a couple counts over each sphere's own.
+template <bool on_plane, class Law>
+void add_couples(const Vec3Of<Pack>& couple, const ContactPack<Law>& pack, const LineReader& at) noexcept {
+    const QuadRows couples = rows({couple.x(), couple.y(), couple.z(), Pack(0)});
+    const auto over_radius = [&](LineOffset sphere, Real sign) {
+        const Real x = sign * at.motion(sphere)[1].value[3];
+        return Quad{{x, x, x, 0}};
+    };
+    for (std::size_t k = 0; k < couples.size(); ++k) {
+        at.add_lever(pack.first[k], over_radius(pack.first[k], 1) * couples[k]);
+        if (!on_plane) at.add_lever(pack.second[k], over_radius(pack.second[k], -1) * couples[k]);
+    }
 }
 
 }  // namespace detail
@@ -235,15 +280,22 @@ template <KernelKind kind, ContactLaw Law, class Wear>
         const Vec3Of<Pack> velocity = Vec3Of<Pack>(vx, vy, vz) - rim.cross(arm);
         const Pack ahead = select(pack.touched, Pack(step.ahead), Pack(0));
         contact.travel = Pack(step.time_step) * velocity;
-        contact.velocity = velocity + ahead * (velocity - pack.before);
-
-        pack.before = velocity;  // at once, so that it need not be kept
-
+        contact.velocity = velocity + ahead * (velocity - pack.before.velocity);
+        if constexpr (ResistsRolling<Law>) {
+            const auto [sx, sy, sz, inverse_turning] = detail::gather_spins<kind.on_plane>(pack, at);
+            const Vec3Of<Pack> spin(sx, sy, sz);
+            contact.turn = Pack(step.time_step) * spin;
+            contact.spin = spin + ahead * (spin - pack.before.spin);
+            contact.inverse_turning = inverse_turning;
+            pack.before.spin = spin;
+        }
+        pack.before.velocity = velocity;  // at once, so that it need not be kept
         const ContactLoad<Pack> answer = detail::answer(law, contact, pack, touching);
         pack.touched = touching;
         sums.lost_normal += answer.lost_normal;
         sums.lost_tangential += answer.lost_tangential;
         sums.stored += answer.stored;
+        if constexpr (ResistsRolling<Law>) sums.lost_rolling += answer.lost_rolling;
         sums.deepest =
             max(sums.deepest, contact.overlap * (kind.on_plane ? curvature + curvature : curvature));
         Pack worn = 0;
@@ -267,6 +319,7 @@ template <KernelKind kind, ContactLaw Law, class Wear>
 #pragma GCC unroll 8
             for (std::size_t k = 0; k < forces.size(); ++k)
                 at.add(again.second[k], reaction * forces[k], levers[k]);
+        if constexpr (ResistsRolling<Law>) detail::add_couples<kind.on_plane>(answer.couple, again, at);
     }
     return sums;
 }

@@ -7,6 +7,8 @@
 #include <abrade/core/law.hpp>
 #include <abrade/core/pack.hpp>
 
+#include <compare>
+
 namespace abrade {
 
 /// One pair of touching (or nearly touching) bodies at time t_n.
@@ -22,6 +24,11 @@ struct ContactKinematics {
     /// halfway, which is what the positions really did. A spring fed with anything else gains or loses
     /// energy.
     Vec3Of<Number> travel = Vec3Of<Number>::Zero();
+
+    // What laws that resist rolling see beside (`ResistsRolling`); nobody fills it in for the others.
+    Vec3Of<Number> spin = Vec3Of<Number>::Zero();  ///< angular velocity of i relative to j [rad/s]
+    Vec3Of<Number> turn = Vec3Of<Number>::Zero();  ///< as `travel`: dt times the spin halfway [rad]
+    Number inverse_turning = Number(0);            ///< 1/(m_i r_i^2) + 1/(m_j r_j^2) [1/(kg m2)]
 };
 
 /// The answer. Losses are energies over the step that is centred on t_n, and are never negative.
@@ -31,6 +38,10 @@ struct ContactLoad {
     Number stored;           ///< elastic energy, a state function [J]
     Number lost_normal;      ///< [J]
     Number lost_tangential;  ///< [J]
+
+    // Of laws that resist rolling alone.
+    Vec3Of<Number> couple = Vec3Of<Number>::Zero();  ///< on i, its opposite on j [N m]
+    Number lost_rolling = Number(0);                 ///< [J]
 };
 
 template <class Number, class Memory>
@@ -43,21 +54,25 @@ struct ContactResponse {
 struct ContactRigidity {
     Real normal = 0, tangential = 0;  ///< [N/m]
     Real damping_ratio = 0;           ///< share of critical damping [-]
+    Real rolling = 0;                 ///< of a rolling spring, over radius^2 [N/m]
+    Real rolling_damping_ratio = 0;   ///< share of critical damping [-]
 };
 
 /// A step [s] to begin with for a sphere that may come into the midst of twelve others, the most that can
 /// touch it. With k_n, k_t the springs, m the mass and dashpots c = 2 zeta sqrt(k m/2):
 ///   dt = 2 / (sqrt(omega^2 + c^2) + c),
-///   omega^2 = max(8 (k_n + 2 k_t), 40 k_t) / m,  c = max(2 (c_n + 2 c_t), 10 c_t) / m.
+///   omega^2 = max(8 (k_n + 2 k_t), 40 (k_t + k_r)) / m,  c = max(2 (c_n + 2 c_t), 10 (c_t + c_r)) / m.
 /// omega^2: twice the stiffness of twelve contacts, of which four point along any axis (8 k_n) while all
-/// twelve hold it from turning, against the inertia 0.4 m r^2. c is that of three contacts: collisions, not
-/// pressed beds. What contacts allow as they stand is for the engine to see (sim/stability.hpp).
+/// twelve hold it from turning, against the inertia 0.4 m r^2; k_r, c_r of a rolling spring, over r^2, with
+/// c_r = 2 zeta sqrt(1.4 m k_r) as on a plane. c is that of three contacts: collisions, not pressed beds.
+/// What contacts allow as they stand is for the engine to see (sim/stability.hpp).
 inline Real stable_dt_among_twelve(const ContactRigidity& contact, Real mass) noexcept {
     const Real kn = contact.normal, kt = contact.tangential;
     const Real root = 2 * contact.damping_ratio * std::sqrt(0.5 * mass);
     const Real cn = root * std::sqrt(kn), ct = root * std::sqrt(kt);
-    const Real omega2 = std::max(8 * (kn + 2 * kt), 40 * kt) / mass;
-    const Real c = std::max(2 * (cn + 2 * ct), 10 * ct) / mass;
+    const Real kr = contact.rolling, cr = 2 * contact.rolling_damping_ratio * std::sqrt(1.4 * mass * kr);
+    const Real omega2 = std::max(8 * (kn + 2 * kt), 40 * (kt + kr)) / mass;
+    const Real c = std::max(2 * (cn + 2 * ct), 10 * (ct + cr)) / mass;
     return 2 / (std::sqrt(omega2 + c * c) + c);
 }
 
@@ -80,7 +95,61 @@ concept ContactLaw = Law<L> && RemembersContacts<L> && requires(const L& law, co
     { law.stable_dt(Real{}, Real{}) } -> std::same_as<Real>;
     { law.rigidity(Real{}) } -> std::same_as<ContactRigidity>;
 };
+
+/// Tells the rigidity of a contact as it stands, where that changes with the overlap.
+template <class L>
+concept KnowsRigidityAsItStands = requires(const L& law, const ContactKinematics<Real>& contact) {
+    { law.rigidity(contact) } -> std::same_as<ContactRigidity>;
+};
 // clang-format on
+
+namespace detail {
+template <class L>
+struct PairLawOf {
+    using type = L;
+};
+template <class L>
+requires requires { typename L::OfPair; }
+struct PairLawOf<L> {
+    using type = typename L::OfPair;
+};
+}  // namespace detail
+
+/// The law that answers one contact: of a table of laws (dem/material_pairs.hpp) what it holds, of any other
+/// that law itself.
+template <class L>
+using PairLaw = typename detail::PairLawOf<L>::type;
+
+/// What may stand in the contact slot: a contact law, or a table of them by materials.
+// clang-format off
+template <class L>
+concept ContactPolicy = Law<L> && ContactLaw<PairLaw<L>> && requires(const L& laws) {
+    { laws.stable_dt(Real{}, Real{}) } -> std::same_as<Real>;
+    { laws.rigidity(Real{}) } -> std::same_as<ContactRigidity>;
+};
+// clang-format on
+
+/// What the two of a contact are made of: numbers into a table of laws, the smaller first.
+struct MaterialPair {
+    Index low = 0, high = 0;
+    static constexpr MaterialPair of(Index a, Index b) noexcept {
+        return a < b ? MaterialPair{a, b} : MaterialPair{b, a};
+    }
+    auto operator<=>(const MaterialPair&) const = default;
+};
+
+/// The one law that is meant.
+template <class L>
+const PairLaw<L>& law_between(const L& laws, [[maybe_unused]] MaterialPair materials) noexcept {
+    if constexpr (std::same_as<PairLaw<L>, L>)
+        return laws;
+    else
+        return laws.between(materials);
+}
+
+/// Asks for the spin of its contacts and answers with a couple. `resists_rolling` may be left out.
+template <class L>
+concept ResistsRolling = L::resists_rolling;
 
 // --- pieces that contact and bond laws share -------------------------------------------------------
 

@@ -16,6 +16,8 @@ inline ContactKinematics<Real> contact_between(const SphereLines& lines, std::sp
     contact.time_step = dt;
     contact.inverse_mass = motion.inverse_mass;
     contact.curvature = motion.curvature;
+    contact.inverse_turning = motion.inverse_mass * square(motion.curvature);
+    contact.spin = motion.curvature * motion.rim;
     Vec3 velocity = motion.velocity, rim = motion.rim;
     Real lambda = 1;
     if (pair.second < 0) {
@@ -31,11 +33,13 @@ inline ContactKinematics<Real> contact_between(const SphereLines& lines, std::sp
         contact.overlap = reach - distance;
         contact.inverse_mass += lines.motion[j].inverse_mass;
         contact.curvature += lines.motion[j].curvature;
+        contact.inverse_turning += lines.motion[j].inverse_mass * square(lines.motion[j].curvature);
+        contact.spin -= lines.motion[j].curvature * lines.motion[j].rim;
         velocity -= lines.motion[j].velocity, rim += lines.motion[j].rim;
         lambda = distance / reach;
     }
     contact.velocity = velocity - lambda * rim.cross(contact.normal);
-    contact.travel = dt * contact.velocity;
+    contact.travel = dt * contact.velocity, contact.turn = dt * contact.spin;
     return contact;
 }
 
@@ -51,26 +55,28 @@ public:
         std::span<const char> passive;  ///< [sphere]
         Real skin = 0;                  ///< [m]
         Vec3 period = Vec3::Zero();     ///< [m]; 0 where space is open
+        bool by_material = false;       ///< whether each pair of materials has packs of its own
     };
 
     /// Puts aside what touching pairs remember, before the store is arranged anew. `moved` [sphere] says
     /// where spheres will be (-1: gone). Returns the elastic energy of pairs that go with them [J].
-    Real keep(const Law& law, const SphereStore& store, std::span<const Plane> planes,
+    template <class Laws>
+    Real keep(const Laws& laws, const SphereStore& store, std::span<const Plane> planes,
               std::span<const Index> moved) {
         kept_.clear();
         Real gone = 0;
-        for (const ContactSection<Law>& section : sections_)
-            section.each_touching([&](const SlotPair& pair, const Memory& memory, const Vec3& before) {
-                const auto lasting = [&](Index slot) {
-                    return moved[at(store.sphere_of(store.owner_of(slot)))];
-                };
-                const Index first = lasting(pair.first),
-                            second = pair.second < 0 ? pair.second : lasting(pair.second);
-                if (first < 0 || (pair.second >= 0 && second < 0))
-                    gone += law.respond(contact_between(store.lines, planes, pair, 0), memory).load.stored;
-                else
-                    kept_.push_back({first, second, memory, before});
-            });
+        each_touching([&](const TouchingContact<Law>& contact) {
+            const auto lasting = [&](Index slot) { return moved[at(store.sphere_of(store.owner_of(slot)))]; };
+            const SlotPair& pair = contact.pair;
+            const Index first = lasting(pair.first),
+                        second = pair.second < 0 ? pair.second : lasting(pair.second);
+            if (first < 0 || (pair.second >= 0 && second < 0))
+                gone += law_between(laws, contact.materials)
+                            .respond(contact_between(store.lines, planes, pair, 0), contact.memory)
+                            .load.stored;
+            else
+                kept_.push_back({first, second, contact.memory, contact.before});
+        });
         return gone;
     }
 
@@ -102,7 +108,7 @@ public:
 
     ContactSection<Law>& section(Index slab) noexcept { return sections_[at(slab)]; }
 
-    /// Calls `visit(pair, memory, before)` for each contact that touched when last evaluated.
+    /// Calls `visit(TouchingContact)` for each contact that touched when last evaluated.
     template <class Visit>
     void each_touching(Visit&& visit) const {
         for (const ContactSection<Law>& section : sections_) section.each_touching(visit);
@@ -126,6 +132,7 @@ private:
         Index spheres_low = 0, spheres_high = 0;           ///< lasting indices
         ImageShift shift{};                                ///< of the other
         bool needs_image = false, own_is_high = false;
+        MaterialPair materials{};
         std::uint8_t concrete_sides = 0;
         SphereStore::ImageRequest image() const noexcept { return {other, chunk, shift}; }
     };
@@ -146,6 +153,9 @@ private:
             std::fill(slab_.begin() + store.first_slot(slab), slab_.begin() + store.first_slot(slab + 1),
                       slab);
         for (std::size_t s = 0; s < count; ++s) concrete_[s] = build.particles.site[at(body[s])] >= 0 ? 1 : 0;
+        material_.assign(count, 0);
+        if (build.by_material)
+            for (std::size_t s = 0; s < count; ++s) material_[s] = build.particles.material[at(body[s])];
         return near_pairs({centre, radius, body, passive, build.skin, build.period});
     }
 
@@ -166,6 +176,7 @@ private:
         one.own_is_high = one.spheres_low > one.spheres_high;
         if (one.own_is_high) std::swap(one.spheres_low, one.spheres_high);
         one.concrete_sides = static_cast<std::uint8_t>(concrete_[at(one.own)] + concrete_[at(one.other)]);
+        one.materials = MaterialPair::of(material_[at(one.own)], material_[at(one.other)]);
         return one;
     }
 
@@ -181,6 +192,8 @@ private:
                 one.own = slot, one.other = -1 - p;
                 one.spheres_low = sphere, one.spheres_high = -1 - p;
                 one.concrete_sides = concrete_[at(slot)];
+                if (build.by_material)
+                    one.materials = MaterialPair::of(material_[at(slot)], build.planes[at(p)].material);
                 listed.push_back(one);
             }
         }
@@ -201,7 +214,7 @@ private:
         std::vector<Index> start(at(spheres) + 1, 0);
         for (const auto& k : kept_) ++start[at(k.first) + 1];
         for (std::size_t s = 1; s < start.size(); ++s) start[s] += start[s - 1];
-        std::vector<KeptContact<Memory>> sorted(kept_.size());
+        std::vector<KeptContact<Law>> sorted(kept_.size());
         std::vector<Index> next(start.begin(), start.end() - 1);
         for (const auto& k : kept_) sorted[at(next[at(k.first)]++)] = k;
         kept_ = std::move(sorted);
@@ -211,7 +224,7 @@ private:
     void share_out(const SphereStore& store, const std::vector<Listed>& listed,
                    const std::vector<Index>& first_kept) {
         const auto kind_of = [](const Listed& one) {
-            return ContactKind{one.other < 0 ? -1 - one.other : -1, one.concrete_sides > 0};
+            return ContactKind{one.other < 0 ? -1 - one.other : -1, one.materials, one.concrete_sides > 0};
         };
         const Index slabs = store.slabs.count();
         std::vector<std::size_t> first(at(slabs) + 1, 0);
@@ -242,13 +255,14 @@ private:
         for (Index k = first_kept[low]; k < first_kept[low + 1]; ++k)
             if (kept_[at(k)].second == one.spheres_high) kept = k;
         const SlotPair pair = one.own_is_high ? SlotPair{one.other, one.own} : SlotPair{one.own, one.other};
-        return {pair, one.concrete_sides, kept};
+        return {pair, one.materials, one.concrete_sides, kept};
     }
 
     std::vector<ContactSection<Law>> sections_;  ///< [slab]
-    std::vector<KeptContact<Memory>> kept_;      ///< sorted by first sphere
+    std::vector<KeptContact<Law>> kept_;         ///< sorted by first sphere
     std::vector<Index> slab_;                    ///< [slot]
     std::vector<std::uint8_t> concrete_;         ///< [slot] 1 where its body is concrete
+    std::vector<Index> material_;                ///< [slot]
 };
 
 }  // namespace abrade

@@ -14,12 +14,13 @@ namespace abrade {
 /// is concrete.
 struct ContactSums {
     Real lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
+    Real lost_rolling = 0;                                        ///< [J]
     Real concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< [J]
     Real deepest = 0;                                             ///< as in PackSums [-]
 
     ContactSums& operator+=(const ContactSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential;
-        stored += other.stored;
+        stored += other.stored, lost_rolling += other.lost_rolling;
         concrete_lost_normal += other.concrete_lost_normal;
         concrete_lost_tangential += other.concrete_lost_tangential;
         deepest = std::max(deepest, other.deepest);
@@ -29,8 +30,9 @@ struct ContactSums {
 
 /// What sets packs apart: each kind has packs of its own, so that none has to ask.
 struct ContactKind {
-    Index plane = -1;    ///< -1: spheres with each other
-    bool wears = false;  ///< concrete is among them
+    Index plane = -1;          ///< -1: spheres with each other
+    MaterialPair materials{};  ///< one pair of them: one law
+    bool wears = false;        ///< concrete is among them
     auto operator<=>(const ContactKind&) const = default;
 };
 
@@ -44,11 +46,20 @@ struct ContactCensus {
 
 /// What one pair of spheres remembers while lists are renewed. Spheres by their lasting index, planes as in
 /// SlotPair.
-template <class Memory>
+template <class Law>
 struct KeptContact {
     Index first = 0, second = 0;
-    Memory memory{};
-    Vec3 before = Vec3::Zero();  ///< [m/s]
+    typename Law::template Memory<Real> memory{};
+    SeenMotion<Law, Real> before{};
+};
+
+/// A contact that touched when last evaluated.
+template <class Law>
+struct TouchingContact {
+    SlotPair pair{};
+    MaterialPair materials{};
+    typename Law::template Memory<Real> memory{};
+    SeenMotion<Law, Real> before{};
 };
 
 /// The contacts that one slab is in charge of. `near` pairs are those within the skin of the list; of them
@@ -57,23 +68,25 @@ template <ContactLaw Law>
 class ContactSection {
 public:
     using Memory = typename Law::template Memory<Real>;
+    using Seen = SeenMotion<Law, Real>;
 
     struct Near {
         SlotPair pair;
+        MaterialPair materials{};
         std::uint8_t concrete_sides = 0;
         Index kept = -1;  ///< into what contacts of the last list remember, -1: nothing
     };
 
     /// Takes a new list of pairs, which stand in the order of their kinds, and what they remember.
     void set_near(std::span<const Near> near, std::span<const ContactKind> kinds,
-                  std::span<const KeptContact<Memory>> kept, Index phantom) {
+                  std::span<const KeptContact<Law>> kept, Index phantom) {
         near_.assign(near.begin(), near.end());
         kinds_.assign(kinds.begin(), kinds.end());
         phantom_ = phantom;
         begin_packs();
         for (std::size_t n = 0; n < near_.size(); ++n) {
             if (near_[n].kept < 0) continue;
-            const KeptContact<Memory>& k = kept[static_cast<std::size_t>(near_[n].kept)];
+            const KeptContact<Law>& k = kept[static_cast<std::size_t>(near_[n].kept)];
             add_lane(n, k.memory, k.before, true);
         }
     }
@@ -94,18 +107,20 @@ public:
             for (std::size_t n = first; n < last; ++n)
                 if (where_[n] >= 0) keep_lane(n, static_cast<std::size_t>(where_[n]));
             for (std::size_t n = first; n < last; ++n)
-                if (where_[n] < 0 && gap(lines, planes, n) < skin) add_lane(n, Memory{}, Vec3::Zero(), false);
+                if (where_[n] < 0 && gap(lines, planes, n) < skin) add_lane(n, Memory{}, Seen{}, false);
             first = last;
         }
     }
 
-    /// Evaluates the law once for each candidate, commits its memory and adds its answer to the loads.
-    template <class Wear>
-    ContactSums respond(const Law& law, const Wear& wear, std::span<const Plane> planes, SphereLines& lines,
+    /// Evaluates the law once for each candidate, commits its memory and adds its answer to the loads. `laws`
+    /// is a Law, or a table of them by materials.
+    template <class Laws, class Wear>
+    ContactSums respond(const Laws& laws, const Wear& wear, std::span<const Plane> planes, SphereLines& lines,
                         const ContactStep& step) noexcept {
         PackSums sums;
         for (const Run& run : runs_) {
             const ContactKind kind = kinds_[run.kind];
+            const Law& law = law_between(laws, kind.materials);
             const auto packs = std::span(packs_).subspan(run.first, run.last - run.first);
             const PackRun shared{kind.plane < 0 ? nullptr : &planes[static_cast<std::size_t>(kind.plane)],
                                  concrete_sides_.data() + run.first * lanes};
@@ -118,19 +133,22 @@ public:
             else
                 sums += abrade::respond<KernelKind{true, false}>(law, wear, packs, shared, lines, step);
         }
-        return {sum(sums.lost_normal),          sum(sums.lost_tangential),          sum(sums.stored),
-                sum(sums.concrete_lost_normal), sum(sums.concrete_lost_tangential), largest(sums.deepest)};
+        return {sum(sums.lost_normal),  sum(sums.lost_tangential),      sum(sums.stored),
+                sum(sums.lost_rolling), sum(sums.concrete_lost_normal), sum(sums.concrete_lost_tangential),
+                largest(sums.deepest)};
     }
 
-    /// Calls `visit(pair, memory, before)` for each contact that touched when last evaluated.
+    /// Calls `visit(TouchingContact)` for each contact that touched when last evaluated.
     template <class Visit>
     void each_touching(Visit&& visit) const {
         for (std::size_t l = 0; l < lane_.size(); ++l) {
             const ContactPack<Law>& pack = packs_[l / lanes];
             const int lane = static_cast<int>(l % lanes);
             if (lane_[l] < 0 || !pack.touched[lane]) continue;
-            visit(near_[static_cast<std::size_t>(lane_[l])].pair,
-                  detail::memory_of_lane<Memory>(pack.memory, lane), before_of_lane(pack, lane));
+            const Near& near = near_[static_cast<std::size_t>(lane_[l])];
+            visit(TouchingContact<Law>{near.pair, near.materials,
+                                       detail::memory_of_lane<Memory>(pack.memory, lane),
+                                       detail::memory_of_lane<Seen>(pack.before, lane)});
         }
     }
     /// Calls `visit(pair)` for each candidate.
@@ -150,10 +168,6 @@ private:
         std::size_t kind, first, last;
     };
 
-    static Vec3 before_of_lane(const ContactPack<Law>& pack, int lane) noexcept {
-        return {pack.before.x()[lane], pack.before.y()[lane], pack.before.z()[lane]};
-    }
-
     Real gap(const SphereLines& lines, std::span<const Plane> planes, std::size_t n) const noexcept {
         const auto [first, second] = near_[n].pair;
         const SpherePlace& a = lines.place[static_cast<std::size_t>(first)];
@@ -171,11 +185,12 @@ private:
     void keep_lane(std::size_t n, std::size_t old) {
         const ContactPack<Law>& from = old_packs_[old / lanes];
         const int lane = static_cast<int>(old % lanes);
-        add_lane(n, detail::memory_of_lane<Memory>(from.memory, lane), before_of_lane(from, lane), true);
+        add_lane(n, detail::memory_of_lane<Memory>(from.memory, lane),
+                 detail::memory_of_lane<Seen>(from.before, lane), true);
     }
 
     /// Puts near pair n into the next lane; pairs come in the order of their kinds.
-    void add_lane(std::size_t n, const Memory& memory, const Vec3& before, bool touched) {
+    void add_lane(std::size_t n, const Memory& memory, const Seen& before, bool touched) {
         std::size_t kind = runs_.empty() ? 0 : runs_.back().kind;
         while (!is_of(near_[n], kinds_[kind])) ++kind;
         if (runs_.empty() || runs_.back().kind != kind) {
@@ -200,13 +215,13 @@ private:
         if (!touched) return;
         ++touching_;
         detail::set_memory_of_lane(pack.memory, lane, memory);
-        for (int a = 0; a < 3; ++a) pack.before[a].set(lane, before[a]);
+        detail::set_memory_of_lane(pack.before, lane, before);
         pack.touched.set(lane);
     }
 
     static bool is_of(const Near& near, const ContactKind& kind) noexcept {
-        return kind ==
-               ContactKind{near.pair.second < 0 ? -1 - near.pair.second : -1, near.concrete_sides > 0};
+        return kind == ContactKind{near.pair.second < 0 ? -1 - near.pair.second : -1, near.materials,
+                                   near.concrete_sides > 0};
     }
 
     std::vector<Near> near_;

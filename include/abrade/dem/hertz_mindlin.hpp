@@ -167,6 +167,11 @@ public:
     Real effective_youngs() const noexcept { return effective_youngs_; }  ///< E* [Pa]
     Real effective_shear() const noexcept { return effective_shear_; }    ///< G* [Pa]
     Real damping_ratio() const noexcept { return damping_ratio_; }
+    /// Secant, f_n / delta = 4/3 E* sqrt(R delta) [N/m].
+    template <class Number>
+    Number normal_stiffness(Number overlap, Number curvature) const noexcept {
+        return Number(4.0 / 3 * effective_youngs_) * sqrt(max(overlap, Number(0)) / curvature);
+    }
 
     /// Tangents of the force at the largest overlap, against an equal sphere; without friction nothing acts
     /// across the normal.

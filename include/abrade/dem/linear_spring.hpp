@@ -87,6 +87,11 @@ public:
     }
 
     Real stiffness() const noexcept { return params_.stiffness; }
+    /// k_n at any overlap [N/m].
+    template <class Number>
+    Number normal_stiffness(Number /*overlap*/, Number /*curvature*/) const noexcept {
+        return Number(params_.stiffness);
+    }
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
     Real damping_ratio() const noexcept { return damping_ratio_; }
 

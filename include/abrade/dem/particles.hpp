@@ -16,6 +16,7 @@ struct BodyState {
     Vec3 velocity = Vec3::Zero();                     ///< [m/s]
     Quaternion orientation = Quaternion::Identity();  ///< principal frame to world
     Vec3 angular_velocity = Vec3::Zero();             ///< world frame [rad/s]
+    Index material = 0;                               ///< number in a table of laws (MaterialPairs)
 };
 
 /// Columns over bodies and over their member spheres. Member spheres of a body stand next to each other.
@@ -33,8 +34,9 @@ struct Particles {
     std::vector<Vec3> inverse_inertia;    ///< about the principal axes, 0 for fixed bodies [1/(kg m2)]
     std::vector<Real> volume;             ///< solid [m3]
     std::vector<Kind> kind;
-    std::vector<Index> id;    ///< given once, never reused
-    std::vector<Index> site;  ///< lattice site of the concrete that the body is, -1 for a stone
+    std::vector<Index> id;        ///< given once, never reused
+    std::vector<Index> site;      ///< lattice site of the concrete that the body is, -1 for a stone
+    std::vector<Index> material;  ///< as in BodyState
     std::vector<Index> first_sphere, sphere_count;
 
     // [sphere]
@@ -101,6 +103,7 @@ struct Particles {
         kind.push_back(body_kind);
         id.push_back(next_id++);
         site.push_back(-1);
+        material.push_back(state.material);
         first_sphere.push_back(spheres());
         sphere_count.push_back(static_cast<Index>(clump.members.size()));
         for (const Sphere& member : clump.members) {
@@ -147,7 +150,7 @@ private:
     void for_each_body_column(auto&& f) {
         f(position), f(velocity), f(orientation), f(angular_momentum), f(force), f(torque), f(mass),
             f(inverse_mass);
-        f(inverse_inertia), f(volume), f(kind), f(id), f(site), f(first_sphere), f(sphere_count);
+        f(inverse_inertia), f(volume), f(kind), f(id), f(site), f(material), f(first_sphere), f(sphere_count);
     }
     void for_each_sphere_column(auto&& f) { f(body), f(offset), f(radius), f(centre); }
 };

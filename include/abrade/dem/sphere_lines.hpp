@@ -28,8 +28,10 @@ struct alignas(64) SphereMotion {
 struct alignas(64) SphereLoad {
     Vec3 force = Vec3::Zero();  ///< [N]
     Real worn = 0;              ///< volume worn off in this step [m3]
-    Vec3 lever = Vec3::Zero();  ///< sum of lambda f x n; times the radius: the torque about the centre [N]
-    Real mass = 0;              ///< of its body: no load, but its place is free [kg]
+    /// Sum of lambda f x n, and of couples over the radius; times the radius: the torque about the centre
+    /// [N].
+    Vec3 lever = Vec3::Zero();
+    Real mass = 0;  ///< of its body: no load, but its place is free [kg]
 };
 
 /// The lines of all spheres, in slots: first every sphere, then images of some of them (of periodic
@@ -106,6 +108,10 @@ public:
     void add(std::size_t at, const Quad& force, const Quad& lever) const noexcept {
         Quad* load = reinterpret_cast<Quad*>(load_ + 2 * at);
         load[0] = load[0] + force, load[1] = load[1] + lever;
+    }
+    void add_lever(std::size_t at, const Quad& lever) const noexcept {
+        Quad* load = reinterpret_cast<Quad*>(load_ + 2 * at);
+        load[1] = load[1] + lever;
     }
 
 private:

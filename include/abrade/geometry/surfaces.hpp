@@ -12,6 +12,7 @@ namespace abrade {
 struct Plane {
     Vec3 point = Vec3::Zero();    ///< [m]
     Vec3 normal = Vec3::UnitZ();  ///< unit length
+    Index material = 0;           ///< number in a table of laws (MaterialPairs)
 
     Real distance(const Vec3& x) const noexcept { return normal.dot(x - point); }
 

@@ -18,6 +18,7 @@ struct StoneClass {
     Real size = 0;      ///< nominal diameter, that of a sphere of equal volume [m]
     Real fraction = 0;  ///< share of the solid volume [-]
     StoneShape shape = StoneShape::sphere;
+    Index material = 0;  ///< number in a table of laws (MaterialPairs)
 };
 
 /// Stones supplied at a solid volume rate, at random in a box, all from one seeded sequence.
@@ -115,6 +116,7 @@ private:
             }
             if (params_.bed) state.position.z() += params_.bed(state.position.x(), state.position.y());
             state.velocity = params_.velocity;
+            state.material = params_.classes[next_].material;
             state.orientation = random_orientation();
             state.position.z() =
                 std::max(state.position.z(), height_above_concrete(particles, state.position, reach));

@@ -17,6 +17,7 @@ struct DeepContact {
     Real slowing = 0;                      ///< what the approach falls by under all that acts [m/s2]
     Real inverse_mass = 0, curvature = 0;  ///< as the law sees them [1/kg], [1/m]
     Real inverse_mass_along = 0;           ///< along the normal, with the turning that a lever allows [1/kg]
+    MaterialPair materials{};
 };
 
 /// What would have been enough, for the two alone.

@@ -23,6 +23,7 @@ struct Ledger {
     // since the start
     Real lost_normal = 0;   ///< by impact, in contacts and broken bonds
     Real lost_sliding = 0;  ///< by friction and tangential dashpots, in contacts and broken bonds
+    Real lost_rolling = 0;  ///< by resistance to rolling, in contacts
     Real lost_bond = 0;     ///< by damping in bonds and by breaking them
     Real drag_input = 0;    ///< drag force times fluid velocity: put in by the flow
     Real drag_work = 0;     ///< drag force times body velocity: what reached the bodies
@@ -37,7 +38,7 @@ struct Ledger {
 
     /// Drag force times (fluid - body velocity): turned into heat and turbulence.
     Real lost_drag() const noexcept { return drag_input - drag_work; }
-    Real lost() const noexcept { return lost_normal + lost_sliding + lost_bond + lost_drag(); }
+    Real lost() const noexcept { return lost_normal + lost_sliding + lost_rolling + lost_bond + lost_drag(); }
 
     /// Kinetic energy against the work done: zero but for round-off.
     Real residual() const noexcept {
@@ -56,7 +57,7 @@ struct Ledger {
     Real integration_residue() const noexcept {
         const Real elastic = -interaction_work -
                              (stored_contacts + stored_bonds - stored_start + left_stored) - lost_normal -
-                             lost_sliding - lost_bond;
+                             lost_sliding - lost_rolling - lost_bond;
         const Real gravity = -gravity_work - (potential - potential_start - fed_potential + left_potential);
         return elastic + gravity;
     }
@@ -67,8 +68,8 @@ struct Ledger {
         f("stored_contacts", stored_contacts), f("stored_bonds", stored_bonds);
         f("kinetic_start", kinetic_start), f("potential_start", potential_start);
         f("stored_start", stored_start);
-        f("lost_normal", lost_normal), f("lost_sliding", lost_sliding), f("lost_bond", lost_bond),
-            f("lost_drag", lost_drag());
+        f("lost_normal", lost_normal), f("lost_sliding", lost_sliding), f("lost_rolling", lost_rolling),
+            f("lost_bond", lost_bond), f("lost_drag", lost_drag());
         f("concrete_lost_normal", concrete_lost_normal);
         f("concrete_lost_sliding", concrete_lost_sliding);
         f("drag_input", drag_input), f("drag_work", drag_work);

@@ -231,11 +231,12 @@ private:
                     if (const auto image = image_for(state.store, sphere, slab)) requests.push_back(*image);
             });
         }
-        state.contacts.rebuild(state.store,
-                               {p, state.scene.walls, passive, list_skin_, state.scene.periodic().period},
-                               std::move(requests), [&](Index first, Index second) {
-                                   return P::has_bonds && state.network.holds({first, second});
-                               });
+        state.contacts.rebuild(
+            state.store,
+            {p, state.scene.walls, passive, list_skin_, state.scene.periodic().period, P::has_materials},
+            std::move(requests), [&](Index first, Index second) {
+                return P::has_bonds && state.network.holds({first, second});
+            });
         if constexpr (P::has_bonds)
             state.network.each_bond([&](auto& bond, Index slab) {
                 const auto slot = [&](Index sphere) {

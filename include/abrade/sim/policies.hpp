@@ -8,8 +8,9 @@
 namespace abrade {
 
 /// The four policies, and the drag law that goes with the fluid.
-template <ContactLaw C, BondLaw B, WearLaw W, FluidModel F, DragLaw D>
+template <ContactPolicy C, BondLaw B, WearLaw W, FluidModel F, DragLaw D>
 struct Policies {
+    static constexpr bool has_materials = !std::same_as<PairLaw<C>, C>;
     static constexpr bool has_bonds = !std::same_as<B, NoBond>;
     static constexpr bool has_wear = !std::same_as<W, NoWear>;
     static constexpr bool has_fluid = !std::same_as<F, NoFluid>;

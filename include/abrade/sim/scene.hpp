@@ -16,6 +16,7 @@ struct ConcreteBlock {
     Lattice lattice{};
     Real density = 2400;  ///< of the spheres [kg/m3]
     FractureVolume fracture_volume = FractureVolume::cell;
+    Index material = 0;  ///< number in a table of laws (MaterialPairs)
 };
 
 /// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.
@@ -48,17 +49,17 @@ struct Scene {
     }
     /// A stone that never moves: of a rough bed, or an obstacle.
     Scene& add_fixed(Clump clump, const Vec3& position,
-                     const Quaternion& orientation = Quaternion::Identity()) {
+                     const Quaternion& orientation = Quaternion::Identity(), Index material = 0) {
         stones.push_back({.clump = std::move(clump),
-                          .state = {.position = position, .orientation = orientation},
+                          .state = {.position = position, .orientation = orientation, .material = material},
                           .fixed = true});
         return *this;
     }
-    Scene& add_wall(const Vec3& point, const Vec3& normal) {
+    Scene& add_wall(const Vec3& point, const Vec3& normal, Index material = 0) {
         require(normal.norm() > 0 && normal.allFinite(),
                 {"Scene.walls[" + std::to_string(walls.size()) + "].normal", "finite and longer than 0"},
                 normal.norm());
-        walls.push_back({point, normal.normalized()});
+        walls.push_back({point, normal.normalized(), material});
         return *this;
     }
 

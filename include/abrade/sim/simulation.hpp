@@ -39,11 +39,11 @@ public:
 
     // --- the four slots --------------------------------------------------------------------------
 
-    template <class L>
+    template <class L, class One = PairLaw<L>>
     auto contact(L law) && {
         check_not_run();
-        static_assert(ContactLaw<L>, "Simulation::contact(law): the law misses what the notes below name");
-        if constexpr (ContactLaw<L>)
+        static_assert(ContactLaw<One>, "Simulation::contact(law): the law misses what the notes below name");
+        if constexpr (ContactPolicy<L>)
             return Simulation<L, B, W, F, D>{std::move(scene_), std::move(law),    std::move(bond_),
                                              std::move(wear_),  std::move(fluid_), std::move(drag_)};
         else
@@ -298,7 +298,7 @@ private:
         remembered_ = step_;
     }
 
-    using PoliciesOf = Policies<std::conditional_t<ContactLaw<C>, C, LinearSpring>, B, W, F, D>;
+    using PoliciesOf = Policies<std::conditional_t<ContactPolicy<C>, C, LinearSpring>, B, W, F, D>;
     using World = abrade::World<PoliciesOf>;
 
     Scene scene_;

@@ -35,6 +35,15 @@ inline BodyStiffness::Body stiff_body(const Particles& particles, Index b, const
     return {particles.inverse_mass[i], particles.inverse_inertia[i], orientation};
 }
 
+/// Springs and dashpots of a contact of effective mass m [kg] on a sphere of that radius [m].
+inline LinkRigidity link_of(const ContactRigidity& touch, Real mass, Real radius) noexcept {
+    LinkRigidity link = LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio, mass);
+    link.turning = touch.rolling * square(radius);
+    link.turning_dashpot =
+        2 * touch.rolling_damping_ratio * std::sqrt(1.4 * mass * touch.rolling) * square(radius);
+    return link;
+}
+
 /// Farthest point of a body from its centre, and its largest sphere [m].
 struct Extent {
     Real reach = 0, largest = 0;
@@ -74,7 +83,7 @@ void each_end(const Network<B>& network, const B& law, const Particles& particle
 
 /// A step to begin with: for stones what the law says of dense surroundings, for bonded spheres what the
 /// bonds that they have and two contacts more allow.
-template <ContactLaw C, BondLaw B>
+template <ContactPolicy C, BondLaw B>
 StableStep stable_step(const C& contact, const B& bond, const Particles& particles, const Network<B>& network,
                        const std::optional<FeedParams>& feed) {
     StableStep step;
@@ -107,7 +116,7 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
         const ContactRigidity touch = contact.rigidity(extent.largest);
         BodyStiffness& own = bonded[at(held[i])];
         own.add_anywhere(detail::stiff_body(particles, b, particles.orientation[i]), contacts_of_concrete,
-                         LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio, mass));
+                         detail::link_of(touch, mass, extent.largest));
         step.lower(own.step(step.seconds), "bonded concrete", b);
         step.lower(contact.stable_dt(mass, extent.largest), "contacts of loose concrete", b);
     }
@@ -136,10 +145,10 @@ public:
         for (Index b = 0; b < p.bodies(); ++b) {
             hold(b);
             if (p.kind[at(b)] != Kind::concrete || held_[at(b)] < 0) continue;
-            const ContactRigidity touch = state_.policies.contact.rigidity(detail::extent_of(p, b).largest);
-            own_[at(held_[at(b)])].add_anywhere(
-                body_of(b), contacts_of_concrete,
-                LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio, p.mass[at(b)]));
+            const Real radius = detail::extent_of(p, b).largest;
+            const ContactRigidity touch = state_.policies.contact.rigidity(radius);
+            own_[at(held_[at(b)])].add_anywhere(body_of(b), contacts_of_concrete,
+                                                detail::link_of(touch, p.mass[at(b)], radius));
         }
         return lowered(step, true);
     }
@@ -149,8 +158,10 @@ public:
         StableStep step{most, "the step taken"};
         std::vector<Real> sum(at(state_.particles.bodies()), 0);
         each_contact_end([&](const End& end) {
-            sum[at(end.body)] += square(most) * end.most(end.link.normal, end.link.tangential) +
-                                 4 * most * end.most(end.link.normal_dashpot, end.link.tangential_dashpot);
+            sum[at(end.body)] +=
+                square(most) * end.most(end.link.normal, end.link.tangential, end.link.turning) +
+                4 * most *
+                    end.most(end.link.normal_dashpot, end.link.tangential_dashpot, end.link.turning_dashpot);
         });
         for (Index b = 0; b < state_.particles.bodies(); ++b)
             if (!(sum[at(b)] <= (state_.particles.site[at(b)] >= 0 ? 0 : 4))) hold(b);
@@ -168,10 +179,11 @@ private:
         bool partner_moves;
         Real inverse_mass, inverse_inertia;  ///< the latter the largest
         /// Bounds the link's share of K or C.
-        Real most(Real along, Real across) const noexcept {
+        Real most(Real along, Real across, Real rolling) const noexcept {
             const Real turning = arm.squaredNorm() * inverse_inertia, mass = inverse_mass;
             const Real lever = arm.cross(normal).squaredNorm() * inverse_inertia;
-            return (partner_moves ? 2 : 1) * (along * (mass + lever) + 2 * across * (mass + turning));
+            return (partner_moves ? 2 : 1) *
+                   (along * (mass + lever) + 2 * across * (mass + turning) + rolling * inverse_inertia);
         }
     };
 
@@ -212,16 +224,18 @@ private:
             if (p.inverse_mass[i] == 0) continue;
             const detail::Extent extent = detail::extent_of(p, b);
             const ContactRigidity touch = state_.policies.contact.rigidity(extent.largest);
-            const auto link =
-                LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio, 0.5 * p.mass[i]);
+            const LinkRigidity link = detail::link_of(touch, 0.5 * p.mass[i], extent.largest);
+            const Real inverse_inertia = p.inverse_inertia[i].maxCoeff();
             const bool sphere = p.sphere_count[i] == 1;
-            const Real turning = p.inverse_mass[i] + square(extent.reach) * p.inverse_inertia[i].maxCoeff();
-            const auto strongest = [&](Real along, Real across) {
-                return 2 * std::max(along * (sphere ? p.inverse_mass[i] : turning), across * turning);
+            const Real turning = p.inverse_mass[i] + square(extent.reach) * inverse_inertia;
+            const auto strongest = [&](Real along, Real across, Real rolling) {
+                return 2 * (std::max(along * (sphere ? p.inverse_mass[i] : turning), across * turning) +
+                            rolling * inverse_inertia);
             };
-            step.lower(damped_step(strongest(link.normal, link.tangential),
-                                   strongest(link.normal_dashpot, link.tangential_dashpot)),
-                       "first touch of the lightest stone", b);
+            step.lower(
+                damped_step(strongest(link.normal, link.tangential, link.turning),
+                            strongest(link.normal_dashpot, link.tangential_dashpot, link.turning_dashpot)),
+                "first touch of the lightest stone", b);
         }
         return step;
     }
@@ -229,12 +243,16 @@ private:
     template <class Visit>
     void each_contact_end(Visit&& visit) const {
         const SphereLines& lines = state_.store.lines;
-        state_.contacts.each_touching([&](const SlotPair& pair, const auto&, const Vec3&) {
+        state_.contacts.each_touching([&](const auto& touching) {
+            const SlotPair& pair = touching.pair;
             const auto contact = contact_between(lines, state_.scene.walls, pair, 0);
             if (!(contact.inverse_mass > 0)) return;
-            const ContactRigidity touch = rigidity_of(contact, lines.place[at(pair.first)].radius);
-            const auto link = LinkRigidity::damped(touch.normal, touch.tangential, touch.damping_ratio,
-                                                   1 / contact.inverse_mass);
+            const ContactRigidity touch =
+                rigidity_of(law_between(state_.policies.contact, touching.materials), contact,
+                            lines.place[at(pair.first)].radius);
+            // The effective radius is less than that of either sphere.
+            const auto link =
+                detail::link_of(touch, 1 / contact.inverse_mass, lines.place[at(pair.first)].radius);
             const Real first_mass = lines.motion[at(pair.first)].inverse_mass;
             const Real second_mass = pair.second < 0 ? 0 : lines.motion[at(pair.second)].inverse_mass;
             const auto end = [&](Index slot, Real sign, bool partner_moves) {
@@ -250,11 +268,12 @@ private:
             if (second_mass > 0) end(pair.second, 1, first_mass > 0);
         });
     }
-    ContactRigidity rigidity_of(const ContactKinematics<Real>& contact, Real radius) const {
-        if constexpr (requires { state_.policies.contact.rigidity(contact); })
-            return state_.policies.contact.rigidity(contact);
+    template <class Law>
+    static ContactRigidity rigidity_of(const Law& law, const ContactKinematics<Real>& contact, Real radius) {
+        if constexpr (KnowsRigidityAsItStands<Law>)
+            return law.rigidity(contact);
         else
-            return state_.policies.contact.rigidity(radius);
+            return law.rigidity(radius);
     }
 
     const State<P>& state_;

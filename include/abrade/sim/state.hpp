@@ -4,6 +4,7 @@
 #include <abrade/bond/network.hpp>
 #include <abrade/dem/contact_list.hpp>
 #include <abrade/sim/ledger.hpp>
+#include <abrade/sim/materials.hpp>
 #include <abrade/sim/policies.hpp>
 #include <abrade/sim/scene.hpp>
 
@@ -50,6 +51,7 @@ struct State {
         if (scene.concrete) add_concrete(*scene.concrete);
         for (const Scene::Stone& stone : scene.stones)
             particles.add(stone.clump, stone.density, stone.state, stone.fixed ? Kind::fixed : Kind::stone);
+        if constexpr (P::has_materials) require_laws_for(policies.contact, particles, scene);
     }
 
     P policies;
@@ -57,7 +59,7 @@ struct State {
     Particles particles;
     SphereStore store;
     FreeFlight flight;
-    ContactList<decltype(P::contact)> contacts;
+    ContactList<PairLaw<decltype(P::contact)>> contacts;
     Network<decltype(P::bond)> network;
     Concrete concrete;
     std::optional<Feed> feed;
@@ -192,8 +194,9 @@ private:
             });
             // Without bonds there is nothing to hold the spheres together: they stand as a rigid bed.
             const bool held = !P::has_bonds || in_wall || site.layer + 1 == lattice.count_layers;
-            const Index body = particles.add(sphere, block.density, {.position = site.centre},
-                                             held ? Kind::fixed : Kind::concrete);
+            const Index body =
+                particles.add(sphere, block.density, {.position = site.centre, .material = block.material},
+                              held ? Kind::fixed : Kind::concrete);
             particles.site[at(body)] = s;
         }
         if constexpr (P::has_bonds) {

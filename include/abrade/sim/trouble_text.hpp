@@ -68,9 +68,8 @@ private:
     /// What would have kept the two apart.
     std::string remedy(const Trouble& trouble) const {
         if (trouble.bonded) return "stiffer bonds or a smaller load are needed";
-        const ImpactRemedy found =
-            ImpactInquiry(world_.state().policies.contact, trouble.contact, time_step_, World::overlap_limit)
-                .remedy();
+        const auto& law = law_between(world_.state().policies.contact, trouble.contact.materials);
+        const auto found = ImpactInquiry(law, trouble.contact, time_step_, World::overlap_limit).remedy();
         if (found.met_at == 0) return "something presses them together: stiffer springs are needed";
         const std::string met = "they met at " + short_text(found.met_at) + " m/s along their normal: ";
         if (found.time_step > 0)

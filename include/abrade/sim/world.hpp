@@ -92,7 +92,7 @@ public:
     const State<P>& state() const noexcept { return state_; }
     const Scene& scene() const noexcept { return state_.scene; }
     const Particles& particles() const noexcept { return state_.particles; }  ///< as last published
-    const ContactList<decltype(P::contact)>& contacts() const noexcept { return state_.contacts; }
+    const ContactList<PairLaw<decltype(P::contact)>>& contacts() const noexcept { return state_.contacts; }
     const Network<decltype(P::bond)>& network() const noexcept { return state_.network; }
     const Concrete& concrete() const noexcept { return state_.concrete; }
     Real gauge_volume() const noexcept { return state_.gauge_volume; }  ///< solid, net downstream [m3]
@@ -103,10 +103,13 @@ public:
     /// last; `other` is negative for a wall. Dashpots act there with velocities half a step old.
     template <class Visit>
     void each_contact(Visit&& visit) const {
-        state_.contacts.each_touching([&](const SlotPair& pair, const auto& memory, const Vec3&) {
+        state_.contacts.each_touching([&](const auto& touching) {
+            const SlotPair& pair = touching.pair;
             const auto contact = contact_between(state_.store.lines, state_.scene.walls, pair, 0);
             visit(body_in(pair.first), body_in(pair.second), contact,
-                  state_.policies.contact.respond(contact, memory).load);
+                  law_between(state_.policies.contact, touching.materials)
+                      .respond(contact, touching.memory)
+                      .load);
         });
     }
 
@@ -248,6 +251,7 @@ private:
         Ledger& a = state_.accounts;
         a.lost_normal += contacts.lost_normal + bonds.lost_normal;
         a.lost_sliding += contacts.lost_tangential + bonds.lost_tangential;
+        a.lost_rolling += contacts.lost_rolling;
         a.lost_bond += bonds.lost_bond;
         a.concrete_lost_normal += contacts.concrete_lost_normal + bonds.concrete_lost_normal;
         a.concrete_lost_sliding += contacts.concrete_lost_tangential + bonds.concrete_lost_tangential;
@@ -272,7 +276,8 @@ private:
         for (std::size_t slot = 0; slot < then.place.size(); ++slot)
             if (then.motion[slot].inverse_mass > 0)
                 then.place[slot].centre -= last.drift * then.motion[slot].velocity;
-        state_.contacts.each_touching([&](const SlotPair& pair, const auto&, const Vec3& before) {
+        state_.contacts.each_touching([&](const auto& touching) {
+            const SlotPair& pair = touching.pair;
             const auto contact = contact_between(then, state_.scene.walls, pair, 0);
             const Real first = then.place[at(pair.first)].radius,
                        second = pair.second < 0 ? 0 : then.place[at(pair.second)].radius;
@@ -284,8 +289,9 @@ private:
             const Real share = contact.overlap / deep.smaller_radius;
             if (!(share > std::max(overlap_limit, trouble_.measure))) return;
             const Vec3& n = contact.normal;
+            deep.materials = touching.materials;
             deep.apart = (deep.reach - contact.overlap) * n;
-            const Real slower = (contact.velocity - before).dot(n);
+            const Real slower = (contact.velocity - touching.before.velocity).dot(n);
             if (last.kick > 0) deep.slowing = slower / last.kick;
             deep.velocity = then.motion[at(pair.first)].velocity - slower * n;
             deep.inverse_mass_along = mobility(then, pair.first, -n);

@@ -1,0 +1,28 @@
+// A small pile of discs from a hopper; the published one is in long_sandpile.cpp.
+#include "sandpile.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace sandpile;
+
+TEST_CASE("a pile with elastic-plastic resistance to rolling stands still; constant torque lets it sink") {
+    const Size small{.discs = 200, .lengths = 0.27};
+    const auto height_at = [](const Run& run, Real t) {
+        std::size_t n = 0;
+        while (n + 1 < run.time.size() && run.time[n] < t) ++n;
+        return run.height[n];
+    };
+    const Run holds = pour(small, Law::Model::elastic_plastic, 3, 0.25);
+    const Run creeps = pour(small, Law::Model::constant_torque, 3, 0.25);
+    CHECK(std::abs(holds.height.back() / height_at(holds, gate_opens + 2) - 1) < 0.001);
+    CHECK(creeps.height.back() < 0.95 * holds.height.back());
+    CHECK(creeps.kinetic > 10 * holds.kinetic);
+    for (const Run& run : {holds, creeps}) {
+        CHECK(run.off_plane == 0);
+        CHECK(run.residual < 1e-12);
+        CHECK(run.lost_rolling > 0.1 * run.lost);
+        CHECK(std::abs(run.integration_residue) < 0.05 * run.lost);
+    }
+    MESSAGE("heights " << holds.height.back() << " and " << creeps.height.back() << " m after " << holds.steps
+                       << " steps; kinetic energy " << holds.kinetic << " and " << creeps.kinetic << " J");
+}
