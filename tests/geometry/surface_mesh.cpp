@@ -110,7 +110,7 @@ TEST_CASE("what is no solid is refused, with the place") {
     CHECK(has(message_of(winged), "the first with 3 at (0, 0, 0) m"));
     BoxParts nan(sides);
     nan.vertices[3].y() = std::numeric_limits<Real>::quiet_NaN();
-    CHECK(message_of(nan) == "SurfaceMesh.vertices must be finite, got nan m");
+    CHECK(message_of(nan) == "SurfaceMesh.vertices.y must be finite, got nan m");
     BoxParts wrong(sides);
     wrong.triangles[5][1] = 8;
     CHECK(message_of(wrong) == "SurfaceMesh.triangles[5] must be made of vertices below 8, got 8");

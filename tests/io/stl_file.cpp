@@ -138,12 +138,12 @@ TEST_CASE("broken text, with its line") {
 
 TEST_CASE("numbers that are none, and surfaces that are not closed") {
     CHECK(has(message_of(replaced(ascii(), "vertex 1", "vertex nan")),
-              "input: 'stone.stl': SurfaceMesh.vertices must be finite, got nan m"));
+              "input: 'stone.stl': SurfaceMesh.vertices.x must be finite, got nan m"));
     CHECK(has(message_of(replaced(ascii(), "vertex 1", "vertex inf")), "must be finite, got inf m"));
     std::string nan = binary();
     const float bad = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(nan.data() + 84 + 12, &bad, 4);
-    CHECK(has(message_of(nan), "SurfaceMesh.vertices must be finite, got nan m"));
+    CHECK(has(message_of(nan), "SurfaceMesh.vertices.x must be finite, got nan m"));
     CHECK(has(message_of(replaced(ascii(), "vertex 1", "vertex 1.001")),
               "SurfaceMesh must be closed and manifold"));
     CHECK(read_stl(put(replaced(ascii(), "vertex 1", "vertex 1.001")), {.merge_distance = 0.01})
