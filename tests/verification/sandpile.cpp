@@ -5,7 +5,8 @@
 
 using namespace sandpile;
 
-TEST_CASE("a pile with elastic-plastic resistance to rolling stands still; constant torque lets it sink") {
+TEST_CASE(
+    "a pile with elastic-plastic resistance to rolling stands still; with constant torque it never does") {
     const Size small{.discs = 200, .lengths = 0.27};
     const auto height_at = [](const Run& run, Real t) {
         std::size_t n = 0;
@@ -15,8 +16,7 @@ TEST_CASE("a pile with elastic-plastic resistance to rolling stands still; const
     const Run holds = pour(small, Law::Model::elastic_plastic, 3, 0.25);
     const Run creeps = pour(small, Law::Model::constant_torque, 3, 0.25);
     CHECK(std::abs(holds.height.back() / height_at(holds, gate_opens + 2) - 1) < 0.001);
-    CHECK(creeps.height.back() < 0.95 * holds.height.back());
-    CHECK(creeps.kinetic > 10 * holds.kinetic);
+    CHECK(creeps.kinetic > 1e6 * holds.kinetic);  // how high a small pile is, is chance
     for (const Run& run : {holds, creeps}) {
         CHECK(run.off_plane == 0);
         CHECK(run.residual < 1e-12);
