@@ -1,4 +1,7 @@
 // The one main of all tests. ctest runs it once per source file, with --source-file=...
+//
+// doctest::Approx(x).epsilon(e) lets pass what is within e (1 + |x|): far below 1 an absolute tolerance. With
+// .scale(0) it is e |x|.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 

@@ -7,7 +7,7 @@
 // (collision_reference.hpp), in shares of the kinetic energy brought into the collision.
 
 #include "../../examples/common/textbook.hpp"
-#include "collision_reference.hpp"
+#include "../../tests/verification/collision_problem.hpp"
 #include "panels.hpp"
 
 #include <algorithm>
@@ -32,26 +32,13 @@ const std::vector<std::string> methods{PredictingVerlet::name, LaggedVerlet::nam
                                        McLachlan4::name,       RungeKutta4::name,  found_name,
                                        adaptive_name};
 
-Collision spheres(Real angle) {
-    const auto mass = [](Real radius) { return 4.0 / 3 * pi * cube(radius) * 2650; };
-    return {.radius_i = 0.02,
-            .radius_j = 0.03,
-            .mass_i = mass(0.02),
-            .mass_j = mass(0.03),
-            .speed = 1,
-            .angle = angle};
-}
 struct Linear {
     static constexpr const char* title = "LinearSpring";
-    static LinearSpring law(Real e) {
-        return LinearSpring{{.stiffness = 1e7, .restitution = e, .friction = 0.5}};
-    }
+    static LinearSpring law(Real e) { return linear(e); }
 };
 struct Hertz {
     static constexpr const char* title = "HertzMindlin";
-    static HertzMindlin law(Real e) {
-        return HertzMindlin{{.youngs = 1e9, .restitution = e, .friction = 0.5}};
-    }
+    static HertzMindlin law(Real e) { return hertz(e); }
 };
 
 /// One line of the CSV: root mean squares over the phases.

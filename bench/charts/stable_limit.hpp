@@ -11,8 +11,7 @@ namespace abrade::charts {
 
 constexpr Real ball_diameter = 0.02, pressed_by = 1e-9, stone_density = 2650;  ///< [m], [m], [kg/m3]
 
-/// Bodies at rest, pressed together only just: then contacts are as good as linear, and a row does not
-/// buckle.
+/// Bodies at rest, pressed together only just: contacts are as good as linear, and a row does not buckle.
 struct Bed {
     struct Body {
         Clump clump{};
@@ -36,9 +35,8 @@ inline Bed::Body ball_at(const Vec3& position, Kind kind = Kind::stone) {
     return {make_clump("ball", {{Vec3::Zero(), 0.5 * ball_diameter}}), {.position = position}, kind};
 }
 
-/// Two balls in a row of four whose ends are fixed would be pressed by those; a pair alone is pressed by
-/// nothing. So it is joined by one that is held: a ball between two fixed ones has the pair's stiffness, 2 k
-/// on m.
+/// A pair alone is pressed together by nothing. So a ball stands between two fixed ones instead: it has the
+/// pair's stiffness, 2 k on m.
 inline Bed pair_bed() {
     Bed bed;
     for (int n = 0; n < 3; ++n)
@@ -46,6 +44,7 @@ inline Bed pair_bed() {
             ball_at({n * (ball_diameter - pressed_by), 0, 0}, n == 1 ? Kind::stone : Kind::fixed));
     return bed;
 }
+/// `count` balls in a row, the first and the last fixed.
 inline Bed row_bed(int count) {
     Bed bed;
     for (int n = 0; n < count; ++n)

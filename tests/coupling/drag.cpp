@@ -39,7 +39,7 @@ TEST_CASE("Stokes limit: the force is 6 pi mu r u") {
     const Real r = 1e-3;
     const FluidLoad load = fluid_load(CliftGauvin{}, honey, {Vec3::Zero(), Vec3::Zero(), ball(r)}, gravity);
     CHECK(load.drag.x() ==
-          doctest::Approx(6 * pi * 100 * r * 1).epsilon(0.02));  // Re = 0.02: 0.15 Re^0.687 = 1 %
+          doctest::Approx(6 * pi * 100 * r * 1).epsilon(0.02).scale(0));  // Re = 0.02: 0.15 Re^0.687 = 1 %
     CHECK(load.drag.tail<2>().norm() == 0);
 }
 

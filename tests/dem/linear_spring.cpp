@@ -49,7 +49,7 @@ Real restitution_by_integration(Real zeta) {
 TEST_CASE("at rest: a spring's push, its energy, no loss") {
     const auto [load, memory] = law().respond(head_on(1e-4, 0), Memory{});
     CHECK((load.force - Vec3(0, 0, 100)).norm() < 1e-12);
-    CHECK(load.stored == doctest::Approx(0.005));
+    CHECK(load.stored == doctest::Approx(0.005).scale(0));
     CHECK(load.lost_normal == 0);
     CHECK(load.lost_tangential == 0);
     CHECK(memory.spring == Vec3::Zero());
@@ -84,7 +84,8 @@ TEST_CASE("an open contact: no force, memory cleared, what it held is lost once"
     CHECK(load.force == Vec3::Zero());
     CHECK(load.stored == 0);
     CHECK(load.lost_normal == 0);
-    CHECK(load.lost_tangential == doctest::Approx(0.5 * law().tangential_stiffness() * 4e-12).epsilon(1e-14));
+    CHECK(load.lost_tangential ==
+          doctest::Approx(0.5 * law().tangential_stiffness() * 4e-12).epsilon(1e-14).scale(0));
     CHECK(memory.spring == Vec3::Zero());
     CHECK(law().respond(contact, memory).load.lost_tangential == 0);
     contact.overlap = 0;  // touching in a point is not a contact
@@ -198,9 +199,9 @@ TEST_CASE("damping ratio gives the restitution asked for, when the contact canno
         CHECK(zeta > before);  // falls steadily with e, over critical damping at exp(-2) = 0.135 too
         before = zeta;
         CHECK(restitution_by_integration(zeta) ==
-              doctest::Approx(e).epsilon(2e-4));  // stops within dt = 1e-4 of the zero
+              doctest::Approx(e).epsilon(2e-4).scale(0));  // stops within dt = 1e-4 of the zero
     }
-    CHECK(damping_ratio_without_tension(std::exp(-2.0)) == doctest::Approx(1).epsilon(1e-6));
+    CHECK(damping_ratio_without_tension(std::exp(-2.0)) == doctest::Approx(1).epsilon(1e-6).scale(0));
     for (const Real bad : {0.0, -0.5, 1.0000001, std::numeric_limits<Real>::quiet_NaN()})
         CHECK_THROWS_AS(damping_ratio_without_tension(bad), InputError);
 }
@@ -209,8 +210,8 @@ TEST_CASE("the stable step falls with stiffness and damping and grows with mass"
     const auto step = [](Real k, Real e, Real m) {
         return LinearSpring{{.stiffness = k, .restitution = e}}.stable_dt(m, 0.01);
     };
-    CHECK(step(4e6, 0.5, 0.1) == doctest::Approx(0.5 * step(1e6, 0.5, 0.1)).epsilon(1e-14));
-    CHECK(step(1e6, 0.5, 0.4) == doctest::Approx(2 * step(1e6, 0.5, 0.1)).epsilon(1e-14));
+    CHECK(step(4e6, 0.5, 0.1) == doctest::Approx(0.5 * step(1e6, 0.5, 0.1)).epsilon(1e-14).scale(0));
+    CHECK(step(1e6, 0.5, 0.4) == doctest::Approx(2 * step(1e6, 0.5, 0.1)).epsilon(1e-14).scale(0));
     CHECK(step(1e6, 0.3, 0.1) < step(1e6, 0.9, 0.1));
     // An undamped pair alone, the loosest case, is stable up to 2/sqrt(k / (m/2)).
     CHECK(step(1e6, 1, 0.1) < 2 / std::sqrt(1e6 / 0.05));

@@ -123,8 +123,8 @@ TEST_CASE("a million steps: the energy of Runge-Kutta drifts away") {
                                                                  << measured.late);
     // |R(i dt)|^2 = 1 - dt^6/72 + dt^8/576 a step.
     const Real per_step = -std::log1p(-1e-6 / 72 + 1e-8 / 576);
-    CHECK(measured.early == doctest::Approx(1 - std::exp(-1e3 * per_step)).epsilon(1e-3));
-    CHECK(measured.late == doctest::Approx(1 - std::exp(-1e6 * per_step)).epsilon(1e-3));
+    CHECK(measured.early == doctest::Approx(1 - std::exp(-1e3 * per_step)).epsilon(1e-3).scale(0));
+    CHECK(measured.late == doctest::Approx(1 - std::exp(-1e6 * per_step)).epsilon(1e-3).scale(0));
 }
 
 TEST_CASE_TEMPLATE("each step commits once", M, PredictingVerlet, LaggedVerlet, SymplecticEuler, McLachlan4,

@@ -55,14 +55,15 @@ TEST_CASE("the spring holds k_r theta up to mu_r R f_n, along what rolls, and sl
         theta += spin * dt;
         lost += load.lost_rolling;
         memory = next;
-        REQUIRE(load.couple.x() == doctest::Approx(-std::min(stiffness * theta, limit)).epsilon(1e-9));
+        REQUIRE(load.couple.x() ==
+                doctest::Approx(-std::min(stiffness * theta, limit)).epsilon(1e-9).scale(0));
         REQUIRE(load.couple.tail<2>().norm() == 0);
     }
     CHECK(stiffness * theta > 2 * limit);
     // It yields at theta_m = delta / (2.25 mu_r R), and loses the limit times the rest of the way.
     const Real yields = 1e-4 / (2.25 * 0.3 / 200);
-    CHECK(limit / stiffness == doctest::Approx(yields));
-    CHECK(lost / (limit * (theta - yields)) == doctest::Approx(1).epsilon(1e-6));
+    CHECK(limit / stiffness == doctest::Approx(yields).scale(0));
+    CHECK(lost / (limit * (theta - yields)) == doctest::Approx(1).epsilon(1e-6).scale(0));
 }
 
 TEST_CASE("spin about the normal is not resisted; nor is anything when the spheres are apart") {
@@ -80,7 +81,7 @@ TEST_CASE("spin about the normal is not resisted; nor is anything when the spher
     CHECK(apart.memory.stiffness == 0);
     // What the spring held is lost, once.
     CHECK(apart.load.lost_rolling / (0.5 * stiffness * held.memory.turn.squaredNorm()) ==
-          doctest::Approx(1).epsilon(1e-12));
+          doctest::Approx(1).epsilon(1e-12).scale(0));
     CHECK(law.respond(rolling_at(-1e-9, 5), apart.memory).load.lost_rolling == 0);
 }
 
@@ -248,8 +249,9 @@ TEST_CASE("unequal spheres feel opposite torques, not opposite levers") {
     const auto alone = law.respond(
         contact_between(store.lines, {}, {store.slot_of(0), store.slot_of(1)}, 1e-5), Linear::Memory<Real>{});
     CHECK((torque - alone.load.couple).norm() < 1e-12 * torque.norm());
-    CHECK(torque.normalized().dot(Vec3(0, 10, -40).normalized()) == doctest::Approx(1).epsilon(1e-9));
-    CHECK(sums.lost_rolling / alone.load.lost_rolling == doctest::Approx(1).epsilon(1e-9));
+    CHECK(torque.normalized().dot(Vec3(0, 10, -40).normalized()) ==
+          doctest::Approx(1).epsilon(1e-9).scale(0));
+    CHECK(sums.lost_rolling / alone.load.lost_rolling == doctest::Approx(1).epsilon(1e-9).scale(0));
 }
 
 TEST_CASE("the stable step falls with the rolling spring, and is the law's own without it") {

@@ -34,7 +34,8 @@ TEST_CASE("a fixed stone stays, whatever falls on it, and takes part in no accou
         CHECK(p.velocity[0] == Vec3::Zero());
         CHECK(sim.ledger().lost_normal > 0);  // it was hit
         CHECK(p.position[1].head<2>().norm() > 0.003);
-        CHECK(sim.ledger().potential == doctest::Approx(p.mass[1] * standard_gravity * p.position[1].z()));
+        CHECK(sim.ledger().potential ==
+              doctest::Approx(p.mass[1] * standard_gravity * p.position[1].z()).scale(0));
         CHECK(sim.ledger().residual_relative() < 1e-12);
     }
 }

@@ -77,7 +77,7 @@ TEST_CASE("a NaN from a law is caught in its own step, with the id of the body")
     const RunError error = error_of(sim, {.end_time = 0.1, .time_step = 1e-5});
     CHECK(error.step >= 51);
     CHECK(error.step <= 53);
-    CHECK(error.time == doctest::Approx(error.step * 1e-5));
+    CHECK(error.time == doctest::Approx(error.step * 1e-5).scale(0));
     CHECK(error.id == 1);
     CHECK(says(error, "velocity of stone with id 1 is not finite"));
     check_sound(sim, error);

@@ -68,7 +68,7 @@ TEST_CASE("a time that has passed cannot be run to") {
     auto sim = simulate(one_stone()).contact(law);
     sim.run({.end_time = 1e-3});
     CHECK_THROWS_AS(sim.run({.end_time = 0.5e-3}), InputError);
-    CHECK(sim.time() == doctest::Approx(1e-3));  // untouched by the error
+    CHECK(sim.time() == 1e-3);  // untouched by the error
 }
 
 TEST_CASE("stones: radius, density, position, velocity") {

@@ -176,7 +176,8 @@ TEST_CASE("what is predicted scales as sqrt(m/k), and says what sets it") {
     auto stones = simulate(light).contact(LinearSpring{{.stiffness = 1e6}});
     stones.run({.end_time = 0});
     CHECK(stones.stable_time_step().limit == "contacts of the lightest stone");
-    CHECK(stones.stable_time_step().seconds == doctest::Approx(soft * std::pow(0.2, 1.5)).epsilon(1e-9));
+    CHECK(stones.stable_time_step().seconds ==
+          doctest::Approx(soft * std::pow(0.2, 1.5)).epsilon(1e-9).scale(0));
 }
 
 TEST_CASE(
@@ -212,12 +213,14 @@ TEST_CASE(
         const Real zeta =
             law.damping_ratio() * std::sqrt(2.0);  // two dashpots c = 2 z sqrt(k m) against 2 sqrt(2 k m)
         const Real exact = 2 / omega * (std::sqrt(1 + 4 * zeta * zeta) - 2 * zeta);
+        // Just beyond the limit a damped mode grows slowly: many steps tell the two apart.
         const Real predicted = Shaken<LinearSpring>(bed, law).predicted(),
-                   measured = measured_limit(bed, law, predicted);
+                   measured = measured_limit(bed, law, predicted, 10'000);
         MESSAGE("restitution " << restitution << ": measured/closed form " << measured / exact
                                << ", predicted/closed form " << predicted / exact);
-        CHECK(measured / exact == doctest::Approx(1).epsilon(0.005));  // half a per cent: the bisection
-        CHECK(predicted / exact == doctest::Approx(1).epsilon(0.001));
+        CHECK(measured / exact ==
+              doctest::Approx(1).epsilon(0.005).scale(0));  // half a per cent: the bisection
+        CHECK(predicted / exact == doctest::Approx(1).epsilon(0.001).scale(0));
     }
 }
 

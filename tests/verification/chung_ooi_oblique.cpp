@@ -101,7 +101,7 @@ TEST_CASE("test 4, from 35 degrees on: the closed form of an impact that slides 
             const Impact t = impact_4(aluminium_oxide, row.at("theta_deg"));
             const Rebound r = off_plane(t, form, steps);
             CAPTURE(row.at("theta_deg"));
-            CHECK(r.tangential / t.tangential == doctest::Approx(row.at("e_t")).epsilon(0.01));
+            CHECK(r.tangential / t.tangential == doctest::Approx(row.at("e_t")).epsilon(0.01).scale(0));
             CHECK(-r.rim / t.radius == doctest::Approx(row.at("omega_rad_s")).epsilon(0.01));
             // 1 % of the angle, or 0.1 degrees where it is small.
             CHECK(figure_4("contact_rebound_angle_deg", t, r) ==
@@ -135,8 +135,8 @@ TEST_CASE("test 5, one normal speed, many tangential speeds: half Mindlin's stif
             const Real lever = 1 - shorter_lever(t);
             const Real exact =
                 row.texts.at("quantity").starts_with("recoil") ? x - 2 - 5 * lever : -5 * lever;
-            CHECK(own == doctest::Approx(exact).epsilon(0.01));
-            CHECK(value == doctest::Approx(exact).epsilon(0.01));
+            CHECK(own == doctest::Approx(exact).epsilon(0.01).scale(0));
+            CHECK(value == doctest::Approx(exact).epsilon(0.01).scale(0));
         }
     }
     curves.gate("unscaled spring, k_t / 2, against the curve", 0.05);
@@ -266,7 +266,7 @@ TEST_CASE("test 7, equal spheres whose surfaces do not slip: spins stay, nothing
                 for (std::size_t b = 0; b < 2; ++b) {
                     const Real side = b == 0 ? -1 : 1;
                     const Vec3 spin = p.angular_velocity(static_cast<Index>(b)), v = p.velocity[b];
-                    CHECK(v.x() * side == doctest::Approx(0.5 * speed).epsilon(0.005));  // dem03's gate
+                    CHECK(std::abs(v.x() * side / speed - 0.5) <= 0.005);  // dem03's gate
                     CHECK((spin - Vec3(0, -side * row.at("omega_out"), 0)).norm() <= 1e-10 * omega);
                     CHECK(std::abs(v.y()) + std::abs(v.z()) <= 1e-10 * speed);
                 }
@@ -320,7 +320,7 @@ TEST_CASE(
                       << " % of what the impact brought, an incremental one "
                       << 100 * (own.kinetic + own.lost() - brought) / brought << " %");
             CHECK(-e.integration_residue() / brought == doctest::Approx(made).epsilon(1e-9));
-            CHECK(made == doctest::Approx(t.restitution < 1 ? 9.7e-4 : -1.16e-2).epsilon(0.1));
+            CHECK(made == doctest::Approx(t.restitution < 1 ? 9.7e-4 : -1.16e-2).epsilon(0.1).scale(0));
             // The worse is the sticking impact, of order 1.5: 1.5e-4 at 100 steps, 2.1e-6 at 2000.
             CHECK(std::abs(own.integration_residue()) < (n == steps ? 2e-4 : 3e-6) * brought);
         }

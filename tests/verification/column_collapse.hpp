@@ -108,8 +108,7 @@ template <class Sim, class Observer>
 void run_to_rest(Sim& sim, const Rest& rest, Observer&& observer) {
     const Real unit = std::sqrt(diameter / g);
     for (Real until = 1;; ++until) {
-        // The stable step counts twelve contacts at once; 0.6 of it leaves 1 % of the energy to the
-        // integrator.
+        // The stable step counts twelve contacts at once; 0.6 of it leaves 1 % of the energy as residue.
         sim.run({.end_time = until * unit, .safety = 0.6});
         observer(sim);
         Real kinetic = 0, weight = 0;

@@ -78,8 +78,8 @@ struct Random {
     }
 };
 
-/// side^3 spheres of 0.8 to 1.2 cm that fly and spin at random between two plates, in space that repeats
-/// itself sideways. No weight.
+/// side^3 spheres of radius 0.8 to 1.2 cm that fly and spin at random between two plates, in space that
+/// repeats itself sideways. No weight.
 inline Scene gas(int side) {
     constexpr Real cell = 0.032;
     Random random(17);

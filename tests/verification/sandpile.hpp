@@ -39,8 +39,8 @@ inline Law law(Law::Model model) {
                 .model = model}};
 }
 
-/// Spheres in a row from a to b, so close that a disc rolls over them as over a plane: they rise by 2 % of a
-/// disc's radius.
+/// Spheres in a row from a to b, so close that a disc rolls over them as over a plane: the row's face rises
+/// and falls by 2 % of their radius.
 inline void add_row(Lattice& lattice, const Vec3& a, const Vec3& b) {
     const int count = static_cast<int>(std::ceil((b - a).norm() / (0.4 * lattice.radius)));
     for (int n = 0; n <= count; ++n) {

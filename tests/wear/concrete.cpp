@@ -17,17 +17,17 @@ Real lost_by_depth(const Concrete& c) {
 TEST_CASE("a site wears until it is fully fractured; the rest is overflow") {
     Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}));
     const Real cell = c.lattice().sites[7].cell_volume;
-    CHECK(cell == doctest::Approx(8e-6));
+    CHECK(cell == doctest::Approx(8e-6).scale(0));
     c.wear(7, 0.75 * cell);
     CHECK(c.fracture(7) == doctest::Approx(0.75));
     CHECK(c.overflow_volume() == 0);
     c.wear(7, 0.75 * cell);
     CHECK(c.fracture(7) == 1);
-    CHECK(c.overflow_volume() == doctest::Approx(0.5 * cell));
+    CHECK(c.overflow_volume() == doctest::Approx(0.5 * cell).scale(0));
     c.wear(7, cell);
     CHECK(c.fracture(7) == 1);
-    CHECK(c.worn_volume() == doctest::Approx(cell));
-    CHECK(c.overflow_volume() == doctest::Approx(1.5 * cell));
+    CHECK(c.worn_volume() == doctest::Approx(cell).scale(0));
+    CHECK(c.overflow_volume() == doctest::Approx(1.5 * cell).scale(0));
     CHECK(c.fracture(8) == 0);
 }
 
@@ -40,7 +40,8 @@ TEST_CASE("nothing is lost between worn volume and overflow, however small the p
         given += piece;
         REQUIRE(c.fracture(static_cast<Index>(n % 5)) <= 1);
     }
-    CHECK(c.worn_volume() + c.overflow_volume() == doctest::Approx(given).epsilon(1e-11));  // 3e5 roundings
+    CHECK(c.worn_volume() + c.overflow_volume() ==
+          doctest::Approx(given).epsilon(1e-11).scale(0));  // 3e5 roundings
     CHECK(c.overflow_volume() > 0);
 }
 
@@ -50,17 +51,18 @@ TEST_CASE("depth times area is the volume lost: worn off those that stand, whole
           invert_lattice({.length = 0.1, .width = 0.5, .arc_radius = 0.4}, {.layers = 3})}) {
         Concrete c(lattice);
         for (Index s = 0; s < c.sites(); s += 4) c.wear(s, 1e-7 * (s % 11));
-        CHECK(lost_by_depth(c) == doctest::Approx(c.worn_volume()).epsilon(1e-13));
+        CHECK(lost_by_depth(c) == doctest::Approx(c.worn_volume()).epsilon(1e-13).scale(0));
         CHECK(c.detached_volume() == 0);
         c.set_gone(4);
         c.set_gone(5);
         CHECK(c.gone(4));
         CHECK(!c.gone(6));
         CHECK(c.detached_volume() > 0);
-        CHECK(lost_by_depth(c) == doctest::Approx(c.worn_volume() + c.detached_volume()).epsilon(1e-13));
+        CHECK(lost_by_depth(c) ==
+              doctest::Approx(c.worn_volume() + c.detached_volume()).epsilon(1e-13).scale(0));
         c.wear(4, 1e-7);  // a grain on its way still wears: what is lost in all stays the same
         const Real before = lost_by_depth(c);
-        CHECK(before == doctest::Approx(c.worn_volume() + c.detached_volume()).epsilon(1e-13));
+        CHECK(before == doctest::Approx(c.worn_volume() + c.detached_volume()).epsilon(1e-13).scale(0));
     }
 }
 
@@ -76,11 +78,11 @@ TEST_CASE("depth of a column whose top sphere is gone is one layer") {
 TEST_CASE("V_omega as the sphere: it is full sooner") {
     Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}), FractureVolume::sphere);
     const Real sphere = pi / 6 * 8e-6;
-    CHECK(c.capacity(0) == doctest::Approx(sphere));
+    CHECK(c.capacity(0) == doctest::Approx(sphere).scale(0));
     c.wear(0, 8e-6);
     CHECK(c.fracture(0) == 1);
-    CHECK(c.worn_volume() == doctest::Approx(sphere));
-    CHECK(c.overflow_volume() == doctest::Approx(8e-6 - sphere));
+    CHECK(c.worn_volume() == doctest::Approx(sphere).scale(0));
+    CHECK(c.overflow_volume() == doctest::Approx(8e-6 - sphere).scale(0));
 }
 
 TEST_CASE("no concrete at all is no special case") {

@@ -72,11 +72,8 @@ public:
         damping_.diagonal().tail<3>() += 2 * count * link.turning_dashpot * body.inverse_inertia;
     }
 
-    /// Whether a step is stable that is known to be so if a cheap bound, the largest row sum, says so.
-    bool surely_allows(Real dt) const noexcept { return row_sum(at_step(dt)) <= 4; }
-
-    /// The largest step [s] up to `most` that this body allows, to 1e-4 from below. Anything not finite
-    /// allows none.
+    /// The largest step [s] up to `most` that this body allows, to 1e-4 from below; 0 where anything is not
+    /// finite.
     Real step(Real most) const noexcept {
         if (!stiffness_.allFinite() || !damping_.allFinite()) return 0;
         Real low = damped_step(row_sum(stiffness_), row_sum(damping_)), high = most;

@@ -152,8 +152,9 @@ private:
     long evaluations_ = 0;
 };
 
-/// Runs a collision by steps of dt [s]; the spheres touch first when the share `phase`, in (0, 1), of a step
-/// is over. Throws InputError for input that cannot be used, and where they have not parted after 1e7 steps.
+/// Runs a collision by steps of dt [s]; the spheres touch first when the share `phase`, in [0, 1), of a step
+/// is over; with 0 a step begins at first touch. Throws InputError for input that cannot be used, and where
+/// they have not parted after 1e7 steps.
 ///
 /// The energy lost is the kinetic energy that is gone, whatever the stepper. It is split by the work along
 /// the line of centres, -d(1/2 m v_n^2) plus what the turning of that line exchanges (m v_t^2 / distance d

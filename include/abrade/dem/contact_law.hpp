@@ -44,6 +44,7 @@ struct ContactLoad {
     Number lost_rolling = Number(0);                 ///< [J]
 };
 
+/// What a law answers: the load, and what it wants to remember.
 template <class Number, class Memory>
 struct ContactResponse {
     ContactLoad<Number> load;
@@ -76,18 +77,18 @@ inline Real stable_dt_among_twelve(const ContactRigidity& contact, Real mass) no
     return 2 / (std::sqrt(omega2 + c * c) + c);
 }
 
+// clang-format off
+/// Has a `Memory<Number>` that value-initialises to "no contact yet".
+template <class L>
+concept RemembersContacts = requires { typename L::template Memory<Real>; } &&
+    std::default_initializable<typename L::template Memory<Real>>;
+
 /// A contact law is a pure function of kinematics and memory.
-/// - `Memory<Number>` value-initialises to "no contact yet";
 /// - `respond` handles overlap <= 0 too: no force, the memory cleared, what it still stored booked as lost;
 /// - `stable_dt(mass, radius)` is a time step [s] to begin with, for a sphere of that mass and radius in
 ///   dense surroundings;
 /// - `rigidity(radius)` lets the engine sum up what acts on one body. A law whose contacts stiffen also
 ///   offers `rigidity(contact)`, of a contact as it stands.
-// clang-format off
-template <class L>
-concept RemembersContacts = requires { typename L::template Memory<Real>; } &&
-    std::default_initializable<typename L::template Memory<Real>>;
-
 template <class L>
 concept ContactLaw = Law<L> && RemembersContacts<L> && requires(const L& law, const ContactKinematics<Real>& contact,
                                         const typename L::template Memory<Real>& memory) {

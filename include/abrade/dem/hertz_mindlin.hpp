@@ -9,8 +9,10 @@ namespace abrade {
 /// Hertz-Mindlin with Coulomb's slider. delta overlap [m], R effective radius [m], m effective mass [kg]:
 ///   f_n = 4/3 E* sqrt(R delta) delta + c_n v_n,    stored 2/5 of f_elastic delta
 ///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,       k_t = 8 G* sqrt(R delta)
-///   1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2,     1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2,  G = E / (2 (1 +
-///   nu)) c = 2 sqrt(5/6) zeta sqrt(S m),  S_n = 2 E* sqrt(R delta),  S_t = k_t
+///   1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2,     1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2
+///   G = E / (2 (1 + nu)),  c = 2 sqrt(5/6) zeta sqrt(S m),  S_n = 2 E* sqrt(R delta),  S_t = k_t
+/// v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s]. Throws InputError for
+/// parameters out of their range.
 /// The damping makes restitution independent of speed (Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71
 /// (1992) 239, doi:10.1016/0032-5910(92)88030-L); zeta follows from e by the closed form of the linear
 /// spring, which holds here too, with or without tension.

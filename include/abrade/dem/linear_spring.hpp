@@ -10,7 +10,8 @@ namespace abrade {
 /// doi:10.1680/geot.1979.29.1.47):
 ///   f_n = max(k_n delta + c_n v_n, 0),  c_n = 2 zeta sqrt(k_n m_eff)
 ///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,  c_t = 2 zeta sqrt(k_t m_eff)
-/// delta overlap [m], v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s].
+/// delta overlap [m], v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s], m_eff
+/// effective mass [kg]. Throws InputError for parameters out of their range.
 /// Contact time pi sqrt(m_eff / k_n) (undamped); rigid enough when the overlap stays far below the radius.
 class LinearSpring {
 public:

@@ -14,7 +14,8 @@ namespace abrade {
 /// material gives the bits of its law alone.
 ///
 /// The time step suits every law of the table on every body. Pairs that cannot meet may be left out; one that
-/// can is missed before the first step.
+/// can is an InputError before the first step. Throws InputError for a table that names a material or a pair
+/// twice or a material it does not have, and for parameters that a law refuses.
 template <ContactLaw One>
 class MaterialPairs {
 public:
@@ -56,7 +57,7 @@ public:
                     f(pair.first + "-" + pair.second + "." + std::string(parameter), value, unit);
                 });
         }
-        /// Of a material; InputError, with the names that are there, for one that is not.
+        /// The number of a material; InputError, with the names that are there, for one that is not.
         Index number(std::string_view material) const {
             std::string known;
             for (std::size_t n = 0; n < materials.size(); ++n) {
@@ -79,14 +80,14 @@ public:
     const Params& params() const noexcept { return params_; }
 
     Index materials() const noexcept { return static_cast<Index>(params_.materials.size()); }
-    /// Of a material, to be given to bodies and walls; InputError for an unknown name.
+    /// The number of a material, to be given to bodies and walls; InputError for an unknown name.
     Index number(std::string_view material) const { return params_.number(material); }
     const std::string& material(Index number) const {
         return params_.materials[static_cast<std::size_t>(number)];
     }
 
     bool has(MaterialPair pair) const noexcept { return of_[at(pair)] >= 0; }
-    /// Of a pair that there is.
+    /// The law of a pair that there is.
     const One& between(MaterialPair pair) const noexcept {
         return laws_[static_cast<std::size_t>(of_[at(pair)])];
     }

@@ -1,6 +1,7 @@
 #pragma once
 // Boost.Odeint's steppers for small systems with memory: to compare with, and for reference solutions. Not
-// part of abrade.hpp: one stepper of odeint takes 1.7 s to compile, dem/stepper.hpp takes from it a tag only.
+// part of abrade.hpp, for they take long to compile (docs/steppers.md); dem/stepper.hpp takes from odeint a
+// tag only.
 
 #include <abrade/dem/phase_point.hpp>
 #include <abrade/dem/stepper.hpp>
@@ -220,6 +221,7 @@ using DormandPrince = boost::numeric::odeint::runge_kutta_dopri5<State>;
 template <class State>
 using AdaptiveDormandPrince = boost::numeric::odeint::dense_output_runge_kutta<
     boost::numeric::odeint::controlled_runge_kutta<DormandPrince<State>>>;
+/// One with these tolerances on the error of a step.
 template <class State>
 AdaptiveDormandPrince<State> adaptive_dormand_prince(Real absolute, Real relative) {
     using Checker = typename boost::numeric::odeint::controlled_runge_kutta<DormandPrince<State>>;

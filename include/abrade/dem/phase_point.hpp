@@ -10,7 +10,7 @@
 namespace abrade {
 
 /// Positions and velocities of a system with N degrees of freedom. The library's engine has a state of its
-/// own (sim/world.hpp); this one is for a contact alone, an oscillator, a law under study.
+/// own (sim/state.hpp); this one is for a contact alone, an oscillator, a law under study.
 template <std::size_t N>
 struct PhasePoint {
     using Vector = std::array<Real, N>;

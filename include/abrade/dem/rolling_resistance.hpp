@@ -17,18 +17,17 @@ concept KnowsNormalStiffness = requires(const L& law) {
 /// without its part about the normal: torsion is not resisted. theta is its travel [rad]. Two models of
 /// J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, Powder Technol. 206 (2011) 269,
 /// doi:10.1016/j.powtec.2010.09.030:
-/// - elastic_plastic (their model C, after K. Iwashita, M. Oda, J. Eng. Mech. 124 (1998) 285): spring,
-/// dashpot
-///   and slider,
+/// - elastic_plastic (their model C, after K. Iwashita, M. Oda, J. Eng. Mech. 124 (1998) 285,
+///   doi:10.1061/(ASCE)0733-9399(1998)124:3(285)): spring, dashpot and slider,
 ///     M = -k_r theta - c_r w,  |M| <= M_max,  k_r = a k_n (mu_r R)^2,  c_r = 2 eta_r sqrt(I_r k_r)
 ///   k_n secant of the normal spring, 1/I_r = sum 1/(1.4 m r^2). As k_n changes the spring follows as
 ///   HertzMindlin's tangential one does: the couple stays while k_r grows, falls with it while it falls. The
 ///   dashpot acts as far as the limit leaves it room; in the paper it acts beside the limit.
-/// - constant_torque (model A): M = -M_max w/|w|, but no more than stops the rolling within some twelve
-/// steps.
+/// - constant_torque (model A): M = -M_max w/|w|, but no more than stops the rolling in some twelve steps.
 ///   Holds nothing at rest: a pile creeps.
 ///
 /// The loss is of its own kind, `lost_rolling`: not sliding, so the library's wear laws take nothing from it.
+/// Throws InputError for parameters out of their range, those of the law included.
 template <ContactLaw Law>
 requires KnowsNormalStiffness<Law>
 class RollingResistance {
@@ -133,7 +132,7 @@ public:
         return law_.normal_stiffness(overlap, curvature);
     }
 
-    /// The rolling spring's, as on a plane, where R is largest.
+    /// With the rolling spring's, as on a plane, where R is largest.
     ContactRigidity rigidity(Real radius) const noexcept { return with_rolling(law_.rigidity(radius)); }
     ContactRigidity rigidity(const ContactKinematics<Real>& contact) const noexcept requires
         KnowsRigidityAsItStands<Law> {

@@ -28,8 +28,7 @@ struct alignas(64) SphereMotion {
 struct alignas(64) SphereLoad {
     Vec3 force = Vec3::Zero();  ///< [N]
     Real worn = 0;              ///< volume worn off in this step [m3]
-    /// Sum of lambda f x n, and of couples over the radius; times the radius: the torque about the centre
-    /// [N].
+    /// Sum of lambda f x n, and of couples over the radius; times that: the torque about the centre [N].
     Vec3 lever = Vec3::Zero();
     Real mass = 0;  ///< of its body: no load, but its place is free [kg]
 };
@@ -83,8 +82,7 @@ inline const Quad& quad(const SphereLoad& line, std::size_t half) noexcept {
 
 }  // namespace detail
 
-/// Where a slot's place is, in bytes: saves the hot loop the multiplication. Motion and load lie twice as
-/// far.
+/// Where a slot's place is, in bytes: saves the hot loop a multiplication. Motion and load lie twice as far.
 using LineOffset = std::uint32_t;
 inline LineOffset line_offset(Index slot) noexcept {
     return static_cast<LineOffset>(slot) * static_cast<LineOffset>(sizeof(SpherePlace));

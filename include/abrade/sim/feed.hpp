@@ -27,8 +27,8 @@ struct FeedParams {
     std::vector<StoneClass> classes{};
     Real density = 2650;  ///< [kg/m3]
     Box region{};  ///< stones are placed inside it, whole in x and y, lifted where concrete is in the way [m]
-    std::function<Real(Real, Real)>
-        bed{};                     ///< height of the ground at (x, y) that region.z counts from [m]; none: 0
+    /// Height of the ground at (x, y) that region.z counts from [m]; none: 0.
+    std::function<Real(Real, Real)> bed{};
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
     Real start = 0;                ///< [s]
     std::uint32_t seed = 1;

@@ -30,9 +30,9 @@ struct ImpactRemedy {
 };
 
 /// The pair integrated alone and head-on, as the engine does it: leapfrog, dashpots at the predicted
-/// velocity. All laws whose forces are proportional to their stiffness and whose restitution is given obey m
-/// x'' = -f(x): a stiffness s times as large acts like a speed sqrt(s) times smaller, with time running
-/// sqrt(s) times faster. So the speed that stays below a limit also tells the stiffness that does.
+/// velocity. Under any law whose forces are proportional to its stiffness and whose restitution is given, a
+/// stiffness s times as large acts like a speed sqrt(s) times smaller, with time running sqrt(s) times
+/// faster. So the speed that stays below a limit also tells the stiffness that does.
 template <ContactLaw Law>
 class ImpactInquiry {
 public:

@@ -55,6 +55,8 @@ struct Scene {
                           .fixed = true});
         return *this;
     }
+    /// A plane through `point`; bodies are on the side that the normal points to. Throws InputError for a
+    /// normal that is not finite or 0.
     Scene& add_wall(const Vec3& point, const Vec3& normal, Index material = 0) {
         require(normal.norm() > 0 && normal.allFinite(),
                 {"Scene.walls[" + std::to_string(walls.size()) + "].normal", "finite and longer than 0"},
@@ -63,6 +65,7 @@ struct Scene {
         return *this;
     }
 
+    /// The periodic axes, with what they repeat.
     Periodic periodic() const {
         Periodic space;
         for (int a = 0; a < 3; ++a)
@@ -80,6 +83,7 @@ struct Scene {
         return space;
     }
 
+    /// Throws InputError for what cannot be simulated, by name.
     void validate() const {
         require_finite(gravity, "Scene.gravity", "m/s2");
         for (int a = 0; a < 3; ++a)

@@ -38,6 +38,8 @@ public:
           wear_(std::move(wear)), fluid_(std::move(fluid)), drag_(std::move(drag)) {}
 
     // --- the four slots --------------------------------------------------------------------------
+    // Each gives back a simulation of another type with its slot filled, and throws std::logic_error once
+    // the simulation has run.
 
     template <class L, class One = PairLaw<L>>
     auto contact(L law) && {

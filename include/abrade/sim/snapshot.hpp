@@ -31,6 +31,7 @@ struct Snapshot {
     std::vector<FieldView> site_fields() const { return {{"fracture_rate", "-", 1, fracture_rate}}; }
 };
 
+/// Copies the state as `particles` has it, of the last observation, and the fracture rates.
 inline Snapshot take_snapshot(const Particles& particles, const Concrete& concrete, Real time, Index step) {
     Snapshot shot;
     shot.time = time;

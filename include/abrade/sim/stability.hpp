@@ -9,6 +9,7 @@
 
 namespace abrade {
 
+/// A stable time step [s], and what sets it.
 struct StableStep {
     Real seconds = std::numeric_limits<Real>::infinity();
     std::string_view limit = "nothing moves";  ///< what sets it
@@ -25,7 +26,7 @@ inline Real stability_mass(Real mass, Real smallest_inertia, Real bounding_radiu
     return std::min(mass, smallest_inertia / (0.4 * square(bounding_radius)));
 }
 
-/// So many stones may touch a bonded sphere at once, beside its bonds.
+/// Stones that may touch a bonded sphere at once, beside its bonds.
 inline constexpr int contacts_of_concrete = 2;
 
 namespace detail {
