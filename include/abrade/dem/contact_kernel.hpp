@@ -46,6 +46,7 @@ template <class Law, class Number>
 struct SeenMotion {
     Vec3Of<Number> velocity = Vec3Of<Number>::Zero();  ///< at the contact point [m/s]
 };
+/// The same for a law that resists rolling, whose dashpots see spins too.
 template <ResistsRolling Law, class Number>
 struct SeenMotion<Law, Number> {
     Vec3Of<Number> velocity = Vec3Of<Number>::Zero();  ///< at the contact point [m/s]

@@ -87,9 +87,6 @@ using LineOffset = std::uint32_t;
 inline LineOffset line_offset(Index slot) noexcept {
     return static_cast<LineOffset>(slot) * static_cast<LineOffset>(sizeof(SpherePlace));
 }
-inline Index slot_at(LineOffset offset) noexcept {
-    return static_cast<Index>(offset / static_cast<LineOffset>(sizeof(SpherePlace)));
-}
 
 /// Lines as quads, by their offsets.
 class LineReader {

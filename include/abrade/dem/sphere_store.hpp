@@ -15,7 +15,8 @@ namespace abrade {
 /// A body of several spheres in motion; its member spheres stand in consecutive slots.
 struct MovingClump {
     Index body = -1, first_slot = 0, count = 0;
-    Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), angular_momentum = Vec3::Zero();
+    Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();  ///< of the centroid [m], [m/s]
+    Vec3 angular_momentum = Vec3::Zero();                   ///< in world axes [kg m2/s]
     Quaternion orientation = Quaternion::Identity();
     Real mass = 0, inverse_mass = 0;      ///< [kg], [1/kg]
     Vec3 inverse_inertia = Vec3::Zero();  ///< about the principal axes [1/(kg m2)]

@@ -38,10 +38,10 @@ public:
         const Departure departure = departing(state, dt);
         state.accounts.left_stored +=
             state.contacts.keep(state.policies.contact, state.store, state.scene.walls, departure.moved);
-        const bool bonds_broke = P::has_bonds && state.broken_tension + state.broken_shear > 0;
-        if (state.feed || bonds_broke) state.publish_places();
+        const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
+        if (state.feed || has_broken_bonds) state.publish_places();
         if (departure.any) remove(state, departure);
-        if (bonds_broke)
+        if (has_broken_bonds)
             state.accounts.left_stored +=
                 state.network.prune(state.particles, departure.moved, state.particles.centre);
         supply(state, t, dt);

@@ -19,6 +19,7 @@ struct RunError : std::runtime_error {
     Index id;    ///< of the body
 };
 
+/// How far a run goes, in which steps, and when it is looked at.
 struct RunOptions {
     Real end_time = 0;  ///< [s]
     /// [s]; at most `Simulation::stable_step_now()`. 0: `safety` times the stable step of dense surroundings,

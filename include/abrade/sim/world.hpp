@@ -345,7 +345,8 @@ private:
                 trouble_ = {Trouble::Cause::not_finite, b};
                 return;
             }
-            if (!space.contains(state_.store.position_of(state_.particles, b)))
+            if (trouble_.cause == Trouble::Cause::none &&
+                !space.contains(state_.store.position_of(state_.particles, b)))
                 trouble_ = {Trouble::Cause::lost, b};
         }
     }
