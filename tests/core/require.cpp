@@ -1,6 +1,8 @@
 // Error messages: field, rule, value with its unit, remedy.
 #include <abrade/core/require.hpp>
 
+#include "../message_of.hpp"
+
 #include <doctest/doctest.h>
 
 #include <limits>
@@ -11,16 +13,6 @@ namespace {
 
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
-
-template <class Call>
-std::string message_of(Call&& call) {
-    try {
-        call();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
 
 }  // namespace
 

@@ -1,6 +1,8 @@
 // Parameters from TOML: what is wrong is said with file, line, key, and what was meant.
 #include "../../examples/common/toml_reader.hpp"
 
+#include "../message_of.hpp"
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -25,16 +27,6 @@ diameter = 0.02
 [[stones]]
 diameter = -0.03
 )";
-
-template <class Call>
-std::string message_of(Call&& call) {
-    try {
-        call();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
 
 TomlReader reader(const std::vector<std::string>& overrides = {}) {
     return TomlReader::from_text(text, "quick.toml", overrides);

@@ -2,6 +2,8 @@
 // silent.
 #include <abrade/io/hdf5_file.hpp>
 
+#include "../message_of.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,16 +13,6 @@
 using namespace abrade;
 
 namespace {
-
-template <class Error, class Call>
-std::string message_of(Call&& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
 
 bool has(const std::string& text, std::string_view part) { return text.find(part) != text.npos; }
 

@@ -3,6 +3,8 @@
 #include <abrade/dem/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
+#include "../message_of.hpp"
+
 #include <doctest/doctest.h>
 
 #include <limits>
@@ -18,16 +20,6 @@ Scene one_stone() {
     Scene scene;
     scene.add_sphere(0.02, {});
     return scene;
-}
-
-template <class Call>
-std::string message_of(Call&& call) {
-    try {
-        call();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
 }
 
 std::string run(Scene scene, RunOptions options) {

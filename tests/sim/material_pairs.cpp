@@ -4,6 +4,8 @@
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 
+#include "../message_of.hpp"
+
 #include <doctest/doctest.h>
 
 #include <random>
@@ -33,15 +35,6 @@ Table three() {
                             {"steel", "rubber", bounces(0.4)},
                             {"rubber", "rubber", bounces(0.3)}}}};
 }
-std::string refused(auto&& make) {
-    try {
-        make();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was thrown";
-}
-
 /// A crowd that falls into a corner; `material` says what each is made of.
 template <class Material>
 Scene crowd(Material&& material) {
@@ -178,17 +171,17 @@ TEST_CASE(
     const std::string missing =
         "MaterialPairs.pairs must be complete for what can meet in the scene, got none for "
         "steel with rubber; add a law for these two";
-    CHECK(refused([&] { run(1, 2, 0); }) == missing);
-    CHECK(refused([&] { run(2, 2, 1); }) == missing);
-    CHECK(refused([&] { run(0, 2, 2); }) == "nothing was thrown");
+    CHECK(message_of([&] { run(1, 2, 0); }) == missing);
+    CHECK(message_of([&] { run(2, 2, 1); }) == missing);
+    CHECK(message_of([&] { run(0, 2, 2); }) == "nothing was thrown");
     // Rubber alone does not meet itself.
     params.pairs.pop_back();
-    CHECK(refused([&] { run(0, 2, 0); }) == "nothing was thrown");
-    CHECK(refused([&] { run(2, 2, 0); }).find("none for rubber with rubber") != std::string::npos);
-    CHECK(refused([&] { run(0, 3, 0); }) ==
+    CHECK(message_of([&] { run(0, 2, 0); }) == "nothing was thrown");
+    CHECK(message_of([&] { run(2, 2, 0); }).find("none for rubber with rubber") != std::string::npos);
+    CHECK(message_of([&] { run(0, 3, 0); }) ==
           "BodyState.material must be the number of a material, below 3, got 3; MaterialPairs::number(name) "
           "gives it");
-    CHECK(refused([&] { run(0, 0, -1); }).starts_with("Plane.material must be the number of a material"));
+    CHECK(message_of([&] { run(0, 0, -1); }).starts_with("Plane.material must be the number of a material"));
 
     Scene fed;
     fed.concrete = ConcreteBlock{.lattice = flat_lattice(0.1, 0.1, {.sphere_diameter = 0.02, .layers = 1}),
@@ -196,10 +189,11 @@ TEST_CASE(
     fed.feed = FeedParams{.volume_rate = 1e-5,
                           .classes = {{.size = 0.02, .fraction = 1, .material = 2}},
                           .region = {{0, 0, 0.02}, {0.1, 0.1, 0.1}}};
-    CHECK(refused([&] { simulate(fed).contact(Table{three().params()}).run({.end_time = 0}); }) ==
+    CHECK(message_of([&] { simulate(fed).contact(Table{three().params()}).run({.end_time = 0}); }) ==
           "nothing was thrown");
-    CHECK(refused([&] { simulate(fed).contact(Table{params}).run({.end_time = 0}); }).find("got none for") !=
-          std::string::npos);
+    CHECK(message_of([&] {
+              simulate(fed).contact(Table{params}).run({.end_time = 0});
+          }).find("got none for") != std::string::npos);
 }
 
 TEST_CASE("stones fed are of their class's material") {
@@ -216,7 +210,7 @@ TEST_CASE("stones fed are of their class's material") {
 
 TEST_CASE("a table that makes no sense is refused") {
     const auto of = [](std::vector<std::string> materials, std::vector<Table::Pair> pairs) {
-        return refused([&] { Table{{.materials = materials, .pairs = pairs}}; });
+        return message_of([&] { Table{{.materials = materials, .pairs = pairs}}; });
     };
     CHECK(of({}, {}) == "MaterialPairs.materials must be at least one name, got 0");
     CHECK(of({"a", "a"}, {}) == "MaterialPairs.materials must be different names, got a twice");

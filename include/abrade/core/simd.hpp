@@ -331,21 +331,3 @@ public:
 private:
     Pack x_, y_, z_;
 };
-
-/// Packs as the number type of Eigen's vectors.
-template <>
-struct Eigen::NumTraits<abrade::Pack> : Eigen::GenericNumTraits<abrade::Pack> {
-    enum {
-        IsComplex = 0,
-        IsInteger = 0,
-        IsSigned = 1,
-        RequireInitialization = 0,
-        ReadCost = 1,
-        AddCost = 1,
-        MulCost = 1
-    };
-    using Real = abrade::Pack;
-    using NonInteger = abrade::Pack;
-    using Nested = abrade::Pack;
-    using Literal = abrade::Real;
-};
