@@ -210,17 +210,17 @@ int main(int argc, char** argv) {
             show(r, to_text(speed), d);
             wall.x.push_back(speed), wall.y.push_back(100 * r.wall / awake.wall);
             share.x.push_back(speed), share.y.push_back(100 * r.awake);
-            moved.x.push_back(speed), moved.y.push_back(1e3 * d.mean);
-            other.x.push_back(speed), other.y.push_back(1e3 * yardstick.mean);
+            moved.x.push_back(speed), moved.y.push_back(1e6 * d.mean);
+            other.x.push_back(speed), other.y.push_back(1e6 * yardstick.mean);
         }
         draw(LineChart{.title = "A bed on which a stone falls every second: what sleep saves",
-                       .x = {.label = "sleep_speed", .unit = "m/s", .logarithmic = true},
+                       .x = {.label = "sleep_speed", .unit = "m/s", .max = 1e-2, .logarithmic = true},
                        .y = {.label = "of everything awake", .unit = "%", .min = 0, .max = 110},
                        .curves = {wall, share}},
              folder / "multi_rate_saved.png");
         draw(LineChart{.title = "The same bed: what sleep changes",
-                       .x = {.label = "sleep_speed", .unit = "m/s", .logarithmic = true},
-                       .y = {.label = "mean difference in place", .unit = "mm", .min = 0},
+                       .x = {.label = "sleep_speed", .unit = "m/s", .max = 1e-2, .logarithmic = true},
+                       .y = {.label = "mean difference in place", .unit = "um", .min = 0},
                        .curves = {moved, other}},
              folder / "multi_rate_changed.png");
         std::cout << "\npictures in " << folder.string() << '\n';
