@@ -101,17 +101,24 @@ public:
     }
 
     /// Picks the candidates of all sections: what may touch before surfaces have come `skin` [m] nearer.
-    void refine(const SphereLines& lines, std::span<const Plane> planes, Real skin) {
+    /// Pairs that both rest (`rests` [slot, images too], empty: none) are not among them.
+    void refine(const SphereLines& lines, std::span<const Plane> planes, Real skin,
+                std::span<const char> rests = {}) {
         parallel_tasks(static_cast<Index>(sections_.size()),
-                       [&](Index s) { sections_[at(s)].refine(lines, planes, skin); });
+                       [&](Index s) { sections_[at(s)].refine(lines, planes, skin, rests); });
     }
 
     ContactSection<Law>& section(Index slab) noexcept { return sections_[at(slab)]; }
 
-    /// Calls `visit(TouchingContact)` for each contact that touched when last evaluated.
+    /// Calls `visit(TouchingContact)` for each contact that touched when last evaluated and whose pair is
+    /// `wanted`; those at rest are among them.
+    template <class Visit, class Wanted>
+    void each_touching(Visit&& visit, Wanted&& wanted) const {
+        for (const ContactSection<Law>& section : sections_) section.each_touching(visit, wanted);
+    }
     template <class Visit>
     void each_touching(Visit&& visit) const {
-        for (const ContactSection<Law>& section : sections_) section.each_touching(visit);
+        each_touching(visit, [](const SlotPair&) { return true; });
     }
     template <class Visit>
     void each_candidate(Visit&& visit) const {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <compare>
 #include <span>
+#include <utility>
 
 namespace abrade {
 
@@ -36,11 +37,13 @@ struct ContactKind {
     auto operator<=>(const ContactKind&) const = default;
 };
 
-/// Pairs within the skin, of them those evaluated in each step, and of them those that touch.
+/// Pairs within the skin, of them those evaluated in each step, and of them those that touch; contacts at
+/// rest.
 struct ContactCensus {
-    std::size_t near = 0, candidates = 0, touching = 0;
+    std::size_t near = 0, candidates = 0, touching = 0, at_rest = 0;
     ContactCensus& operator+=(const ContactCensus& o) noexcept {
-        return near += o.near, candidates += o.candidates, touching += o.touching, *this;
+        return near += o.near, candidates += o.candidates, touching += o.touching, at_rest += o.at_rest,
+               *this;
     }
 };
 
@@ -91,8 +94,11 @@ public:
         }
     }
 
-    /// Picks the pairs whose surfaces are nearer than `skin` [m], and those that touch.
-    void refine(const SphereLines& lines, std::span<const Plane> planes, Real skin) {
+    /// Picks the pairs whose surfaces are nearer than `skin` [m], and those that touch. Of pairs of which
+    /// both rest (`rests` [slot], empty: none; planes do), those that touch are kept with what they remember,
+    /// and not evaluated.
+    void refine(const SphereLines& lines, std::span<const Plane> planes, Real skin,
+                std::span<const char> rests) {
         where_.assign(near_.size(), -1);
         for (std::size_t l = 0; l < lane_.size(); ++l)
             if (lane_[l] >= 0 && packs_[l / lanes].touched[static_cast<int>(l % lanes)])
@@ -105,9 +111,14 @@ public:
             while (last < near_.size() && is_of(near_[last], kind)) ++last;
             // Those that touch come first: packs without one are passed over.
             for (std::size_t n = first; n < last; ++n)
-                if (where_[n] >= 0) keep_lane(n, static_cast<std::size_t>(where_[n]));
+                if (where_[n] >= 0 && !both_rest(n, rests)) keep_lane(n, static_cast<std::size_t>(where_[n]));
             for (std::size_t n = first; n < last; ++n)
-                if (where_[n] < 0 && gap(lines, planes, n) < skin) add_lane(n, Memory{}, Seen{}, false);
+                if (where_[n] < 0 && !both_rest(n, rests) && gap(lines, planes, n) < skin)
+                    add_lane(n, Memory{}, Seen{}, false);
+            if (!rests.empty())
+                for (std::size_t n = first; n < last; ++n)
+                    if (where_[n] >= 0 && both_rest(n, rests))
+                        keep_at_rest(n, static_cast<std::size_t>(where_[n]));
             first = last;
         }
     }
@@ -138,14 +149,16 @@ public:
                 largest(sums.deepest)};
     }
 
-    /// Calls `visit(TouchingContact)` for each contact that touched when last evaluated.
-    template <class Visit>
-    void each_touching(Visit&& visit) const {
+    /// Calls `visit(TouchingContact)` for each contact that touched when last evaluated and whose pair is
+    /// `wanted`.
+    template <class Visit, class Wanted>
+    void each_touching(Visit&& visit, Wanted&& wanted) const {
         for (std::size_t l = 0; l < lane_.size(); ++l) {
             const ContactPack<Law>& pack = packs_[l / lanes];
             const int lane = static_cast<int>(l % lanes);
             if (lane_[l] < 0 || !pack.touched[lane]) continue;
             const Near& near = near_[static_cast<std::size_t>(lane_[l])];
+            if (!wanted(near.pair)) continue;
             visit(TouchingContact<Law>{near.pair, near.materials,
                                        detail::memory_of_lane<Memory>(pack.memory, lane),
                                        detail::memory_of_lane<Seen>(pack.before, lane)});
@@ -154,16 +167,17 @@ public:
     /// Calls `visit(pair)` for each candidate.
     template <class Visit>
     void each_candidate(Visit&& visit) const {
-        for (const Index n : lane_)
-            if (n >= 0) visit(near_[static_cast<std::size_t>(n)].pair);
+        for (const Run& run : runs_)
+            for (std::size_t l = run.first * lanes; l < run.last * lanes; ++l)
+                if (lane_[l] >= 0) visit(near_[static_cast<std::size_t>(lane_[l])].pair);
     }
 
     /// As of the last call of `refine`.
-    ContactCensus census() const noexcept { return {near_.size(), candidates_, touching_}; }
+    ContactCensus census() const noexcept { return {near_.size(), candidates_, touching_, at_rest_}; }
 
 private:
     static constexpr auto lanes = static_cast<std::size_t>(pack_lanes);
-    /// Packs of one kind, next to each other.
+    /// Packs of one kind that are evaluated, next to each other; behind them stand those at rest.
     struct Run {
         std::size_t kind, first, last;
     };
@@ -176,9 +190,16 @@ private:
         return (a.centre - b.centre).norm() - a.radius - b.radius;
     }
 
+    bool both_rest(std::size_t n, std::span<const char> rests) const noexcept {
+        if (rests.empty()) return false;
+        const auto [first, second] = near_[n].pair;
+        return rests[static_cast<std::size_t>(first)] &&
+               (second < 0 || rests[static_cast<std::size_t>(second)]);
+    }
+
     void begin_packs() {
         packs_.clear(), lane_.clear(), runs_.clear(), concrete_sides_.clear();
-        filled_ = lanes, candidates_ = touching_ = 0;
+        filled_ = lanes, candidates_ = touching_ = at_rest_ = 0;
     }
 
     /// Puts near pair n, which had `old` among the lanes before, into the next one.
@@ -189,20 +210,28 @@ private:
                  detail::memory_of_lane<Seen>(from.before, lane), true);
     }
 
+    /// The same behind the packs that are evaluated. Nothing moves there.
+    void keep_at_rest(std::size_t n, std::size_t old) {
+        add_lane(
+            n, detail::memory_of_lane<Memory>(old_packs_[old / lanes].memory, static_cast<int>(old % lanes)),
+            Seen{}, true, true);
+    }
+
     /// Puts near pair n into the next lane; pairs come in the order of their kinds.
-    void add_lane(std::size_t n, const Memory& memory, const Seen& before, bool touched) {
+    void add_lane(std::size_t n, const Memory& memory, const Seen& before, bool touched, bool rests = false) {
         std::size_t kind = runs_.empty() ? 0 : runs_.back().kind;
         while (!is_of(near_[n], kinds_[kind])) ++kind;
         if (runs_.empty() || runs_.back().kind != kind) {
             runs_.push_back({kind, packs_.size(), packs_.size()});
-            filled_ = lanes;
+            filled_ = lanes, resting_ = false;
         }
+        if (rests != std::exchange(resting_, rests)) filled_ = lanes;
         if (filled_ == lanes) {
             ContactPack<Law>& fresh = packs_.emplace_back();
             fresh.first.fill(line_offset(kinds_[kind].plane < 0 ? phantom_ : phantom_ + 2));
             fresh.second.fill(line_offset(phantom_ + 1));
             lane_.resize(lane_.size() + lanes, -1), concrete_sides_.resize(lane_.size(), 0);
-            ++runs_.back().last;
+            if (!rests) ++runs_.back().last;
             filled_ = 0;
         }
         ContactPack<Law>& pack = packs_.back();
@@ -211,9 +240,12 @@ private:
         if (near_[n].pair.second >= 0) pack.second[filled_] = line_offset(near_[n].pair.second);
         const std::size_t place = (packs_.size() - 1) * lanes + filled_;
         lane_[place] = static_cast<Index>(n), concrete_sides_[place] = near_[n].concrete_sides;
-        ++filled_, ++candidates_;
+        ++filled_;
+        if (rests)
+            ++at_rest_;
+        else
+            ++candidates_, touching_ += touched;
         if (!touched) return;
-        ++touching_;
         detail::set_memory_of_lane(pack.memory, lane, memory);
         detail::set_memory_of_lane(pack.before, lane, before);
         pack.touched.set(lane);
@@ -231,7 +263,8 @@ private:
     std::vector<std::uint8_t> concrete_sides_;  ///< [pack x lane]
     std::vector<Run> runs_;
     std::vector<Index> where_;  ///< [near] its lane before, while lists are refined
-    std::size_t filled_ = lanes, candidates_ = 0, touching_ = 0;
+    std::size_t filled_ = lanes, candidates_ = 0, touching_ = 0, at_rest_ = 0;
+    bool resting_ = false;  ///< whether the last pack is at rest
     Index phantom_ = 0;
 };
 

@@ -15,6 +15,11 @@ struct Move {
     Real ahead_in_fluid = 0;
 };
 
+/// Of a sphere: that of its centre or of its rim, whichever moves faster [m2/s2].
+inline Real speed_squared(const SphereMotion& motion) noexcept {
+    return std::max(motion.velocity.squaredNorm(), motion.rim.squaredNorm());
+}
+
 /// Kicks and drifts the single spheres in slots [first, last), and takes their loads off them.
 template <class P>
 [[gnu::flatten]] MotionSums move_spheres(State<P>& state, Index first, Index last,
@@ -23,7 +28,7 @@ template <class P>
     const Quad gravity = detail::quad(state.scene.gravity);
     SphereLines& lines = state.store.lines;
     for (auto slot = static_cast<std::size_t>(first); slot < static_cast<std::size_t>(last); ++slot) {
-        if (state.flight.flying[slot]) continue;
+        if (state.pace[slot] > Pace::beside_sleeper) continue;
         SphereMotion& motion = lines.motion[slot];
         SphereLoad& load = lines.load[slot];
         SpherePlace& place = lines.place[slot];
@@ -50,6 +55,8 @@ template <class P>
             const Quad velocity = detail::three_ones * after.velocity;
             detail::quad(place) = detail::quad(place) + detail::same(move.drift) * velocity;
             sums.notice(detail::quad(place), velocity, after.rim);
+            if (state.pace[slot] == Pace::beside_sleeper)
+                sums.stirs |= state.sleep.is_fast(speed_squared(motion));
         }
         if (move.keeps_loads) continue;
         detail::quad(load, 0) = Quad{}, detail::quad(load, 1) = Quad{Quad::Native{0, 0, 0, mass}};
@@ -63,6 +70,7 @@ void move_clump(State<P>& state, MovingClump& clump, const Move& move, MotionSum
     SphereLines& lines = state.store.lines;
     const auto first = static_cast<std::size_t>(clump.first_slot),
                last = first + static_cast<std::size_t>(clump.count);
+    if (state.pace[first] == Pace::asleep) return;
     if (clump.inverse_mass > 0) {
         FluidLoad fluid;
         if constexpr (P::has_fluid)
@@ -81,6 +89,9 @@ void move_clump(State<P>& state, MovingClump& clump, const Move& move, MotionSum
         for (std::size_t m = first; m < last; ++m)
             sums.notice(detail::quad(lines.place[m]), detail::three_ones * detail::quad(lines.motion[m], 0),
                         detail::quad(lines.motion[m], 1));
+        if (state.pace[first] == Pace::beside_sleeper)
+            for (std::size_t m = first; m < last; ++m)
+                sums.stirs |= state.sleep.is_fast(speed_squared(lines.motion[m]));
     }
     if (move.keeps_loads) return;
     for (std::size_t m = first; m < last; ++m) lines.load[m].force.setZero(), lines.load[m].lever.setZero();
@@ -95,6 +106,11 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
     const SphereLines& lines = state.store.lines;
     const auto first = static_cast<std::size_t>(p.first_sphere[b]);
     const Index clump_index = state.store.clump_of(body);
+    const auto at_rest = [&] {
+        if (!state.sleep.asleep(body)) return p.inverse_mass[b] == 0;
+        for (auto* column : {&p.velocity, &p.angular_momentum, &p.force, &p.torque}) (*column)[b].setZero();
+        return true;
+    };
     FluidLoad fluid;
     const auto sample = [&](const Vec3& position, const Vec3& velocity) {
         if constexpr (P::has_fluid)
@@ -107,7 +123,7 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         for (std::size_t m = 0; m < static_cast<std::size_t>(clump.count); ++m)
             p.centre[first + m] = lines.place[static_cast<std::size_t>(clump.first_slot) + m].centre;
         p.position[b] = clump.position, p.orientation[b] = clump.orientation;
-        if (p.inverse_mass[b] == 0) return;
+        if (at_rest()) return;
         const ClumpLoad load = load_of(clump, lines);
         const Vec3 other = sample(clump.position, clump.velocity);
         const KickedClump after = kick(clump, load, other, state.scene.gravity, move.kick);
@@ -123,8 +139,8 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
     const SphereMotion& motion = lines.motion[slot];
     const SphereLoad& load = lines.load[slot];
     p.centre[first] = p.position[b] = place.centre;
-    if (p.inverse_mass[b] == 0) return;
-    if (state.flight.flying[slot]) {
+    if (at_rest()) return;
+    if (state.pace[slot] == Pace::flying) {
         FreeFlight flight = state.flight;
         p.centre[first] = p.position[b] = flight.place(place.centre, motion.velocity, state.scene.gravity);
         flight.kicks += move.kick;

@@ -25,6 +25,7 @@ struct Ledger {
     Real lost_sliding = 0;  ///< by friction and tangential dashpots, in contacts and broken bonds
     Real lost_rolling = 0;  ///< by resistance to rolling, in contacts
     Real lost_bond = 0;     ///< by damping in bonds and by breaking them
+    Real lost_asleep = 0;   ///< kinetic energy that bodies still had as they were put to sleep
     Real drag_input = 0;    ///< drag force times fluid velocity: put in by the flow
     Real drag_work = 0;     ///< drag force times body velocity: what reached the bodies
     Real buoyancy_work = 0;
@@ -38,12 +39,14 @@ struct Ledger {
 
     /// Drag force times (fluid - body velocity): turned into heat and turbulence.
     Real lost_drag() const noexcept { return drag_input - drag_work; }
-    Real lost() const noexcept { return lost_normal + lost_sliding + lost_rolling + lost_bond + lost_drag(); }
+    Real lost() const noexcept {
+        return lost_normal + lost_sliding + lost_rolling + lost_bond + lost_asleep + lost_drag();
+    }
 
     /// Kinetic energy against the work done: zero but for round-off.
     Real residual() const noexcept {
         return kinetic - (kinetic_start + fed_kinetic - left_kinetic + gravity_work + buoyancy_work +
-                          drag_work + interaction_work);
+                          drag_work + interaction_work - lost_asleep);
     }
 
     /// Energy that passed through: what `residual` is to be measured by.
@@ -69,7 +72,7 @@ struct Ledger {
         f("kinetic_start", kinetic_start), f("potential_start", potential_start);
         f("stored_start", stored_start);
         f("lost_normal", lost_normal), f("lost_sliding", lost_sliding), f("lost_rolling", lost_rolling),
-            f("lost_bond", lost_bond), f("lost_drag", lost_drag());
+            f("lost_bond", lost_bond), f("lost_asleep", lost_asleep), f("lost_drag", lost_drag());
         f("concrete_lost_normal", concrete_lost_normal);
         f("concrete_lost_sliding", concrete_lost_sliding);
         f("drag_input", drag_input), f("drag_work", drag_work);

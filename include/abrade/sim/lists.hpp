@@ -2,7 +2,7 @@
 // The lists of near pairs and of candidates: how long they last, and what happens when they are renewed.
 
 #include <abrade/sim/period.hpp>
-#include <abrade/sim/state.hpp>
+#include <abrade/sim/sleep.hpp>
 
 #include <chrono>
 
@@ -28,6 +28,8 @@ public:
             renew(state, t, dt);
         else if (2 * moved_ > inner_skin_ && !refine(state, dt))
             renew(state, t, dt);
+        else if (state.sleep.stirred && age_ % Sleep::steps_between_wakings == 0 && wake_stirred(state))
+            repack(state);
     }
 
     /// Renews what changes seldom: bodies that left, supply, near pairs.
@@ -65,6 +67,13 @@ public:
         refine(state, dt);
         seconds_ += std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
     }
+    /// Sorts contacts by who rests, as far as lists are good.
+    void repack(State<P>& state) {
+        state.land();
+        mark_resting(state);
+        state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_, state.sleep.rests);
+        state.take_off();
+    }
     Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
     /// Whether bodies are too fast for any skin that the period of space has room for.
     bool outrun() const noexcept { return outrun_; }
@@ -101,8 +110,8 @@ private:
         if (left < 4 * way && age_ > 0) return false;
         inner_skin_ = std::min(left, std::max(inner_life_ * way, 0.01 * skin_));
         moved_ = 0;
-        state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_);
-        state.take_off();
+        repack(state);
+        if (wake_stirred(state)) repack(state);
         choose_life(state.contacts.census(), state.store.spheres());
         return true;
     }
@@ -197,6 +206,7 @@ private:
         };
         if constexpr (P::has_fluid) compact(state.velocity_in_fluid);
         compact(state.past_gauge);
+        leave_sleepers(state, departure.gone);
     }
 
     /// Fed bodies have their velocity half a step ago, as all others.

@@ -31,6 +31,12 @@ struct RunOptions {
     /// Whether bodies that nothing can touch soon take their steps as one: faster where most fly, the same
     /// but for round-off.
     bool free_flight = true;
+    /// Bodies slower than this, centre and rim, that touch something are put to sleep: they take no steps
+    /// until something stirs them [m/s]. 0: never. What they still move with is the ledger's `lost_asleep`.
+    Real sleep_speed = 0;
+    /// How long they must have been that slow [s]. 0: until a hundredth of gravity would have made them
+    /// faster, 200 sleep_speed / g, and twice as long as their diameter d takes to topple, 2 sqrt(d/g).
+    Real sleep_after = 0;
     std::function<bool()> stop{};  ///< asked now and then; true ends the run cleanly
 };
 

@@ -224,6 +224,11 @@ private:
         require_not_negative(options.observe_every, "RunOptions.observe_every", "s");
         require_not_negative(options.time_step, "RunOptions.time_step", "s");
         require_not_negative(options.skin, "RunOptions.skin", "m");
+        require_not_negative(options.sleep_speed, "RunOptions.sleep_speed", "m/s");
+        require_not_negative(options.sleep_after, "RunOptions.sleep_after", "s");
+        require(options.sleep_speed == 0 || options.sleep_after > 0 || !scene_.gravity.isZero(),
+                {"RunOptions.sleep_after", "> 0 where bodies may sleep and there is no gravity", "s"},
+                options.sleep_after);
         if (!world_) build_world();
         const auto& radius = world_->particles().radius;
         const Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
@@ -231,6 +236,7 @@ private:
         PeriodNeed(world_->particles(), world_->scene().feed).check(world_->scene(), skin);
         world_->set_skin(skin);
         world_->set_free_flight(options.free_flight);
+        world_->set_sleep(options.sleep_speed, options.sleep_after);
         if (!opened_) open();
         stopped_ = false;
         if (options.time_step > 0) {

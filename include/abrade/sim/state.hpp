@@ -5,41 +5,11 @@
 #include <abrade/dem/contact_list.hpp>
 #include <abrade/sim/ledger.hpp>
 #include <abrade/sim/materials.hpp>
+#include <abrade/sim/pace.hpp>
 #include <abrade/sim/policies.hpp>
 #include <abrade/sim/scene.hpp>
 
 namespace abrade {
-
-/// Single spheres that nothing can touch before lists are looked through again, and on which only their
-/// weight acts, take all steps until then as one. So do fixed ones, which take none.
-struct FreeFlight {
-    bool allowed = true;
-    std::vector<char> flying;  ///< [slot]
-    Real kicks = 0;            ///< since they took off: sum of kicks [s]
-    Real drifts = 0;           ///< of drifts [s]
-    Real area = 0;             ///< of each drift times the kicks before it [s2]
-    Real fastest = 0;          ///< as they took off [m/s]
-    Real margin = 0;           ///< from there to the nearest bound of space [m]
-
-    void note(Real kick, Real drift) noexcept { kicks += kick, drifts += drift, area += drift * kicks; }
-    /// Begins anew from the places reached.
-    void begin(const Vec3& gravity) noexcept {
-        margin -= furthest(gravity), fastest += kicks * gravity.norm();
-        kicks = drifts = area = 0;
-    }
-
-    /// No further than this have they come [m].
-    Real furthest(const Vec3& gravity) const noexcept { return fastest * drifts + area * gravity.norm(); }
-
-    Vec3 velocity(const Vec3& start, const Vec3& gravity) const noexcept { return start + kicks * gravity; }
-    Vec3 place(const Vec3& start, const Vec3& velocity, const Vec3& gravity) const noexcept {
-        return start + drifts * velocity + area * gravity;
-    }
-    /// What weight is paired with in the ledger: the sum of kicks times mean velocities [m].
-    Vec3 path(const Vec3& velocity, const Vec3& gravity) const noexcept {
-        return kicks * (velocity + 0.5 * kicks * gravity);
-    }
-};
 
 /// Everything that lasts from step to step. `particles` is as of the last publication; what moves is in
 /// `store`.
@@ -58,7 +28,9 @@ struct State {
     Scene scene;  ///< its lattice has moved into `concrete`
     Particles particles;
     SphereStore store;
+    std::vector<Pace> pace;  ///< [slot]; of a clump its first one's counts
     FreeFlight flight;
+    Sleep sleep;
     ContactList<PairLaw<decltype(P::contact)>> contacts;
     Network<decltype(P::bond)> network;
     Concrete concrete;
@@ -80,6 +52,18 @@ struct State {
         return particles.inverse_mass[at(body)] == 0
                    ? 0
                    : -particles.mass[at(body)] * scene.gravity.dot(position);
+    }
+
+    Index body_in(Index slot) const noexcept {
+        return particles.body[at(store.sphere_of(store.owner_of(slot)))];
+    }
+    Index first_slot_of(Index body) const noexcept { return store.slot_of(particles.first_sphere[at(body)]); }
+    /// Of two of which one is asleep, the other; else -1.
+    Index awake_beside_sleeper(const SlotPair& pair) const noexcept {
+        if (sleep.count == 0 || pair.second < 0) return -1;
+        const Index first = body_in(pair.first), second = body_in(pair.second);
+        if (sleep.asleep(first) == sleep.asleep(second)) return -1;
+        return sleep.asleep(first) ? second : first;
     }
 
     /// What is left of the strength of a body of concrete, for bonds.
@@ -106,14 +90,15 @@ struct State {
 
     /// Brings all that flies up to the present, and books what its weight did.
     void land() {
-        if (flight.flying.empty()) flight.begin(scene.gravity);  // nobody was there
+        if (pace.empty()) flight.begin(scene.gravity);  // nobody was there
         if (flight.kicks == 0 && flight.drifts == 0) return;
         struct Path {
             Vec3 sum = Vec3::Zero();
             Path& operator+=(const Path& o) noexcept { return sum += o.sum, *this; }
         };
         const auto all = parallel_sum<Path>(store.spheres(), [&](Index slot) {
-            if (!flight.flying[at(slot)] || store.lines.motion[at(slot)].inverse_mass == 0) return Path{};
+            if (pace[at(slot)] != Pace::flying || store.lines.motion[at(slot)].inverse_mass == 0)
+                return Path{};
             SphereMotion& motion = store.lines.motion[at(slot)];
             SpherePlace& place = store.lines.place[at(slot)];
             const Vec3 path = flight.path(motion.velocity, scene.gravity);
@@ -128,24 +113,32 @@ struct State {
 
     /// Lets fly what is in no candidate contact; `land` must have been called.
     void take_off() {
-        flight.flying.assign(at(store.spheres()), 0);
+        pace.assign(at(store.spheres()), Pace::every_step);
         for (Index slot = 0; slot < store.spheres(); ++slot) {
             const Index body = particles.body[at(store.sphere_of(slot))];
             const bool bonded = P::has_bonds && particles.kind[at(body)] == Kind::concrete;
-            flight.flying[at(slot)] =
-                flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded;
+            if (sleep.asleep(body))
+                pace[at(slot)] = Pace::asleep;
+            else if (flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded)
+                pace[at(slot)] = Pace::flying;
         }
         const auto ground = [&](Index slot) {
-            if (slot >= 0 && slot < store.phantom()) flight.flying[at(store.owner_of(slot))] = 0;
+            if (slot < 0 || slot >= store.phantom()) return;
+            Pace& own = pace[at(store.owner_of(slot))];
+            if (own == Pace::flying) own = Pace::every_step;
         };
-        contacts.each_candidate([&](const SlotPair& pair) { ground(pair.first), ground(pair.second); });
+        contacts.each_candidate([&](const SlotPair& pair) {
+            ground(pair.first), ground(pair.second);
+            if (const Index other = awake_beside_sleeper(pair); other >= 0)
+                pace[at(first_slot_of(other))] = Pace::beside_sleeper;
+        });
         if constexpr (P::has_bonds)
             for (const auto& bond : network.bonds()) ground(bond.slots.first), ground(bond.slots.second);
         Real fastest2 = 0;
         const Box space = scene.open_bounds();
         flight.margin = std::numeric_limits<Real>::infinity();
-        for (std::size_t slot = 0; slot < flight.flying.size(); ++slot) {
-            if (!flight.flying[slot] || store.lines.motion[slot].inverse_mass == 0) continue;
+        for (std::size_t slot = 0; slot < pace.size(); ++slot) {
+            if (pace[slot] != Pace::flying || store.lines.motion[slot].inverse_mass == 0) continue;
             const Vec3& x = store.lines.place[slot].centre;
             fastest2 = std::max(fastest2, store.lines.motion[slot].velocity.squaredNorm());
             flight.margin =

@@ -2,30 +2,12 @@
 // Everything that moves, and one step of it.
 
 #include <abrade/sim/advance.hpp>
-#include <abrade/sim/impact.hpp>
 #include <abrade/sim/lists.hpp>
+#include <abrade/sim/trouble.hpp>
 
 #include <chrono>
 
 namespace abrade {
-
-/// What the engine finds wrong with a step.
-struct Trouble {
-    enum class Cause : std::uint8_t { none, not_finite, lost, overlap, outran_period, step_too_long };
-    Cause cause = Cause::none;
-    Index body = -1, other = -1;  ///< bodies; wall w is -1 - w
-    Real measure = 0;             ///< overlap over the smaller radius [-]; a stable step [s]
-    bool bonded = false;          ///< the two are held by a bond, not by a contact
-    DeepContact contact{};        ///< where it was one that overlapped
-};
-
-/// Wall time of parts of a step [s], summed over threads.
-struct StepSeconds {
-    Real forces = 0, motion = 0;
-    StepSeconds& operator+=(const StepSeconds& o) noexcept {
-        return forces += o.forces, motion += o.motion, *this;
-    }
-};
 
 /// Between steps the lines hold places of now and velocities half a step old. Forces of now are either
 /// evaluated already, for an observation, or will be at the start of the next step, slab by slab, each slab
@@ -56,6 +38,7 @@ public:
         state_.free_loose_concrete();
         if (dt != time_step_) change_step(dt);
         now_ = t;
+        if (state_.sleep.speed > 0 && ++unlooked_ >= Sleep::steps_between_looks) look();
         if (!evaluated_) lists_.freshen(state_, now_, dt);
         const Move move{whole_ ? 0.5 * dt : dt, dt, false, now_, ahead_in_fluid()};
         pass(!evaluated_, &move, timed);
@@ -66,7 +49,7 @@ public:
     /// Writes the present state into `particles()` and the ledger. What moves is left as it is.
     const Ledger& publish() {
         catch_up();
-        const Move half{whole_ ? 0 : 0.5 * time_step_, 0, true, now_, ahead_in_fluid()};
+        const Move half = to_present();
         const auto sums = parallel_sum<Published>(state_.particles.bodies(), [&](Index b) {
             Published one;
             publish_body(state_, b, half, one.motion);
@@ -77,7 +60,7 @@ public:
         ledger_ = state_.accounts;
         book(ledger_, sums.motion);
         ledger_.kinetic = sums.kinetic, ledger_.potential = sums.potential;
-        ledger_.stored_contacts = stored_contacts_, ledger_.stored_bonds = stored_bonds_;
+        ledger_.stored_contacts = stored_contacts_ + at_rest(), ledger_.stored_bonds = stored_bonds_;
         count_passed();
         return ledger_;
     }
@@ -87,6 +70,15 @@ public:
 
     void set_skin(Real skin) noexcept { lists_.set_skin(skin); }
     void set_free_flight(bool allowed) noexcept { state_.flight.allowed = allowed; }
+    /// As RunOptions says.
+    void set_sleep(Real speed, Real after) {
+        Sleep& sleep = state_.sleep;
+        const Real gravity = state_.scene.gravity.norm();
+        sleep.speed = speed;
+        sleep.after = after > 0 || gravity == 0 ? after : 200 * speed / gravity;
+        sleep.toppling = after > 0 || gravity == 0 ? 0 : 2 / std::sqrt(gravity);
+        if (speed == 0) rouse_all(state_);
+    }
     Trouble take_trouble() noexcept { return std::exchange(trouble_, {}); }
 
     const State<P>& state() const noexcept { return state_; }
@@ -131,10 +123,7 @@ private:
     };
 
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
-    Index body_in(Index slot) const noexcept {
-        return slot < 0 ? slot
-                        : state_.particles.body[at(state_.store.sphere_of(state_.store.owner_of(slot)))];
-    }
+    Index body_in(Index slot) const noexcept { return slot < 0 ? slot : state_.body_in(slot); }
 
     /// How far velocities must be taken ahead to reach the present, as a share of what the kicks since the
     /// last evaluation changed them by.
@@ -150,6 +139,29 @@ private:
         lists_.freshen(state_, now_, time_step_);
         pass(true, nullptr, false);
         evaluated_ = true;
+    }
+
+    /// What is missing of the last kick.
+    Move to_present() const noexcept {
+        return {whole_ ? 0 : 0.5 * time_step_, 0, true, now_, ahead_in_fluid()};
+    }
+
+    /// Sees who falls asleep. Forces are those of now, so nothing is lost or won in between.
+    void look() {
+        catch_up();
+        MotionSums sums;
+        const Real stored = at_rest();
+        if (fall_asleep(state_, to_present(), unlooked_ * time_step_, sums)) {
+            book(state_.accounts, sums);
+            lists_.repack(state_);
+            stored_contacts_ += stored - at_rest();
+        }
+        unlooked_ = 0;
+    }
+    /// Stored in contacts that are not evaluated [J].
+    Real at_rest() {
+        if (std::exchange(state_.sleep.changed, false)) stored_at_rest_ = stored_at_rest(state_);
+        return stored_at_rest_;
     }
 
     /// Velocities come up to the present before a step of another length begins.
@@ -195,6 +207,7 @@ private:
             book(state_.accounts, all.motion);
             FreeFlight& flight = state_.flight;
             flight.note(move->kick, move->drift);
+            state_.sleep.stirred |= all.motion.stirs;
             lists_.note_step(move->drift *
                              std::max(std::sqrt(all.motion.fastest2),
                                       flight.fastest + flight.kicks * state_.scene.gravity.norm()));
@@ -371,7 +384,9 @@ private:
     Real kicked_ = 0, last_kick_ = 0;  ///< since the last evaluation, and last [s]
     bool evaluated_ = false;           ///< loads are those of the present places
     bool whole_ = true;                ///< velocities are those of the present, not of half a step ago
-    Real stored_contacts_ = 0, stored_bonds_ = 0;  ///< [J]
+    Real stored_contacts_ = 0, stored_bonds_ = 0;  ///< in what is evaluated [J]
+    Real stored_at_rest_ = 0;                      ///< [J]
+    Index unlooked_ = 0;                           ///< steps since the last look at who falls asleep
     bool too_deep_ = false;                        ///< some contact may be, as of the last evaluation
     Trouble trouble_;
     StepSeconds timed_;

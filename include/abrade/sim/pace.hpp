@@ -1,0 +1,83 @@
+#pragma once
+// Which steps bodies take: all of them, many as one in free flight, none asleep.
+
+#include <abrade/core/types.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace abrade {
+
+/// `beside_sleeper` takes every step, and tells when it becomes fast. What comes after it takes none.
+enum class Pace : std::uint8_t { every_step, beside_sleeper, flying, asleep };
+
+/// Single spheres that nothing can touch before lists are looked through again, and on which only their
+/// weight acts, take all steps until then as one. So do fixed ones, which take none.
+struct FreeFlight {
+    bool allowed = true;
+    Real kicks = 0;    ///< since they took off: sum of kicks [s]
+    Real drifts = 0;   ///< of drifts [s]
+    Real area = 0;     ///< of each drift times the kicks before it [s2]
+    Real fastest = 0;  ///< as they took off [m/s]
+    Real margin = 0;   ///< from there to the nearest bound of space [m]
+
+    void note(Real kick, Real drift) noexcept { kicks += kick, drifts += drift, area += drift * kicks; }
+    /// Begins anew from the places reached.
+    void begin(const Vec3& gravity) noexcept {
+        margin -= furthest(gravity), fastest += kicks * gravity.norm();
+        kicks = drifts = area = 0;
+    }
+
+    /// No further than this have they come [m].
+    Real furthest(const Vec3& gravity) const noexcept { return fastest * drifts + area * gravity.norm(); }
+
+    Vec3 velocity(const Vec3& start, const Vec3& gravity) const noexcept { return start + kicks * gravity; }
+    Vec3 place(const Vec3& start, const Vec3& velocity, const Vec3& gravity) const noexcept {
+        return start + drifts * velocity + area * gravity;
+    }
+    /// What weight is paired with in the ledger: the sum of kicks times mean velocities [m].
+    Vec3 path(const Vec3& velocity, const Vec3& gravity) const noexcept {
+        return kicks * (velocity + 0.5 * kicks * gravity);
+    }
+};
+
+/// Bodies that have been slow for long and rest on something take no steps until something stirs them.
+/// Contacts of two that rest are not evaluated: what they store stays as it is.
+struct Sleep {
+    static constexpr Index steps_between_looks = 200;
+    static constexpr Index steps_between_wakings = 4;  ///< a small part of a contact's time
+    /// A sleeper wakes where what supports it has changed by this share of the strongest force of its
+    /// contacts, or of its weight if that is more [-].
+    static constexpr Real allowed_change = 0.1;
+
+    /// Share of the threshold below which nobody asks whether a body gets faster: round-off does that [-].
+    static constexpr Real still = 0.01;
+
+    struct Body {
+        bool asleep = false;
+        bool rouse = false;           ///< is to wake with the next look at the lists
+        bool watched = false;         ///< was near one awake: its support may have changed
+        Real slow_for = 0;            ///< [s]
+        Real slowest2 = 0;            ///< square of the lowest speed in that time [m2/s2]
+        Vec3 support = Vec3::Zero();  ///< of contacts and fluid, as it fell asleep [N]
+        Real strongest = 0;           ///< of those forces and its weight [N]
+    };
+
+    Real speed = 0;            ///< below which a body is slow, its centre and its rim; 0: nobody sleeps [m/s]
+    Real after = 0;            ///< how long it must have been [s]
+    Real toppling = 0;         ///< and how long over the root of its diameter [s/m^(1/2)]
+    std::vector<Body> bodies;  ///< [body]; may be shorter: the rest is awake
+    std::vector<char> rests;   ///< [slot, images too] asleep or fixed; empty where nobody is asleep
+    Index count = 0;           ///< of those asleep
+    bool stirred = false;      ///< somebody may have to wake
+    bool watch_all = false;    ///< bodies left: anybody may have lost support
+    bool changed = false;      ///< who sleeps, since `stored_at_rest` was asked for
+
+    bool asleep(Index body) const noexcept {
+        const auto b = static_cast<std::size_t>(body);
+        return b < bodies.size() && bodies[b].asleep;
+    }
+    bool is_fast(Real speed2) const noexcept { return speed2 > speed * speed; }
+};
+
+}  // namespace abrade
