@@ -216,6 +216,7 @@ struct alignas(4 * sizeof(Real)) Quad {
     Native value;
 
     friend Quad operator+(const Quad& a, const Quad& b) noexcept { return {a.value + b.value}; }
+    friend Quad operator-(const Quad& a, const Quad& b) noexcept { return {a.value - b.value}; }
     friend Quad operator*(const Quad& a, const Quad& b) noexcept { return {a.value * b.value}; }
     friend Quad least(const Quad& a, const Quad& b) noexcept {
         return {b.value < a.value ? b.value : a.value};
@@ -224,6 +225,17 @@ struct alignas(4 * sizeof(Real)) Quad {
         return {a.value < b.value ? b.value : a.value};
     }
 };
+
+inline Quad with_fourth(const Quad& q, Real fourth) noexcept {
+    return {Quad::Native{q.value[0], q.value[1], q.value[2], fourth}};
+}
+/// a x b of the first three numbers; the fourth means nothing.
+inline Quad cross(const Quad& a, const Quad& b) noexcept {
+    const auto yzx = [](const Quad& q) {
+        return Quad{__builtin_shufflevector(q.value, q.value, 1, 2, 0, 3)};
+    };
+    return yzx(a * yzx(b) - yzx(a) * b);
+}
 
 /// One quad of each lane, and its four components as packs.
 using QuadRows = std::array<Quad, pack_lanes>;

@@ -113,7 +113,7 @@ public:
             for (std::size_t n = first; n < last; ++n)
                 if (where_[n] >= 0 && !both_rest(n, rests)) keep_lane(n, static_cast<std::size_t>(where_[n]));
             for (std::size_t n = first; n < last; ++n)
-                if (where_[n] < 0 && !both_rest(n, rests) && gap(lines, planes, n) < skin)
+                if (where_[n] < 0 && !both_rest(n, rests) && are_within(skin, lines, planes, n))
                     add_lane(n, Memory{}, Seen{}, false);
             if (!rests.empty())
                 for (std::size_t n = first; n < last; ++n)
@@ -182,12 +182,15 @@ private:
         std::size_t kind, first, last;
     };
 
-    Real gap(const SphereLines& lines, std::span<const Plane> planes, std::size_t n) const noexcept {
+    /// Whether the surfaces of near pair n are nearer than `skin` [m].
+    bool are_within(Real skin, const SphereLines& lines, std::span<const Plane> planes,
+                    std::size_t n) const noexcept {
         const auto [first, second] = near_[n].pair;
         const SpherePlace& a = lines.place[static_cast<std::size_t>(first)];
-        if (second < 0) return planes[static_cast<std::size_t>(-1 - second)].distance(a.centre) - a.radius;
+        if (second < 0)
+            return planes[static_cast<std::size_t>(-1 - second)].distance(a.centre) < a.radius + skin;
         const SpherePlace& b = lines.place[static_cast<std::size_t>(second)];
-        return (a.centre - b.centre).norm() - a.radius - b.radius;
+        return (a.centre - b.centre).squaredNorm() < square(a.radius + b.radius + skin);
     }
 
     bool both_rest(std::size_t n, std::span<const char> rests) const noexcept {

@@ -91,20 +91,26 @@ public:
             low_ = low_.cwiseMin(m.at), high = high.cwiseMax(m.at);
             largest_radius = std::max(largest_radius, q.radius[static_cast<std::size_t>(m.sphere)]);
         }
-        cell_ = 2 * largest_radius + q.skin;
+        // Cells as wide as the reach of a sphere, up to twice as wide where spheres are so scarce that rows
+        // of cells would not fill a pack.
+        const Vec3 size = high - low_;
+        const Real reach = 2 * largest_radius + q.skin;
+        const Real third_of_pack =
+            std::cbrt(size.prod() / static_cast<Real>(members.size()) * pack_lanes / 3);
+        Real cell = std::clamp(third_of_pack, reach, 2 * reach);
         // Far-flung spheres must not blow the grid up: coarser cells are slower, never wrong.
         const Real most_cells = 4.0 * static_cast<Real>(members.size()) + 1000;
-        const Vec3 size = high - low_;
-        while ((size / cell_ + Vec3::Ones()).prod() > most_cells) cell_ *= 1.25;
+        while ((size / cell + Vec3::Ones()).prod() > most_cells) cell *= 1.25;
+        per_cell_ = 1 / cell;
         for (int a = 0; a < 3; ++a)
-            count_[static_cast<std::size_t>(a)] = static_cast<Index>(size[a] / cell_) + 1;
+            count_[static_cast<std::size_t>(a)] = static_cast<Index>(size[a] * per_cell_) + 1;
         start_.assign(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
                               static_cast<std::size_t>(count_[2]) +
                           1,
                       0);
         std::vector<std::size_t> cell_of(members.size());
         for (std::size_t k = 0; k < members.size(); ++k) {
-            const Vec3 at = (members[k].at - low_) / cell_;
+            const Vec3 at = in_cells(members[k].at);
             cell_of[k] = index(clamp(at.x(), 0), clamp(at.y(), 1), clamp(at.z(), 2));
             ++start_[cell_of[k] + 1];
         }
@@ -130,8 +136,7 @@ public:
     template <class Visit>
     void visit_near(const Vec3& x, Real radius, Real skin, Index after, Visit&& visit) const {
         const Real reach = radius + largest_radius + skin;
-        const Vec3 from = ((x.array() - reach).matrix() - low_) / cell_,
-                   to = ((x.array() + reach).matrix() - low_) / cell_;
+        const Vec3 from = in_cells((x.array() - reach).matrix()), to = in_cells((x.array() + reach).matrix());
         for (int a = 0; a < 3; ++a)
             if (to[a] < 0 || from[a] >= static_cast<Real>(count_[static_cast<std::size_t>(a)])) return;
         const Index j_first = clamp(from.y(), 1), j_last = clamp(to.y(), 1);
@@ -139,7 +144,7 @@ public:
         const Index i_last = clamp(to.x(), 0);
         Index i = clamp(from.x(), 0), j = j_first;
         if (after >= 0) {  // rows before its own hold earlier members only
-            const Vec3 own = (x - low_) / cell_;
+            const Vec3 own = in_cells(x);
             i = clamp(own.x(), 0), j = clamp(own.y(), 1);
         }
         for (; i <= i_last; ++i, j = j_first)
@@ -165,8 +170,9 @@ public:
     Real largest_radius = 0;
 
 private:
+    Vec3 in_cells(const Vec3& x) const noexcept { return per_cell_ * (x - low_); }
     Index clamp(Real at, std::size_t axis) const noexcept {
-        return static_cast<Index>(std::clamp(std::floor(at), 0.0, static_cast<Real>(count_[axis] - 1)));
+        return static_cast<Index>(std::clamp(at, 0.0, static_cast<Real>(count_[axis] - 1)));
     }
     std::size_t index(Index i, Index j, Index k) const noexcept {
         return (static_cast<std::size_t>(i) * static_cast<std::size_t>(count_[1]) +
@@ -176,7 +182,7 @@ private:
     }
 
     Vec3 low_;
-    Real cell_ = 0;
+    Real per_cell_ = 0;  ///< 1 / edge of a cell [1/m]
     std::array<Index, 3> count_{};
     std::vector<Index> start_;
     std::vector<Member> members_;

@@ -65,6 +65,11 @@ namespace detail {
 static_assert(sizeof(SpherePlace) == sizeof(Quad) && sizeof(SphereMotion) == 2 * sizeof(Quad) &&
               sizeof(SphereLoad) == 2 * sizeof(Quad));
 
+inline constexpr Quad three_ones{{1, 1, 1, 0}};
+inline Quad quad(const Vec3& v) noexcept { return {Quad::Native{v.x(), v.y(), v.z(), 0}}; }
+inline Quad same(Real x) noexcept { return {Quad::Native{x, x, x, x}}; }
+inline Vec3 first_three(const Quad& q) noexcept { return {q.value[0], q.value[1], q.value[2]}; }
+
 inline Quad& quad(SpherePlace& line) noexcept { return reinterpret_cast<Quad&>(line); }
 inline const Quad& quad(const SpherePlace& line) noexcept { return reinterpret_cast<const Quad&>(line); }
 inline Quad& quad(SphereMotion& line, std::size_t half) noexcept {

@@ -17,12 +17,14 @@ struct MovingClump {
     Index body = -1, first_slot = 0, count = 0;
     Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();  ///< of the centroid [m], [m/s]
     Vec3 angular_momentum = Vec3::Zero();                   ///< in world axes [kg m2/s]
-    Quaternion orientation = Quaternion::Identity();
-    Real mass = 0, inverse_mass = 0;      ///< [kg], [1/kg]
-    Vec3 inverse_inertia = Vec3::Zero();  ///< about the principal axes [1/(kg m2)]
+    Quaternion orientation = Quaternion::Identity();        ///< principal axes to world axes
+    Mat3 rotation = Mat3::Identity();                       ///< the same
+    Real mass = 0, inverse_mass = 0;                        ///< [kg], [1/kg]
+    Vec3 inverse_inertia = Vec3::Zero();                    ///< about the principal axes [1/(kg m2)]
 
-    Vec3 angular_velocity(const Quaternion& at) const noexcept {
-        return at * Vec3(inverse_inertia.cwiseProduct(Vec3(at.conjugate() * angular_momentum)));
+    /// In world axes, of an angular momentum in world axes.
+    Vec3 angular_velocity(const Vec3& momentum) const noexcept {
+        return rotation * inverse_inertia.cwiseProduct(rotation.transpose() * momentum);
     }
 };
 
@@ -216,15 +218,21 @@ public:
     /// way from the places they had, `spin` that of the turn.
     void place_members(const MovingClump& clump, const Particles& particles, const Vec3& spin,
                        Real drift) noexcept {
-        const Mat3 rotation = clump.orientation.toRotationMatrix();
+        using detail::quad, detail::same;
+        const std::array<Quad, 3> axis{quad(clump.rotation.col(0)), quad(clump.rotation.col(1)),
+                                       quad(clump.rotation.col(2))};
+        const Quad position = quad(clump.position), turning = quad(spin), per_drift = same(1 / drift);
         const auto first = at(particles.first_sphere[at(clump.body)]);
         for (std::size_t m = 0; m < at(clump.count); ++m) {
-            SpherePlace& place = lines.place[at(clump.first_slot) + m];
+            Quad& place = quad(lines.place[at(clump.first_slot) + m]);
             SphereMotion& motion = lines.motion[at(clump.first_slot) + m];
-            const Vec3 centre = clump.position + rotation * particles.offset[first + m];
-            motion.velocity = (centre - place.centre) / drift;
-            motion.rim = place.radius * spin;
-            place.centre = centre;
+            const Vec3& offset = particles.offset[first + m];
+            const Quad radius = same(place.value[3]);
+            const Quad centre = position + same(offset.x()) * axis[0] + same(offset.y()) * axis[1] +
+                                same(offset.z()) * axis[2];
+            quad(motion, 0) = with_fourth(per_drift * (centre - place), motion.inverse_mass);
+            quad(motion, 1) = with_fourth(radius * turning, motion.curvature);
+            place = with_fourth(centre, radius.value[3]);
         }
     }
 
@@ -240,6 +248,7 @@ private:
                 .velocity = particles.velocity[b],
                 .angular_momentum = particles.angular_momentum[b],
                 .orientation = particles.orientation[b],
+                .rotation = particles.orientation[b].toRotationMatrix(),
                 .mass = particles.mass[b],
                 .inverse_mass = particles.inverse_mass[b],
                 .inverse_inertia = particles.inverse_inertia[b]};

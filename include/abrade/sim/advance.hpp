@@ -64,37 +64,42 @@ template <class P>
     return sums;
 }
 
-/// The same for a clump and its member spheres.
+/// The same for clumps and their member spheres.
 template <class P>
-void move_clump(State<P>& state, MovingClump& clump, const Move& move, MotionSums& sums) noexcept {
+[[gnu::flatten]] void move_clumps(State<P>& state, std::span<MovingClump> clumps, const Move& move,
+                                  MotionSums& sums) noexcept {
     SphereLines& lines = state.store.lines;
-    const auto first = static_cast<std::size_t>(clump.first_slot),
-               last = first + static_cast<std::size_t>(clump.count);
-    if (state.pace[first] == Pace::asleep) return;
-    if (clump.inverse_mass > 0) {
-        FluidLoad fluid;
-        if constexpr (P::has_fluid)
-            if (state.feels_fluid(clump.body)) {
-                fluid = state.fluid_on(clump.body, clump.position, clump.velocity, move.time,
-                                       move.ahead_in_fluid);
-                state.velocity_in_fluid[static_cast<std::size_t>(clump.body)] = clump.velocity;
-            }
-        const KickedClump after = kick(clump, load_of(clump, lines), Vec3(fluid.drag + fluid.buoyancy),
-                                       state.scene.gravity, move.kick);
-        sums.interaction.value[0] += after.interaction;
-        sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
-        if constexpr (P::has_fluid) sums.add(fluid, after.path, move.kick);
-        clump.velocity = after.velocity, clump.angular_momentum = after.angular_momentum;
-        if (move.drift > 0) drift(clump, move.drift, state.store, state.particles);
-        for (std::size_t m = first; m < last; ++m)
-            sums.notice(detail::quad(lines.place[m]), detail::three_ones * detail::quad(lines.motion[m], 0),
-                        detail::quad(lines.motion[m], 1));
-        if (state.pace[first] == Pace::beside_sleeper)
+    for (MovingClump& clump : clumps) {
+        const auto first = static_cast<std::size_t>(clump.first_slot),
+                   last = first + static_cast<std::size_t>(clump.count);
+        if (state.pace[first] == Pace::asleep) continue;
+        if (clump.inverse_mass > 0) {
+            FluidLoad fluid;
+            if constexpr (P::has_fluid)
+                if (state.feels_fluid(clump.body)) {
+                    fluid = state.fluid_on(clump.body, clump.position, clump.velocity, move.time,
+                                           move.ahead_in_fluid);
+                    state.velocity_in_fluid[static_cast<std::size_t>(clump.body)] = clump.velocity;
+                }
+            const KickedClump after = kick(clump, load_of(clump, lines), Vec3(fluid.drag + fluid.buoyancy),
+                                           state.scene.gravity, move.kick);
+            sums.interaction.value[0] += after.interaction;
+            sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
+            if constexpr (P::has_fluid) sums.add(fluid, after.path, move.kick);
+            clump.velocity = after.velocity, clump.angular_momentum = after.angular_momentum;
+            if (move.drift > 0) drift(clump, move.drift, state.store, state.particles);
             for (std::size_t m = first; m < last; ++m)
-                sums.stirs |= state.sleep.is_fast(speed_squared(lines.motion[m]));
+                sums.notice(detail::quad(lines.place[m]),
+                            detail::three_ones * detail::quad(lines.motion[m], 0),
+                            detail::quad(lines.motion[m], 1));
+            if (state.pace[first] == Pace::beside_sleeper)
+                for (std::size_t m = first; m < last; ++m)
+                    sums.stirs |= state.sleep.is_fast(speed_squared(lines.motion[m]));
+        }
+        if (move.keeps_loads) continue;
+        for (std::size_t m = first; m < last; ++m)
+            lines.load[m].force.setZero(), lines.load[m].lever.setZero();
     }
-    if (move.keeps_loads) return;
-    for (std::size_t m = first; m < last; ++m) lines.load[m].force.setZero(), lines.load[m].lever.setZero();
 }
 
 /// Writes a body back into `particles`, its velocity `move.kick` further on; books the works of that kick,

@@ -9,15 +9,6 @@
 
 namespace abrade {
 
-namespace detail {
-
-inline constexpr Quad three_ones{{1, 1, 1, 0}};
-inline Quad quad(const Vec3& v) noexcept { return {Quad::Native{v.x(), v.y(), v.z(), 0}}; }
-inline Quad same(Real x) noexcept { return {Quad::Native{x, x, x, x}}; }
-inline Vec3 first_three(const Quad& q) noexcept { return {q.value[0], q.value[1], q.value[2]}; }
-
-}  // namespace detail
-
 /// What moving bodies adds up to [J], and what it notices.
 struct MotionSums {
     Quad interaction{};  ///< work of contacts and bonds; its first three numbers are to be added up [J]
@@ -86,15 +77,16 @@ struct ClumpLoad {
 };
 
 inline ClumpLoad load_of(const MovingClump& clump, const SphereLines& lines) noexcept {
-    ClumpLoad sum;
+    Quad force{}, torque{};
+    const Quad position = detail::quad(clump.position);
     for (std::size_t m = 0; m < static_cast<std::size_t>(clump.count); ++m) {
         const std::size_t slot = static_cast<std::size_t>(clump.first_slot) + m;
-        const SphereLoad& load = lines.load[slot];
-        sum.force += load.force;
-        sum.torque += (lines.place[slot].centre - clump.position).cross(load.force) +
-                      lines.place[slot].radius * load.lever;
+        const Quad &place = detail::quad(lines.place[slot]), &on_member = detail::quad(lines.load[slot], 0);
+        force = force + on_member;
+        torque = torque + cross(place - position, on_member) +
+                 detail::same(lines.place[slot].radius) * detail::quad(lines.load[slot], 1);
     }
-    return sum;
+    return {detail::first_three(force), detail::first_three(torque)};
 }
 
 /// What a kick does to a clump, likewise.
@@ -104,23 +96,25 @@ struct KickedClump {
     Real interaction;  ///< [J]
 };
 
-inline KickedClump kick(MovingClump clump, const ClumpLoad& load, const Vec3& other, const Vec3& gravity,
-                        Real dt) noexcept {
-    const Vec3 before = clump.velocity, spin_before = clump.angular_velocity(clump.orientation);
-    clump.velocity += dt * clump.inverse_mass * (load.force + clump.mass * gravity + other);
-    clump.angular_momentum += dt * load.torque;
-    const Vec3 path = 0.5 * dt * (before + clump.velocity);
-    const Vec3 turn = 0.5 * dt * (spin_before + clump.angular_velocity(clump.orientation));
-    return {clump.velocity, clump.angular_momentum, path, load.force.dot(path) + load.torque.dot(turn)};
+inline KickedClump kick(const MovingClump& clump, const ClumpLoad& load, const Vec3& other,
+                        const Vec3& gravity, Real dt) noexcept {
+    const Vec3 velocity =
+        clump.velocity + dt * clump.inverse_mass * (load.force + clump.mass * gravity + other);
+    const Vec3 momentum = clump.angular_momentum + dt * load.torque;
+    const Vec3 path = 0.5 * dt * (clump.velocity + velocity);
+    const Vec3 turn = 0.5 * dt * clump.angular_velocity(clump.angular_momentum + momentum);
+    return {velocity, momentum, path, load.force.dot(path) + load.torque.dot(turn)};
 }
 
 /// Turns and moves a clump and its member spheres over dt.
 inline void drift(MovingClump& clump, Real dt, SphereStore& store, const Particles& particles) noexcept {
-    const Quaternion before = clump.orientation;
+    const Vec3 before = clump.angular_velocity(clump.angular_momentum);
+    const Vec3 in_body = clump.rotation.transpose() * clump.angular_momentum;
+    clump.orientation = turned(clump.orientation, midpoint_spin(in_body, clump.inverse_inertia, dt), dt);
+    clump.rotation = clump.orientation.toRotationMatrix();
     clump.position += dt * clump.velocity;
-    clump.orientation = turn_freely(before, clump.angular_momentum, clump.inverse_inertia, dt);
-    const Vec3 spin = 0.5 * (clump.angular_velocity(before) + clump.angular_velocity(clump.orientation));
-    store.place_members(clump, particles, spin, dt);
+    const Vec3 after = clump.angular_velocity(clump.angular_momentum);
+    store.place_members(clump, particles, 0.5 * (before + after), dt);
 }
 
 }  // namespace abrade

@@ -20,6 +20,7 @@ struct FreeFlight {
     Real area = 0;     ///< of each drift times the kicks before it [s2]
     Real fastest = 0;  ///< as they took off [m/s]
     Real margin = 0;   ///< from there to the nearest bound of space [m]
+    Index held = 0;    ///< spheres that fly but for their candidates
 
     void note(Real kick, Real drift) noexcept { kicks += kick, drifts += drift, area += drift * kicks; }
     /// Begins anew from the places reached.

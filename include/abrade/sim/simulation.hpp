@@ -240,7 +240,7 @@ private:
         if (!opened_) open();
         stopped_ = false;
         if (options.time_step > 0) {
-            const StableStep now = stable_step_now();
+            const StableStep now = StableStepNow(world_->state()).of_all(options.time_step);
             require(
                 options.time_step <= now.seconds,
                 {"RunOptions.time_step",

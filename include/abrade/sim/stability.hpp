@@ -139,13 +139,14 @@ class StableStepNow {
 public:
     explicit StableStepNow(const State<P>& state) : state_(state), held_(at(state.particles.bodies()), -1) {}
 
-    /// Of all bodies.
+    /// Of all bodies, where that is less than `most`.
     StableStep of_all(Real most = std::numeric_limits<Real>::infinity()) {
-        StableStep step = first_touch(most);
+        const StableStep step = first_touch(most);
+        hold_doubtful(most);
         const Particles& p = state_.particles;
         for (Index b = 0; b < p.bodies(); ++b) {
+            if (p.kind[at(b)] != Kind::concrete || p.inverse_mass[at(b)] == 0) continue;
             hold(b);
-            if (p.kind[at(b)] != Kind::concrete || held_[at(b)] < 0) continue;
             const Real radius = detail::extent_of(p, b).largest;
             const ContactRigidity touch = state_.policies.contact.rigidity(radius);
             own_[at(held_[at(b)])].add_anywhere(body_of(b), contacts_of_concrete,
@@ -153,19 +154,10 @@ public:
         }
         return lowered(step, true);
     }
-    /// Of bodies that touch others, where that is less than `most`; for a look now and then, as it passes
-    /// over all bodies that a cheap bound shows to be safe.
+    /// Of bodies that touch others, where that is less than `most`.
     StableStep of_touching(Real most) {
-        StableStep step{most, "the step taken"};
-        std::vector<Real> sum(at(state_.particles.bodies()), 0);
-        each_contact_end([&](const End& end) {
-            sum[at(end.body)] +=
-                square(most) * end.most(end.link.normal, end.link.tangential, end.link.turning) +
-                4 * most *
-                    end.most(end.link.normal_dashpot, end.link.tangential_dashpot, end.link.turning_dashpot);
-        });
-        for (Index b = 0; b < state_.particles.bodies(); ++b)
-            if (!(sum[at(b)] <= (state_.particles.site[at(b)] >= 0 ? 0 : 4))) hold(b);
+        hold_doubtful(most);
+        const StableStep step{most, "the step taken"};
         return own_.empty() ? step : lowered(step, P::has_bonds);
     }
 
@@ -177,14 +169,16 @@ private:
         Index body;
         Vec3 normal, arm;
         LinkRigidity link;
-        bool partner_moves;
+        bool partner_moves, single;          ///< the latter: a body of one sphere
         Real inverse_mass, inverse_inertia;  ///< the latter the largest
-        /// Bounds the link's share of K or C.
+        /// Bounds the largest eigenvalue of the link's share of K or C. On a single sphere what acts along
+        /// the normal does not turn it, so the two springs act in directions of their own.
         Real most(Real along, Real across, Real rolling) const noexcept {
-            const Real turning = arm.squaredNorm() * inverse_inertia, mass = inverse_mass;
-            const Real lever = arm.cross(normal).squaredNorm() * inverse_inertia;
+            const Real lever = single ? 0 : arm.cross(normal).squaredNorm() * inverse_inertia;
+            const Real pushing = along * (inverse_mass + lever),
+                       sliding = across * (inverse_mass + arm.squaredNorm() * inverse_inertia);
             return (partner_moves ? 2 : 1) *
-                   (along * (mass + lever) + 2 * across * (mass + turning) + rolling * inverse_inertia);
+                   ((single ? std::max(pushing, sliding) : pushing + sliding) + rolling * inverse_inertia);
         }
     };
 
@@ -192,6 +186,18 @@ private:
         if (held_[at(body)] >= 0 || state_.particles.inverse_mass[at(body)] == 0) return;
         held_[at(body)] = static_cast<Index>(own_.size());
         own_.emplace_back();
+    }
+    /// Those that a cheap bound on their matrix does not show to be stable at the step `most` [s].
+    void hold_doubtful(Real most) {
+        std::vector<Real> sum(at(state_.particles.bodies()), 0);
+        each_contact_end([&](const End& end) {
+            sum[at(end.body)] +=
+                square(most) * end.most(end.link.normal, end.link.tangential, end.link.turning) +
+                4 * most *
+                    end.most(end.link.normal_dashpot, end.link.tangential_dashpot, end.link.turning_dashpot);
+        });
+        for (Index b = 0; b < state_.particles.bodies(); ++b)
+            if (!(sum[at(b)] <= (state_.particles.site[at(b)] >= 0 ? 0 : 4))) hold(b);
     }
     BodyStiffness::Body body_of(Index b) const {
         const Index clump = state_.store.clump_of(b);
@@ -262,7 +268,8 @@ private:
                 const SpherePlace& place = lines.place[at(owner)];
                 const Vec3 from_centre = place.centre - state_.store.position_of(state_.particles, body);
                 visit(End{body, contact.normal, Vec3(from_centre + sign * place.radius * contact.normal),
-                          link, partner_moves, state_.particles.inverse_mass[at(body)],
+                          link, partner_moves, state_.particles.sphere_count[at(body)] == 1,
+                          state_.particles.inverse_mass[at(body)],
                           state_.particles.inverse_inertia[at(body)].maxCoeff()});
             };
             if (first_mass > 0) end(pair.first, -1, second_mass > 0);

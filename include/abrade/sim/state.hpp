@@ -28,7 +28,8 @@ struct State {
     Scene scene;  ///< its lattice has moved into `concrete`
     Particles particles;
     SphereStore store;
-    std::vector<Pace> pace;  ///< [slot]; of a clump its first one's counts
+    std::vector<Pace> pace;           ///< [slot]; of a clump its first one's counts
+    std::vector<Pace> pace_if_alone;  ///< [slot] where nothing is near
     FreeFlight flight;
     Sleep sleep;
     ContactList<PairLaw<decltype(P::contact)>> contacts;
@@ -111,22 +112,29 @@ struct State {
         store.refresh_images();
     }
 
-    /// Lets fly what is in no candidate contact; `land` must have been called.
-    void take_off() {
-        pace.assign(at(store.spheres()), Pace::every_step);
+    /// Sees which slots could fly, once the store is arranged.
+    void find_flyers() {
+        pace_if_alone.assign(at(store.spheres()), Pace::every_step);
         for (Index slot = 0; slot < store.spheres(); ++slot) {
             const Index body = particles.body[at(store.sphere_of(slot))];
             const bool bonded = P::has_bonds && particles.kind[at(body)] == Kind::concrete;
-            if (sleep.asleep(body))
-                pace[at(slot)] = Pace::asleep;
-            else if (flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded)
-                pace[at(slot)] = Pace::flying;
+            if (flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded)
+                pace_if_alone[at(slot)] = Pace::flying;
         }
+    }
+
+    /// Lets fly what is in no candidate contact; `land` must have been called.
+    void take_off() {
+        pace = pace_if_alone;
+        if (sleep.count > 0)
+            for (Index slot = 0; slot < store.spheres(); ++slot)
+                if (sleep.asleep(particles.body[at(store.sphere_of(slot))])) pace[at(slot)] = Pace::asleep;
         const auto ground = [&](Index slot) {
             if (slot < 0 || slot >= store.phantom()) return;
             Pace& own = pace[at(store.owner_of(slot))];
-            if (own == Pace::flying) own = Pace::every_step;
+            if (own == Pace::flying) own = Pace::every_step, ++flight.held;
         };
+        flight.held = 0;
         contacts.each_candidate([&](const SlotPair& pair) {
             ground(pair.first), ground(pair.second);
             if (const Index other = awake_beside_sleeper(pair); other >= 0)
@@ -136,11 +144,13 @@ struct State {
             for (const auto& bond : network.bonds()) ground(bond.slots.first), ground(bond.slots.second);
         Real fastest2 = 0;
         const Box space = scene.open_bounds();
+        const bool bounded = space.low.array().isFinite().any() || space.high.array().isFinite().any();
         flight.margin = std::numeric_limits<Real>::infinity();
         for (std::size_t slot = 0; slot < pace.size(); ++slot) {
             if (pace[slot] != Pace::flying || store.lines.motion[slot].inverse_mass == 0) continue;
-            const Vec3& x = store.lines.place[slot].centre;
             fastest2 = std::max(fastest2, store.lines.motion[slot].velocity.squaredNorm());
+            if (!bounded) continue;
+            const Vec3& x = store.lines.place[slot].centre;
             flight.margin =
                 std::min({flight.margin, (x - space.low).minCoeff(), (space.high - x).minCoeff()});
         }

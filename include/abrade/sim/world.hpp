@@ -69,7 +69,10 @@ public:
     void publish_places() { state_.publish_places(); }
 
     void set_skin(Real skin) noexcept { lists_.set_skin(skin); }
-    void set_free_flight(bool allowed) noexcept { state_.flight.allowed = allowed; }
+    void set_free_flight(bool allowed) {
+        state_.flight.allowed = allowed;
+        state_.find_flyers();
+    }
     /// As RunOptions says.
     void set_sleep(Real speed, Real after) {
         Sleep& sleep = state_.sleep;
@@ -248,7 +251,7 @@ private:
             for (Index slot = first; slot < last; ++slot) take_wear(slot);
         if (!move) return;
         sums += move_spheres(state_, first, store.first_clump_slot(slab), *move);
-        for (MovingClump& clump : store.clumps_of(slab)) move_clump(state_, clump, *move, sums);
+        move_clumps(state_, store.clumps_of(slab), *move, sums);
         for (const SphereImage& image : store.images_of(slab)) store.refresh(image);
     }
 
@@ -324,7 +327,7 @@ private:
         if (clump < 0) return lines.motion[at(slot)].inverse_mass;
         const MovingClump& c = state_.store.clumps[at(clump)];
         const Vec3 lever = (state_.store.lines.place[at(own)].centre - c.position).cross(n);
-        const Vec3 in_body = c.orientation.conjugate() * lever;
+        const Vec3 in_body = c.rotation.transpose() * lever;
         return c.inverse_mass + in_body.dot(Vec3(c.inverse_inertia.cwiseProduct(in_body)));
     }
 
