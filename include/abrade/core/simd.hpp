@@ -118,16 +118,33 @@ inline Pack select(PackMask condition, Pack yes, Pack no) noexcept {
     return condition.bits ? yes.lanes : no.lanes;
 #endif
 }
-// As std::max and std::min: the first where neither is larger, and where one is not a number.
-inline Pack max(Pack a, Pack b) noexcept { return a.lanes < b.lanes ? b.lanes : a.lanes; }
-inline Pack min(Pack a, Pack b) noexcept { return b.lanes < a.lanes ? b.lanes : a.lanes; }
-
 #if defined(ABRADE_AVX512)
 namespace detail {
 /// The masked forms of intrinsics: the others make g++ 12 warn, in the user's build, of values never set.
 inline constexpr __mmask8 all_lanes = 0xff;
 }  // namespace detail
 #endif
+
+// As std::max and std::min: the first where neither is larger, and where one is not a number. The instructions
+// return their second operand then.
+inline Pack max(Pack a, Pack b) noexcept {
+#if defined(ABRADE_AVX512)
+    return Pack::Native(_mm512_maskz_max_pd(detail::all_lanes, b.lanes, a.lanes));
+#elif defined(ABRADE_AVX2)
+    return Pack::Native(_mm256_max_pd(b.lanes, a.lanes));
+#else
+    return a.lanes < b.lanes ? b.lanes : a.lanes;
+#endif
+}
+inline Pack min(Pack a, Pack b) noexcept {
+#if defined(ABRADE_AVX512)
+    return Pack::Native(_mm512_maskz_min_pd(detail::all_lanes, b.lanes, a.lanes));
+#elif defined(ABRADE_AVX2)
+    return Pack::Native(_mm256_min_pd(b.lanes, a.lanes));
+#else
+    return b.lanes < a.lanes ? b.lanes : a.lanes;
+#endif
+}
 
 inline bool any(PackMask mask) noexcept {
 #if defined(ABRADE_AVX512)
