@@ -269,7 +269,8 @@ template <KernelKind kind, ContactLaw Law, class Wear>
             arm = (Pack(1) - Pack(0.5) * contact.overlap * curvature) * contact.normal;
         } else {
             const Pack inverse_distance = rsqrt(max(distance2, Pack(tiny<Pack>)));
-            const Pack distance = distance2 * inverse_distance, inverse_reach = reciprocal(reach);
+            // The divider is idle, the multipliers are what the kernel waits for.
+            const Pack distance = distance2 * inverse_distance, inverse_reach = Pack(1) / reach;
             arm = {x * inverse_reach, y * inverse_reach, z * inverse_reach};
             contact.normal = {x * inverse_distance, y * inverse_distance, z * inverse_distance};
             contact.overlap = reach - distance;

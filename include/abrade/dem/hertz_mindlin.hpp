@@ -98,6 +98,9 @@ public:
         effective_shear_ = 1 / (2 * (2 - nu1) * (1 + nu1) / e1 + 2 * (2 - nu2) * (1 + nu2) / e2);
         damping_ratio_ = params_.tension ? damping_ratio_with_tension(params_.restitution)
                                          : damping_ratio_without_tension(params_.restitution);
+        per_width_ = tangents(1);
+        width_over_tangential_ = 1 / per_width_.tangential;
+        tangential_over_normal_dashpot_ = std::sqrt(per_width_.tangential / per_width_.normal);
     }
     const Params& params() const noexcept { return params_; }
 
@@ -110,17 +113,17 @@ public:
         // The half width of the area of contact, sqrt(R delta), and one over it.
         const Number root = rsqrt(max(overlap * contact.curvature, least));
         const Number half_width = overlap * root, per_half_width = contact.curvature * root;
-        const Number sn = Number(2 * effective_youngs_) * half_width,
-                     kt = Number(8 * effective_shear_) * half_width,
-                     compliance = Number(0.125 / effective_shear_) * per_half_width;
+        const Number sn = Number(per_width_.normal) * half_width,
+                     kt = Number(per_width_.tangential) * half_width,
+                     compliance = Number(width_over_tangential_) * per_half_width;
 
         const Number approach = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
         const Number begun = begun_share(select(touching, contact.overlap, far), approach, contact.time_step);
         const Number acting = select(begun < Number(1), Number(0.5) + begun, Number(1));
         // 2 sqrt(5/6) zeta sqrt(S_n m); S_t differs from S_n by a constant.
-        const Number dashpot = acting * Number(2 * std::sqrt(5.0 / 6) * damping_ratio_) * sn *
-                               rsqrt(max(sn * contact.inverse_mass, least));
+        const Number dashpot =
+            acting * Number(2 * per_width_.damping_ratio) * sn * rsqrt(max(sn * contact.inverse_mass, least));
 
         const Number push = Number(2.0 / 3) * sn * overlap, held = Number(0.4) * push * overlap;
         const auto normal =
@@ -137,7 +140,7 @@ public:
         const Vec3Of<Number> trial = before + (mean * begun) * way;
         const Number limit = select(
             touching, Number(params_.friction) * (by_springs ? push : max(normal.force, Number(0))), far);
-        const Number beside = dashpot * Number(std::sqrt(4 * effective_shear_ / effective_youngs_));
+        const Number beside = dashpot * Number(tangential_over_normal_dashpot_);
         auto tangential = SlidingSpring<Number>::at(before, trial, slip, limit, {kt, compliance},
                                                     by_springs ? Number(0) : beside, contact.time_step);
         if (by_springs) {
@@ -201,6 +204,8 @@ private:
 
     Params params_;
     Real effective_youngs_ = 0, effective_shear_ = 0, damping_ratio_ = 0;
+    ContactRigidity per_width_{};  ///< stiffnesses over the half width [N/m2]
+    Real width_over_tangential_ = 0, tangential_over_normal_dashpot_ = 0;  ///< [m2/N], [-]
 };
 
 static_assert(ContactLaw<HertzMindlin>);

@@ -63,7 +63,7 @@ public:
         const Number far = Number(std::numeric_limits<float>::max());
         const Number begun = begun_share(select(touching, contact.overlap, far), approach, contact.time_step);
         const Number acting = select(begun < Number(1), Number(0.5) + begun, Number(1));
-        const Number root_mass = acting * rsqrt(contact.inverse_mass);
+        const Number root_mass = acting / sqrt(contact.inverse_mass);
 
         const Number overlap = max(contact.overlap, Number(0)), push = kn * overlap;
         const auto normal =

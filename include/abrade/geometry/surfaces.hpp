@@ -40,6 +40,14 @@ struct Box {
 struct Periodic {
     Vec3 low = Vec3::Zero();     ///< of the piece that is meant [m]
     Vec3 period = Vec3::Zero();  ///< its size along each axis [m]; 0 where space is open
+
+    /// What leads from x into the piece: whole periods [m].
+    Vec3 way_back(const Vec3& x) const noexcept {
+        Vec3 way = Vec3::Zero();
+        for (int a = 0; a < 3; ++a)
+            if (period[a] > 0) way[a] = -period[a] * std::floor((x[a] - low[a]) / period[a]);
+        return way;
+    }
 };
 
 }  // namespace abrade

@@ -29,7 +29,7 @@ public:
             renew(state, t, dt);
         else if (2 * moved_ > inner_skin_ && !refine(state, dt))
             renew(state, t, dt);
-        else if (state.sleep.stirred && age_ % Sleep::steps_between_wakings == 0 && wake_stirred(state))
+        else if (state.sleep.stirred && wake_stirred(state))
             repack(state);
     }
 
@@ -149,10 +149,7 @@ private:
         if (space.period.isZero()) return;
         SphereStore& store = state.store;
         const auto back = [&](Vec3& x, Index body) {
-            Vec3 shift = Vec3::Zero();
-            for (int a = 0; a < 3; ++a)
-                if (space.period[a] > 0)
-                    shift[a] = -space.period[a] * std::floor((x[a] - space.low[a]) / space.period[a]);
+            const Vec3 shift = space.way_back(x);
             if (shift.isZero(0)) return shift;
             state.accounts.fed_potential -= state.potential_energy(body, x);
             x += shift;

@@ -46,7 +46,6 @@ struct FreeFlight {
 /// Contacts of two that rest are not evaluated: what they store stays as it is.
 struct Sleep {
     static constexpr Index steps_between_looks = 200;
-    static constexpr Index steps_between_wakings = 4;  ///< a small part of a contact's time
     /// A sleeper wakes where what supports it has changed by this share of the strongest force of its
     /// contacts, or of its weight if that is more [-].
     static constexpr Real allowed_change = 0.1;

@@ -34,7 +34,7 @@ struct Scene {
     std::optional<ConcreteBlock> concrete;
     std::optional<FeedParams> feed;
     Box bounds;                            ///< leaving it is an error, unless it is periodic
-    std::array<bool, 3> periodic_along{};  ///< x, y, z: what leaves the bounds here comes in again there
+    std::array<bool, 3> periodic_along{};  ///< x, y, z: what is outside the bounds here comes in there
     std::optional<Real> outlet;            ///< bodies that pass this x leave the simulation [m]
     std::optional<Real> gauge;             ///< sediment passing this x is counted [m]
 
@@ -127,7 +127,8 @@ private:
         require(std::abs(state.orientation.norm() - 1) < 1e-6,
                 {name + ".orientation", "of length 1", "", "normalise it"}, state.orientation.norm());
         for (int a = 0; a < 3; ++a)
-            require(state.position[a] >= bounds.low[a] && state.position[a] <= bounds.high[a],
+            require(periodic_along[static_cast<std::size_t>(a)] ||
+                        (state.position[a] >= bounds.low[a] && state.position[a] <= bounds.high[a]),
                     {name + ".position." + "xyz"[a],
                      "inside Scene.bounds, from " + to_text(bounds.low[a]) + " to " + to_text(bounds.high[a]),
                      "m", "move the stone or widen the bounds"},

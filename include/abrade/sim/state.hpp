@@ -19,8 +19,11 @@ struct State {
         scene.validate();
         if (scene.feed) feed.emplace(*scene.feed);
         if (scene.concrete) add_concrete(*scene.concrete);
-        for (const Scene::Stone& stone : scene.stones)
-            particles.add(stone.clump, stone.density, stone.state, stone.fixed ? Kind::fixed : Kind::stone);
+        for (const Scene::Stone& stone : scene.stones) {
+            BodyState at = stone.state;
+            at.position += scene.periodic().way_back(at.position);
+            particles.add(stone.clump, stone.density, at, stone.fixed ? Kind::fixed : Kind::stone);
+        }
         if constexpr (P::has_materials) require_laws_for(policies.contact, particles, scene);
     }
 
