@@ -57,13 +57,20 @@ const Cause causes[] = {
     {"rolling friction 0.6", {.large = 1. / 6, .rolling_friction = 0.6}},
 };
 
-/// The height 6.5 s after the gate opened, when the hopper is empty and the pile stands.
+/// Heights 6.5 s after the gate opened, of the discs below the channel, and how many are still above its end.
 void pour_causes(const std::filesystem::path& to, const std::vector<std::size_t>& numbers) {
     std::ofstream table(to, std::ios::app);
     for (const std::size_t n : numbers) {
         const Run run = pour(causes[n].pile, 6.5, 0.25, 0.8);
+        Real highest = floor_height;
+        Index above = 0;
+        for (const Disc& disc : run.discs)
+            if (disc.position.z() > channel_end)
+                ++above;
+            else
+                highest = std::max(highest, disc.position.z());
         std::ostringstream line;
-        line << n << ',' << causes[n].what << ',' << run.height.back() << ','
+        line << n << ',' << causes[n].what << ',' << highest - floor_height << ',' << above << ','
              << run.integration_residue / run.lost << '\n';
         table << line.str() << std::flush, std::cout << line.str() << std::flush;
     }
