@@ -328,6 +328,6 @@ inline Column column_of(Shape shape, Real radius, Real stiffness = 1e4) {
 // length of their runout is only a few grains.
 inline const Series low_round{column_of(Shape::round, 16, 4e3), {0.5, 0.75, 1.25}},
     high_round{column_of(Shape::round, 8, 4e3), {3, 4, 5}}, low_flat{column_of(Shape::flat, 32), {0.5, 1, 2}},
-    high_flat{column_of(Shape::flat, 16), {3, 5, 8}};
+    high_flat{column_of(Shape::flat, 16), {3, 5, 7}};
 
 }  // namespace column_collapse
