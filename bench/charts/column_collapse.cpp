@@ -1,7 +1,12 @@
 // Draws the pictures of docs/verification/column_collapse.md: chart_column_collapse [FOLDER], which is made
 // where it is not. Takes some ten minutes.
+//
+// chart_column_collapse FOLDER series SHAPE RADIUS STIFFNESS ROLLING ASPECT... draws nothing: it adds one
+// more series to FOLDER/column_collapse_series.csv. SHAPE is round or flat, ROLLING the grains' friction of
+// rolling after the container is taken away.
 
 #include "../../tests/verification/column_collapse.hpp"
+#include <abrade/dem/rolling_resistance.hpp>
 #include "../../examples/common/charts.hpp"
 
 #include <fstream>
@@ -12,16 +17,45 @@ using namespace abrade::examples;
 
 namespace {
 
+void add_row(std::ostream& table, const Deposit& d) {
+    table << (d.column.shape == Shape::round ? "round," : "flat,") << d.column.radius << ','
+          << d.column.aspect << ',' << d.after.size() << ',' << d.runout << ',' << d.contiguous << ','
+          << runout_law(d.column.shape, d.column.aspect) << ',' << d.height << ',' << d.time << ','
+          << d.ledger.residual_relative() << ',' << d.ledger.integration_residue() / d.ledger.throughput()
+          << std::endl;
+}
+
+void add_exponents(std::ostream& table, const std::vector<Deposit>& deposits) {
+    table << "# exponent of the runout: " << runout_exponent(deposits) << ", of the contiguous "
+          << runout_exponent(deposits, &Deposit::contiguous) << std::endl;
+}
+
 std::vector<Deposit> run(const Series& series, std::ostream& table) {
-    const char* shape = series.column.shape == Shape::round ? "round" : "flat";
-    auto deposits = collapse_all(series, [&](const Deposit& d) {
-        table << shape << ',' << d.column.radius << ',' << d.column.aspect << ',' << d.after.size() << ','
-              << d.runout << ',' << runout_law(d.column.shape, d.column.aspect) << ',' << d.height << ','
-              << d.time << ',' << d.ledger.residual_relative() << ','
-              << d.ledger.integration_residue() / d.ledger.throughput() << std::endl;
-    });
-    table << "# " << shape << ", exponent of the runout: " << runout_exponent(deposits) << std::endl;
+    auto deposits = collapse_all(series, [&](const Deposit& deposit) { add_row(table, deposit); });
+    add_exponents(table, deposits);
     return deposits;
+}
+
+/// One more series, from SHAPE on: the arguments.
+void run_series(const std::vector<std::string>& options, std::ostream& table) {
+    if (options.size() < 5 || (options[0] != "round" && options[0] != "flat"))
+        throw std::invalid_argument("series needs SHAPE RADIUS STIFFNESS ROLLING ASPECT...");
+    Column column = column_of(options[0] == "round" ? Shape::round : Shape::flat, std::stod(options[1]),
+                              std::stod(options[2]));
+    const Real rolling = std::stod(options[3]);
+    column.aspect = std::stod(options.back());
+    const Grains grains = settled(column);
+    const LinearSpring law = grain_law(column);
+    const RollingResistance<LinearSpring> resisting{{.contact = law.params(), .friction = rolling}};
+    std::vector<Deposit> deposits;
+    for (std::size_t n = 4; n < options.size(); ++n) {
+        column.aspect = std::stod(options[n]);
+        const Grains standing = cut(grains, column.height());
+        deposits.push_back(rolling > 0 ? collapse(column, standing, resisting)
+                                       : collapse(column, standing, law));
+        add_row(table, deposits.back());
+    }
+    add_exponents(table, deposits);
 }
 
 std::vector<Real> spread(Real from, Real to) {
@@ -112,8 +146,16 @@ int main(int argc, char** argv) {
     try {
         const std::filesystem::path folder = argc > 1 ? argv[1] : "out/charts/column_collapse";
         std::filesystem::create_directories(folder);
+        if (argc > 2) {
+            if (std::string(argv[2]) != "series")
+                throw std::invalid_argument("there is no '" + std::string(argv[2]) + "', but 'series'");
+            std::ofstream table(folder / "column_collapse_series.csv", std::ios::app);
+            run_series({argv + 3, argv + argc}, table);
+            return 0;
+        }
         std::ofstream table(folder / "column_collapse.csv");
-        table << "shape,radius_d,aspect,grains,runout,law,height,time_sqrt_d_g,ledger_residual,integration_"
+        table << "shape,radius_d,aspect,grains,runout,contiguous_runout,law,height,time_sqrt_d_g,ledger_"
+                 "residual,integration_"
                  "residue\n";
         auto round = run(high_round, table);
         picture(round[1], folder / "verification_column_collapse_deposit.png");

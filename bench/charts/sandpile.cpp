@@ -3,6 +3,9 @@
 //
 // A run takes minutes. What it gave is kept in FOLDER as sandpile_MODEL.csv and sandpile_MODEL_discs.csv, and
 // taken from there the next time.
+//
+// chart_sandpile FOLDER causes [NUMBER...] draws nothing: it pours piles that differ in one thing each, all
+// or those with a number, and adds their heights to FOLDER/sandpile_causes.csv.
 
 #include "../../tests/verification/sandpile.hpp"
 #include "../../examples/common/charts.hpp"
@@ -11,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 using namespace sandpile;
 using namespace abrade::examples;
@@ -38,8 +42,42 @@ std::vector<std::vector<Real>> rows_of(const std::filesystem::path& path) {
     return rows;
 }
 
+struct Cause {
+    std::string what;
+    Pile pile;
+};
+const Cause causes[] = {
+    {"30 % large by number", {}},
+    {"30 % large by number, other order", {.seed = 2}},
+    {"500 large of 3000", {.large = 1. / 6}},
+    {"500 large of 3000, other order", {.large = 1. / 6, .seed = 2}},
+    {"500 large of 3000, third order", {.large = 1. / 6, .seed = 3}},
+    {"masses and inertias of discs", {.large = 1. / 6, .flat = true}},
+    {"restitution 0.3", {.large = 1. / 6, .restitution = 0.3}},
+    {"rolling friction 0.6", {.large = 1. / 6, .rolling_friction = 0.6}},
+};
+
+/// Heights 6.5 s after the gate opened, of the discs below the channel, and how many are still above its end.
+void pour_causes(const std::filesystem::path& to, const std::vector<std::size_t>& numbers) {
+    std::ofstream table(to, std::ios::app);
+    for (const std::size_t n : numbers) {
+        const Run run = pour(causes[n].pile, 6.5, 0.25, 0.8);
+        Real highest = floor_height;
+        Index above = 0;
+        for (const Disc& disc : run.discs)
+            if (disc.position.z() > channel_end)
+                ++above;
+            else
+                highest = std::max(highest, disc.position.z());
+        std::ostringstream line;
+        line << n << ',' << causes[n].what << ',' << highest - floor_height << ',' << above << ','
+             << run.integration_residue / run.lost << '\n';
+        table << line.str() << std::flush, std::cout << line.str() << std::flush;
+    }
+}
+
 void run(const Case& c, const std::filesystem::path& heights, const std::filesystem::path& discs) {
-    const Run run = pour({}, c.model, c.seconds, 0.1);
+    const Run run = pour({.model = c.model}, c.seconds, 0.1);
     std::ofstream h(heights), d(discs);
     h << "t_s,height_m\n", d << "x_m,z_m,radius_m,wall\n";
     for (std::size_t n = 0; n < run.time.size(); ++n)
@@ -76,6 +114,15 @@ int main(int argc, char** argv) {
     try {
         const std::filesystem::path folder = argc > 1 ? argv[1] : "out/charts/sandpile";
         std::filesystem::create_directories(folder);
+        if (argc > 2 && std::string(argv[2]) == "causes") {
+            std::vector<std::size_t> numbers;
+            for (int n = 3; n < argc; ++n) numbers.push_back(std::stoul(argv[n]));
+            for (std::size_t n = 0; argc == 3 && n < std::size(causes); ++n) numbers.push_back(n);
+            for (const std::size_t n : numbers)
+                if (n >= std::size(causes)) throw std::invalid_argument("no cause " + std::to_string(n));
+            pour_causes(folder / "sandpile_causes.csv", numbers);
+            return 0;
+        }
         std::vector<Curve> curves;
         for (const Case& c : cases) {
             if (argc > 2 && c.name != argv[2]) continue;

@@ -26,17 +26,24 @@ constexpr Real settling = 1.5;    ///< that we give the hopper's filling [s]
 /// floor at 3.3 m/s, which the engine refuses.
 constexpr Real youngs = 16e6;  ///< [Pa]
 
-/// A smaller pile takes a share of the discs and lengths that go with it; the discs stay as they are.
-struct Size {
+/// What is poured. A smaller pile takes a share of the discs and lengths that go with it; the discs stay as
+/// they are.
+struct Pile {
     Index discs = 3000;
-    Real lengths = 1;  ///< of the hopper, against the published one
+    Real lengths = 1;   ///< of the hopper, against the published one
+    Real large = 0.3;   ///< share of the discs that are large, by number; 1/6 are 30 % by volume of spheres
+    bool flat = false;  ///< masses and inertias of discs 4.6 mm thick, not of spheres
+    Real restitution = 0.7, rolling_friction = 0.3;  ///< [-]
+    Law::Model model = Law::Model::elastic_plastic;
+    unsigned seed = 1;  ///< of places and order
 };
 
-inline Law law(Law::Model model) {
-    return Law{{.contact = {.youngs = youngs, .poisson = 0.49, .restitution = 0.7, .friction = 0.8},
-                .friction = 0.3,
-                .stiffness_factor = 3,  // discs
-                .model = model}};
+inline Law law(const Pile& pile) {
+    return Law{
+        {.contact = {.youngs = youngs, .poisson = 0.49, .restitution = pile.restitution, .friction = 0.8},
+         .friction = pile.rolling_friction,
+         .stiffness_factor = 3,  // discs
+         .model = pile.model}};
 }
 
 /// Spheres in a row from a to b, so close that a disc rolls over them as over a plane: the row's face rises
@@ -53,13 +60,13 @@ inline void add_row(Lattice& lattice, const Vec3& a, const Vec3& b) {
 
 /// Hopper and channel of fixed spheres, their faces where the published walls are; the floor. Everything has
 /// y = 0: with nothing that points out of that plane, forces out of it are zeros, and discs stay in it.
-inline Scene hopper(const Size& size) {
+inline Scene hopper(const Pile& pile) {
     Scene scene;
     scene.gravity = {0, 0, -9.81};
-    scene.add_wall({0, 0, size.lengths * floor_height}, {0, 0, 1});
+    scene.add_wall({0, 0, pile.lengths * floor_height}, {0, 0, 1});
     Lattice walls;
     walls.radius = 0.004, walls.count_across = walls.count_layers = 1;
-    const Real l = size.lengths;
+    const Real l = pile.lengths;
     for (const Real side : {-1.0, 1.0}) {
         const Vec3 corner(side * half_width, 0, 0),
             top(side * (half_width + l * hopper_top / hopper_slope), 0, l * hopper_top);
@@ -72,13 +79,22 @@ inline Scene hopper(const Size& size) {
     return scene;
 }
 
-/// Discs on a loose grid in the hopper, three large ones to seven small ones, in an order and with places
-/// that a seed decides.
-inline void fill(Scene& scene, const Size& size, unsigned seed) {
-    std::mt19937 random(seed);
+inline void add_disc(Scene& scene, const Pile& pile, Real radius, const BodyState& state) {
+    Clump disc = make_clump("disc", {{Vec3::Zero(), radius}});
+    if (pile.flat) {
+        disc.volume = pi * square(radius) * 0.0046;
+        disc.principal_moments.setConstant(0.5 * disc.volume * square(radius));
+    }
+    scene.add_stone(disc, state, 1056);
+}
+
+/// Discs on a loose grid in the hopper, in an order and with places that a seed decides.
+inline void fill(Scene& scene, const Pile& pile) {
+    std::mt19937 random(pile.seed);
     const auto uniform = [&] { return static_cast<Real>(random()) / 4294967296.0; };
-    std::vector<Real> radii(static_cast<std::size_t>(size.discs), 0.00345);
-    for (std::size_t n = 0; n < 3 * radii.size() / 10; ++n) radii[n] = 0.00445;
+    std::vector<Real> radii(static_cast<std::size_t>(pile.discs), 0.00345);
+    const auto large = std::lround(pile.large * static_cast<Real>(pile.discs));
+    std::fill_n(radii.begin(), large, 0.00445);
     for (std::size_t n = radii.size() - 1; n > 0; --n) std::swap(radii[n], radii[random() % (n + 1)]);
     constexpr Real pitch = 0.0103;
     std::size_t next = 0;
@@ -86,10 +102,9 @@ inline void fill(Scene& scene, const Size& size, unsigned seed) {
         const Real free = half_width + z / hopper_slope - 0.0075;
         const int count = static_cast<int>(2 * free / pitch) + 1;
         for (int n = 0; n < count && next < radii.size(); ++n, ++next)
-            scene.add_sphere(radii[next],
-                             {.position = {-0.5 * (count - 1) * pitch + n * pitch + 0.001 * (uniform() - 0.5),
-                                           0, z + 0.001 * (uniform() - 0.5)}},
-                             1056);
+            add_disc(scene, pile, radii[next],
+                     {.position = {-0.5 * (count - 1) * pitch + n * pitch + 0.001 * (uniform() - 0.5), 0,
+                                   z + 0.001 * (uniform() - 0.5)}});
     }
 }
 
@@ -109,32 +124,31 @@ struct Run {
 
 /// Fills the hopper, opens the gate, and watches for `seconds`. The gate is a plane that the second of two
 /// simulations does not have: discs at rest enter it, with contacts that have no memory yet.
-inline Run pour(const Size& size, Law::Model model, Real seconds, Real observe_every, unsigned seed = 1) {
-    Scene closed = hopper(size);
+inline Run pour(const Pile& pile, Real seconds, Real observe_every, Real safety = 0.5) {
+    Scene closed = hopper(pile);
     closed.add_wall({0, 0, 0}, {0, 0, 1});
-    fill(closed, size, seed);
+    fill(closed, pile);
     const std::size_t walls = closed.concrete->lattice.sites.size();
-    auto filling = simulate(closed).contact(law(model));
-    filling.run({.end_time = settling});
+    auto filling = simulate(closed).contact(law(pile));
+    filling.run({.end_time = settling, .safety = safety});
 
-    Scene open = hopper(size);
+    Scene open = hopper(pile);
     const Particles& p = filling.particles();
     for (std::size_t b = walls; b < p.position.size(); ++b)
-        open.add_sphere(p.radius[b],
-                        {.position = p.position[b],
-                         .velocity = p.velocity[b],
-                         .angular_velocity = p.angular_velocity(static_cast<Index>(b))},
-                        1056);
-    auto sim = simulate(open).contact(law(model));
+        add_disc(open, pile, p.radius[b],
+                 {.position = p.position[b],
+                  .velocity = p.velocity[b],
+                  .angular_velocity = p.angular_velocity(static_cast<Index>(b))});
+    auto sim = simulate(open).contact(law(pile));
     Run run;
-    sim.run({.end_time = seconds, .observe_every = observe_every}, [&](const auto& now) {
+    sim.run({.end_time = seconds, .safety = safety, .observe_every = observe_every}, [&](const auto& now) {
         Real highest = -1e300;
         for (std::size_t b = walls; b < now.particles().position.size(); ++b) {
             highest = std::max(highest, now.particles().position[b].z());
             run.off_plane = std::max(run.off_plane, std::abs(now.particles().position[b].y()));
         }
         run.time.push_back(gate_opens + now.time());
-        run.height.push_back(highest - size.lengths * floor_height);
+        run.height.push_back(highest - pile.lengths * floor_height);
     });
     for (std::size_t b = 0; b < sim.particles().position.size(); ++b)
         (b < walls ? run.walls : run.discs)
