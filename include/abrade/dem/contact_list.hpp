@@ -188,6 +188,7 @@ private:
     }
 
     void add_planes(const SphereStore& store, const Build& build, std::vector<Listed>& listed) const {
+        if (build.planes.empty()) return;
         for (Index slot = 0; slot < store.spheres(); ++slot) {
             const Index sphere = store.sphere_of(slot);
             if (build.passive[at(sphere)]) continue;

@@ -157,8 +157,10 @@ private:
             return shift;
         };
         for (Index slot = 0; slot < store.spheres(); ++slot) {
+            Vec3& x = store.lines.place[at(slot)].centre;
+            if (space.way_back(x).isZero(0)) continue;  // most: their body need not be known
             const Index body = state.particles.body[at(store.sphere_of(slot))];
-            if (store.clump_of(body) < 0) back(store.lines.place[at(slot)].centre, body);
+            if (store.clump_of(body) < 0) back(x, body);
         }
         for (MovingClump& clump : store.clumps) {
             const Vec3 shift = back(clump.position, clump.body);
