@@ -212,6 +212,33 @@ struct Stiffness {
     Stiffness(Number k, Number compliance) noexcept : value(k), inverse(compliance) {}
 };
 
+/// A spring whose stiffness k follows the contact and which makes no energy: while k grows the spring
+/// shortens so that its force stays, and the way adds to it at the mean k of the step (for an overlap that
+/// grows evenly); while k falls the spring stays.
+template <class Number>
+struct FollowingStiffness {
+    Number before, now;  ///< k of the step before, of this one [N/m]
+    Number grown;        ///< 1 - k_before / k_now while k grows, else 0 [-]
+    Number mean;         ///< k over the step, over k_now [-]
+
+    static FollowingStiffness of(Number before, Stiffness<Number> now) noexcept {
+        const Number grown = max(Number(1) - before * now.inverse, Number(0));
+        return {before, now.value, grown, Number(1) - grown * (Number(0.5) - grown * Number(1.0 / 6))};
+    }
+    static FollowingStiffness constant(Number k) noexcept { return {k, k, Number(0), Number(1)}; }
+
+    /// What the spring gives up [J]: 1/2 k s^2 before, plus the work of the mean force over the way, less 1/2
+    /// k s^2 now and what the slider booked. `length2` is s^2 before; `carried` the spring shortened and
+    /// turned, `left` what the slider left of it, `begun` as in `begun_share`. As k grows or falls, one of
+    /// the two is 0.
+    Number given_up(Number length2, const Vec3Of<Number>& carried, const Vec3Of<Number>& left,
+                    const Vec3Of<Number>& way, Number begun) const noexcept {
+        const Number stiffened = now * (Number(1) - mean), softened = max(before - now, Number(0));
+        const Number work = (stiffened + softened) * carried.dot(way) + stiffened * left.dot(way);
+        return Number(0.5) * ((before * grown + softened) * length2 + begun * work);
+    }
+};
+
 /// A tangential spring and dashpot held under a limit by a slider (Coulomb).
 template <class Number>
 struct SlidingSpring {

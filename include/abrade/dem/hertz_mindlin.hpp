@@ -130,14 +130,13 @@ public:
             params_.tension ? NormalSpring<Number>::pulling(push, held, dashpot, approach, contact.time_step)
                             : NormalSpring<Number>::pushing(push, held, dashpot, approach, contact.time_step);
 
-        // As k_t grows an incremental spring shortens so that its force stays, and the way adds to it at the
-        // mean k_t of the step (for an overlap that grows evenly). As k_t falls the spring stays.
         const bool total = params_.spring == Spring::total, by_springs = params_.slider == Slider::springs;
-        const Number grown = total ? Number(0) : max(Number(1) - memory.stiffness * compliance, Number(0));
-        const Number mean = Number(1) - grown * (Number(0.5) - grown * Number(1.0 / 6));
-        const Vec3Of<Number> before = turn_into_plane(memory.spring, contact.normal, Number(1) - grown);
+        const auto stiffness = total ? FollowingStiffness<Number>::constant(kt)
+                                     : FollowingStiffness<Number>::of(memory.stiffness, {kt, compliance});
+        const Vec3Of<Number> before =
+            turn_into_plane(memory.spring, contact.normal, Number(1) - stiffness.grown);
         const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
-        const Vec3Of<Number> trial = before + (mean * begun) * way;
+        const Vec3Of<Number> trial = before + (stiffness.mean * begun) * way;
         const Number limit = select(
             touching, Number(params_.friction) * (by_springs ? push : max(normal.force, Number(0))), far);
         const Number beside = dashpot * Number(tangential_over_normal_dashpot_);
@@ -149,17 +148,9 @@ public:
             tangential.lost += damping * slip.dot(slip) * Number(contact.time_step);
         }
 
-        // What an incremental spring gives up: 1/2 k_t s^2 then, plus the work of its mean force over the
-        // way, less 1/2 k_t s^2 now and what the slider booked.
-        const Number held_before = Number(0.5) * memory.stiffness * memory.spring.dot(memory.spring);
-        Number given_up(0);
-        if (!total) {
-            const Number stiffened = kt * (Number(1) - mean),
-                         softened = max(memory.stiffness - kt, Number(0));
-            const Number work =
-                (stiffened + softened) * before.dot(way) + stiffened * tangential.spring.dot(way);
-            given_up = held_before + Number(0.5) * (begun * work - kt * before.dot(before));
-        }
+        const Number length2 = memory.spring.dot(memory.spring);
+        const Number given_up = stiffness.given_up(length2, before, tangential.spring, way, begun);
+        const Number held_before = Number(0.5) * memory.stiffness * length2;
         const Vec3Of<Number> none = Vec3Of<Number>::Zero();
         const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;
         return {

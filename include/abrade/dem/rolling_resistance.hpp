@@ -103,19 +103,16 @@ public:
         const Number dashpot =
             acting * Number(2 * params_.damping) * sqrt(Number(1.4) * per_inertia * stiffness);
 
-        // As in HertzMindlin. Where a contact begins k_r is that of no overlap.
-        const Number stiffness_before =
-            max(memory.stiffness, a * law_.normal_stiffness(Number(0), contact.curvature));
-        const Number grown = max(Number(1) - stiffness_before / stiffness, Number(0));
-        const Number mean = Number(1) - grown * (Number(0.5) - grown * Number(1.0 / 6));
-        const Vec3Of<Number> before = (Number(1) - grown) * turn_into_plane(memory.turn, contact.normal);
-        const auto spring = SlidingSpring<Number>::at(before, before + (mean * begun) * way, rolling, limit,
-                                                      stiffness, dashpot, contact.time_step);
-        const Number stiffened = stiffness * (Number(1) - mean),
-                     softened = max(stiffness_before - stiffness, Number(0));
-        const Number work = (stiffened + softened) * before.dot(way) + stiffened * spring.spring.dot(way);
-        const Number held_before = Number(0.5) * memory.stiffness * memory.turn.dot(memory.turn);
-        const Number given_up = held_before + Number(0.5) * (begun * work - stiffness * before.dot(before));
+        // Where a contact begins k_r is that of no overlap.
+        const auto following = FollowingStiffness<Number>::of(
+            max(memory.stiffness, a * law_.normal_stiffness(Number(0), contact.curvature)), stiffness);
+        const Vec3Of<Number> before =
+            turn_into_plane(memory.turn, contact.normal, Number(1) - following.grown);
+        const auto spring = SlidingSpring<Number>::at(before, before + (following.mean * begun) * way,
+                                                      rolling, limit, stiffness, dashpot, contact.time_step);
+        const Number length2 = memory.turn.dot(memory.turn),
+                     given_up = following.given_up(length2, before, spring.spring, way, begun),
+                     held_before = Number(0.5) * memory.stiffness * length2;
 
         all.load.couple = select(touching, spring.force, none);
         all.load.stored += select(touching, spring.stored, Number(0));
