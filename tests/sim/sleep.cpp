@@ -35,9 +35,12 @@ void heap(int side, int layers, Real apart, Add&& add) {
     const auto uniform = [&] { return std::uniform_real_distribution<Real>(-1, 1)(random); };
     for (int layer = 0; layer < layers; ++layer)
         for (int i = 0; i < side; ++i)
-            for (int j = 0; j < side; ++j)
-                add(Vec3(apart * (i - 0.5 * side + 0.5) + 1e-3 * uniform(),
-                         apart * (j - 0.5 * side + 0.5) + 1e-3 * uniform(), apart * (layer + 0.5)));
+            for (int j = 0; j < side; ++j) {
+                // One by one: in which order arguments are evaluated is up to the compiler.
+                const Real y = uniform(), x = uniform();
+                add(Vec3(apart * (i - 0.5 * side + 0.5) + 1e-3 * x, apart * (j - 0.5 * side + 0.5) + 1e-3 * y,
+                         apart * (layer + 0.5)));
+            }
 }
 
 /// Where 108 spheres have come to rest, in a box of 14 cm.
