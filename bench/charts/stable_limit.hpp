@@ -95,14 +95,18 @@ Bed poured_bed(const Clump& clump, Real width, int layers, const Settling& law) 
     Scene scene;
     std::mt19937 random(7);
     std::uniform_real_distribution<Real> u(-1, 1);
+    // One by one: in which order arguments are evaluated is up to the compiler.
+    const auto shift = [&] {
+        const Real z = u(random), y = u(random), x = u(random);
+        return Vec3(x, y, z);
+    };
     const Real side = 3 * width;
     for (int n = 0; n < 9 * layers; ++n) {
         const Vec3 at((n % 3 + 0.5) * width, (n / 3 % 3 + 0.5) * width, (n / 9 + 0.6) * width);
-        const Quaternion turned = Quaternion(u(random), u(random), u(random), u(random)).normalized();
-        scene.add_stone(
-            clump,
-            {.position = at + 0.02 * width * Vec3(u(random), u(random), u(random)), .orientation = turned},
-            stone_density);
+        const Vec3 axis = shift();
+        const Quaternion turned = Quaternion(u(random), axis.x(), axis.y(), axis.z()).normalized();
+        scene.add_stone(clump, {.position = at + 0.02 * width * shift(), .orientation = turned},
+                        stone_density);
     }
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY())})

@@ -21,12 +21,15 @@ Scene box_of_stones(int stones, Real speed = 2) {
     Scene scene;
     std::mt19937 random(3);
     std::uniform_real_distribution<Real> u(-1, 1);
+    // One by one: in which order arguments are evaluated is up to the compiler.
+    const auto any = [&] {
+        const Real z = u(random), y = u(random), x = u(random);
+        return Vec3(x, y, z);
+    };
     for (int n = 0; n < stones; ++n) {
         const Vec3 at(0.12 * (n % 3 - 1), 0.12 * (n / 3 % 3 - 1), 0.12 * (n / 9) - 0.12);
         scene.add_stone(make_stone(n % 2 ? StoneShape::angular : StoneShape::sphere, 0.05),
-                        {.position = at,
-                         .velocity = speed * Vec3(u(random), u(random), u(random)),
-                         .angular_velocity = 10 * Vec3(u(random), u(random), u(random))});
+                        {.position = at, .velocity = speed * any(), .angular_velocity = 10 * any()});
     }
     for (int axis = 0; axis < 3; ++axis)
         for (const Real side : {-1.0, 1.0})

@@ -73,10 +73,11 @@ inline Box box_around(std::span<const Sphere> spheres) {
 /// Eight directions spread over the sphere, turned and shaken by chance.
 inline std::vector<Vec3> random_corners(std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    // The distributions of the standard library differ from one compiler to the next; the engine does not.
+    // The distributions of the standard library differ from one compiler to the next, and so does the order
+    // in which arguments are evaluated; the engine does not.
     const auto uniform = [&] { return static_cast<Real>(random() >> 11) * 0x1p-52 - 1; };
-    Quaternion turn(uniform(), uniform(), uniform(), uniform());
-    turn.normalize();
+    const Real k = uniform(), j = uniform(), i = uniform(), w = uniform();
+    const Quaternion turn = Quaternion(w, i, j, k).normalized();
     constexpr int count = 8;
     constexpr Real golden_angle = 2.399963229728653, shake = 0.3;
     std::vector<Vec3> corners;
