@@ -154,9 +154,8 @@ int main(int argc, char** argv) {
             return 0;
         }
         std::ofstream table(folder / "column_collapse.csv");
-        table << "shape,radius_d,aspect,grains,runout,contiguous_runout,law,height,time_sqrt_d_g,ledger_"
-                 "residual,integration_"
-                 "residue\n";
+        table << "shape,radius_d,aspect,grains,runout,contiguous_runout,law,height,time_sqrt_d_g,"
+                 "ledger_residual,integration_residue\n";
         auto round = run(high_round, table);
         picture(round[1], folder / "verification_column_collapse_deposit.png");
         for (Deposit& d : run(low_round, table)) round.push_back(std::move(d));

@@ -186,12 +186,11 @@ int main(int argc, char** argv) {
                   .y = {},
                   .style = CurveStyle::dashed};
         std::ofstream sleeps(folder / "sleep.csv");
-        sleeps << "speed_m_s,wall_s,awake,mean_difference_m,largest_difference_m,lost_J,concrete_lost_J,lost_"
-                  "asleep_J,"
-                  "residual\n";
+        sleeps << "speed_m_s,wall_s,awake,mean_difference_m,largest_difference_m,lost_J,concrete_lost_J,"
+                  "lost_asleep_J,residual\n";
         std::cout << "\n| sleep_speed, m/s | wall time, s | awake | mean difference, mm | largest, mm | "
-                     "lost, J | on "
-                     "concrete, J | lost_asleep, J | residual |\n|---|---|---|---|---|---|---|---|---|\n";
+                     "lost, J | on concrete, J | lost_asleep, J | residual |\n"
+                     "|---|---|---|---|---|---|---|---|---|\n";
         const auto show = [&](const Rest& r, const std::string& name, const Difference& d) {
             sleeps << name << ',' << r.wall << ',' << r.awake << ',' << d.mean << ',' << d.largest << ','
                    << r.lost << ',' << r.concrete << ',' << r.asleep << ',' << r.residual << '\n';
@@ -213,11 +212,13 @@ int main(int argc, char** argv) {
             moved.x.push_back(speed), moved.y.push_back(1e6 * d.mean);
             other.x.push_back(speed), other.y.push_back(1e6 * yardstick.mean);
         }
-        draw(LineChart{.title = "A bed on which a stone falls every second: what sleep saves",
-                       .x = {.label = "sleep_speed", .unit = "m/s", .max = 1e-2, .logarithmic = true},
-                       .y = {.label = "of everything awake", .unit = "%", .min = 0, .max = 110},
-                       .curves = {wall, share}},
-             folder / "multi_rate_saved.png");
+        draw(
+            LineChart{
+                .title = "A bed on which a stone falls every second: what sleep saves",
+                .x = {.label = "sleep_speed", .unit = "m/s", .max = 1e-2, .logarithmic = true},
+                .y = {.label = "share of the run with everybody awake", .unit = "%", .min = 0, .max = 110},
+                .curves = {wall, share}},
+            folder / "multi_rate_saved.png");
         draw(LineChart{.title = "The same bed: what sleep changes",
                        .x = {.label = "sleep_speed", .unit = "m/s", .max = 1e-2, .logarithmic = true},
                        .y = {.label = "mean difference in place", .unit = "um", .min = 0},

@@ -234,6 +234,20 @@ TEST_CASE("a sleeper wakes where its load changes, however slowly that comes") {
     CHECK(0.01 - sim.particles().position[0].z() == doctest::Approx(2 * sunk).epsilon(Sleep::allowed_change));
 }
 
+TEST_CASE("who leaves does not make others begin anew to fall asleep") {
+    // The first passes the outlet before anybody sleeps; the second has lain still all along.
+    Scene scene;
+    scene.outlet = 1;
+    scene.add_sphere(0.01, {.position = {0.995, 0, 0.5}, .velocity = {1, 0, 0}});
+    scene.add_sphere(0.01,
+                     {.position = {0, 0, 0.01 - 2650 * 4 * pi / 3 * cube(0.01) * standard_gravity / 5e4}});
+    scene.add_wall({0, 0, 0}, {0, 0, 1});
+    auto sim = simulate(scene).contact(law);
+    sim.run({.end_time = 0.018, .time_step = 2e-5, .sleep_speed = 1e-3, .sleep_after = 0.015});
+    CHECK(sim.particles().bodies() == 1);
+    CHECK(sim.world().state().sleep.asleep(0));
+}
+
 TEST_CASE("water that begins to rise wakes who lies in it") {
     Scene scene;
     scene.add_sphere(0.01, {.position = {0, 0, 0.01}});

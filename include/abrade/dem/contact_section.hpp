@@ -213,7 +213,7 @@ private:
                  detail::memory_of_lane<Seen>(from.before, lane), true);
     }
 
-    /// The same behind the packs that are evaluated. Nothing moves there.
+    /// The same behind the packs that are evaluated. Nothing moves there, so there is no motion to remember.
     void keep_at_rest(std::size_t n, std::size_t old) {
         add_lane(
             n, detail::memory_of_lane<Memory>(old_packs_[old / lanes].memory, static_cast<int>(old % lanes)),

@@ -9,8 +9,7 @@ namespace abrade {
 /// along the principal axes of the body, which turn with it.
 ///
 /// Implicit midpoint rule for Euler's equations, dPi/dt = Pi x I^-1 Pi. With the Cayley transform for the
-/// attitude
-/// (`turned`) the angular momentum in the world frame stays what it is and the rotational energy
+/// attitude (`turned`) the angular momentum in the world frame stays what it is and the rotational energy
 /// 1/2 Pi . I^-1 Pi is conserved to round-off, at any dt. So rotation adds nothing to the energy ledger.
 /// M. A. Austin, P. S. Krishnaprasad, L.-S. Wang, J. Comput. Phys. 107 (1993) 105,
 /// doi:10.1006/jcph.1993.1128. Second order; converges while |omega| dt < 1.

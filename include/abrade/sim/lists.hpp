@@ -179,9 +179,7 @@ private:
         Index to = 0;
         for (Index b = 0; b < p.bodies(); ++b) {
             const bool known = state.store.spheres() > p.first_sphere[at(b)];
-            const bool may_go =
-                state.scene.outlet && known && p.inverse_mass[at(b)] > 0 && p.kind[at(b)] != Kind::concrete;
-            if (may_go) {
+            if (known && p.inverse_mass[at(b)] > 0 && p.kind[at(b)] != Kind::concrete) {
                 const Vec3 x = state.store.position_of(p, b);
                 if (x.x() > *state.scene.outlet) {
                     d.gone[at(b)] = 1, d.any = true;

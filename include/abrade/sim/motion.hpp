@@ -19,7 +19,7 @@ struct MotionSums {
     Quad finite{};       ///< sum of velocities: not finite where one is not
     bool stirs = false;  ///< one beside a sleeper has become fast
 
-    /// What the fluid did over a `path` [m] and for `time` [s].
+    /// What the fluid did over a `way` [m] and for `time` [s].
     void add(const FluidLoad& fluid, const Vec3& way, Real time) noexcept {
         drag += fluid.drag.dot(way), drag_input += time * fluid.drag.dot(fluid.fluid_velocity);
         buoyancy += fluid.buoyancy.dot(way);

@@ -192,7 +192,7 @@ bool fall_asleep(State<P>& state, const Move& half, Real interval, MotionSums& s
 }
 
 /// Wakes those who must, and whom they touch: those who lost support, and those whom a fast body may meet
-/// before candidates, which have just been picked, are picked again. Forces must not have been evaluated yet.
+/// before candidates are picked again. Forces must not have been evaluated yet. Returns whether anybody woke.
 template <class P>
 bool wake_stirred(State<P>& state) {
     const auto at = [](Index i) { return static_cast<std::size_t>(i); };
@@ -240,7 +240,7 @@ bool wake_stirred(State<P>& state) {
 template <class P>
 void leave_sleepers(State<P>& state, const std::vector<char>& gone) {
     Sleep& sleep = state.sleep;
-    if (sleep.count == 0) return;
+    if (sleep.bodies.empty()) return;
     sleep.bodies.resize(gone.size());
     std::size_t to = 0;
     for (std::size_t from = 0; from < gone.size(); ++from) {

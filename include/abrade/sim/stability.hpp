@@ -145,20 +145,21 @@ public:
         hold_doubtful(most);
         const Particles& p = state_.particles;
         for (Index b = 0; b < p.bodies(); ++b) {
-            if (p.kind[at(b)] != Kind::concrete || p.inverse_mass[at(b)] == 0) continue;
+            if (p.site[at(b)] < 0 || p.inverse_mass[at(b)] == 0) continue;
             hold(b);
+            if (p.kind[at(b)] != Kind::concrete) continue;  // loose, yet it may have bonds
             const Real radius = detail::extent_of(p, b).largest;
             const ContactRigidity touch = state_.policies.contact.rigidity(radius);
             own_[at(held_[at(b)])].add_anywhere(body_of(b), contacts_of_concrete,
                                                 detail::link_of(touch, p.mass[at(b)], radius));
         }
-        return lowered(step, true);
+        return lowered(step);
     }
     /// Of bodies that touch others, where that is less than `most`.
     StableStep of_touching(Real most) {
         hold_doubtful(most);
         const StableStep step{most, "the step taken"};
-        return own_.empty() ? step : lowered(step, P::has_bonds);
+        return own_.empty() ? step : lowered(step);
     }
 
 private:
@@ -187,7 +188,8 @@ private:
         held_[at(body)] = static_cast<Index>(own_.size());
         own_.emplace_back();
     }
-    /// Those that a cheap bound on their matrix does not show to be stable at the step `most` [s].
+    /// Those that a cheap bound on their matrix does not show to be stable at the step `most` [s]: the sum
+    /// over their contacts. It leaves out bonds, so concrete is held with its first contact.
     void hold_doubtful(Real most) {
         std::vector<Real> sum(at(state_.particles.bodies()), 0);
         each_contact_end([&](const End& end) {
@@ -206,13 +208,13 @@ private:
             clump < 0 ? Quaternion(Quaternion::Identity()) : state_.store.clumps[at(clump)].orientation);
     }
 
-    StableStep lowered(StableStep step, bool with_bonds) {
+    StableStep lowered(StableStep step) {
         const auto add = [&](Index b, const Vec3& n, const Vec3& arm, const LinkRigidity& link, bool moves) {
             const Index own = held_[at(b)];
             if (own >= 0) own_[at(own)].add(body_of(b), n, arm, link, moves);
         };
         each_contact_end([&](const End& e) { add(e.body, e.normal, e.arm, e.link, e.partner_moves); });
-        if (with_bonds) detail::each_end(state_.network, state_.policies.bond, state_.particles, add);
+        detail::each_end(state_.network, state_.policies.bond, state_.particles, add);
         for (Index b = 0; b < state_.particles.bodies(); ++b) {
             if (held_[at(b)] < 0) continue;
             const bool bonded = state_.particles.kind[at(b)] == Kind::concrete;
