@@ -166,3 +166,18 @@ TEST_CASE("a stone that starts whole periods away starts in the period that is m
           doctest::Approx(one.ledger().potential_start).epsilon(1e-12).scale(0));
     CHECK(other.ledger().residual_relative() < 1e-12);
 }
+
+TEST_CASE("what is fed, and concrete, must lie within the period") {
+    Scene scene = tube(0.125);
+    scene.feed = FeedParams{.volume_rate = 1e-3,
+                            .classes = {{0.005, 1, StoneShape::sphere}},
+                            .region = {{0.1, -0.01, 0}, {0.2, 0.03, 0.05}}};
+    CHECK(message_of(scene) ==
+          "Feed.region.x must be inside Scene.bounds, from 0 to 0.125, along a periodic axis, got 0.2 m");
+    scene = tube(0.125);
+    scene.concrete = ConcreteBlock{flat_lattice(0.5, 0.02, {.layers = 1})};
+    const std::string said = message_of(scene);
+    CHECK(said.find("Scene.concrete.lattice.sites[") == 0);
+    CHECK(said.find("].centre.x must be inside Scene.bounds, from 0 to 0.125, along a periodic axis") !=
+          std::string::npos);
+}

@@ -228,7 +228,7 @@ inline Real largest(Pack x) noexcept {
 }
 
 /// Four numbers side by side in memory: a record, or a part of one.
-struct alignas(4 * sizeof(Real)) Quad {
+struct [[gnu::may_alias]] alignas(4 * sizeof(Real)) Quad {  // lines are read as their members, too
     using Native [[gnu::vector_size(4 * sizeof(Real))]] = Real;
     Native value;
 

@@ -33,11 +33,4 @@ inline Quaternion turned(const Quaternion& orientation, const Vec3& spin, Real d
     return (orientation * Quaternion(1, half.x(), half.y(), half.z())).normalized();
 }
 
-/// The same of a free body of that angular momentum in world axes [kg m2/s].
-inline Quaternion turn_freely(const Quaternion& orientation, const Vec3& angular_momentum,
-                              const Vec3& inverse_inertia, Real dt) noexcept {
-    return turned(orientation, midpoint_spin(orientation.conjugate() * angular_momentum, inverse_inertia, dt),
-                  dt);
-}
-
 }  // namespace abrade

@@ -283,10 +283,14 @@ private:
         for (std::size_t b = 0; b < position.size(); ++b) {
             const Vec3 from_low = position[b] - fit.low;
             const bool single = particles.sphere_count[b] == 1;
-            key[b] = ((at(slabs.of(position[b])) * 2 + (single ? 0 : 1)) * cells2 +
-                      static_cast<std::size_t>(from_low[second] / cell)) *
-                         cells3 +
-                     static_cast<std::size_t>(from_low[third] / cell);
+            const auto cell_along = [&](int a, std::size_t count) {  // what was fed may lie a little outside
+                return static_cast<std::size_t>(
+                    std::clamp(from_low[a] / cell, 0.0, static_cast<Real>(count - 1)));
+            };
+            key[b] =
+                ((at(slabs.of(position[b])) * 2 + (single ? 0 : 1)) * cells2 + cell_along(second, cells2)) *
+                    cells3 +
+                cell_along(third, cells3);
             ++start[key[b] + 1];
         }
         for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];

@@ -107,6 +107,23 @@ struct Scene {
                     0);
         }
         if (feed) feed->validate();
+        for (int a = 0; a < 3; ++a) {
+            if (!periodic_along[static_cast<std::size_t>(a)]) continue;
+            const auto require_inside = [&](Real low, Real high, const std::string& name) {
+                require(low >= bounds.low[a] && high <= bounds.high[a],
+                        {name + "." + "xyz"[a],
+                         "inside Scene.bounds, from " + to_text(bounds.low[a]) + " to " +
+                             to_text(bounds.high[a]) + ", along a periodic axis",
+                         "m"},
+                        low < bounds.low[a] ? low : high);
+            };
+            if (feed) require_inside(feed->region.low[a], feed->region.high[a], "Feed.region");
+            if (concrete)
+                for (std::size_t n = 0; n < concrete->lattice.sites.size(); ++n) {
+                    const Real x = concrete->lattice.sites[n].centre[a];
+                    require_inside(x, x, "Scene.concrete.lattice.sites[" + std::to_string(n) + "].centre");
+                }
+        }
     }
 
 private:

@@ -135,7 +135,9 @@ struct State {
         const auto ground = [&](Index slot) {
             if (slot < 0 || slot >= store.phantom()) return;
             Pace& own = pace[at(store.owner_of(slot))];
-            if (own == Pace::flying) own = Pace::every_step, ++flight.held;
+            if (own != Pace::flying) return;
+            own = Pace::every_step;
+            flight.held += store.lines.motion[at(slot)].inverse_mass > 0;
         };
         flight.held = 0;
         contacts.each_candidate([&](const SlotPair& pair) {

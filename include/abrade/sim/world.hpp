@@ -35,11 +35,10 @@ public:
 
     /// From t to t + dt: v(t + dt/2) = v(t - dt/2) + a(t) dt, x(t + dt) = x(t) + v(t + dt/2) dt.
     void step(Real t, Real dt, bool timed) {
-        state_.free_loose_concrete();
         if (dt != time_step_) change_step(dt);
         now_ = t;
         if (state_.sleep.speed > 0 && ++unlooked_ >= Sleep::steps_between_looks) look();
-        if (!evaluated_) lists_.freshen(state_, now_, dt);
+        if (!evaluated_) make_ready(dt);
         const Move move{whole_ ? 0.5 * dt : dt, dt, false, now_, ahead_in_fluid()};
         pass(!evaluated_, &move, timed);
         kicked_ += move.kick, last_kick_ = move.kick, led_here_ = dt, now_ = t + dt;
@@ -136,10 +135,16 @@ private:
         return whole_ || last_kick_ == 0 ? 0 : 0.5 * led_here_ / last_kick_;
     }
 
+    /// Before forces are evaluated, once for each time.
+    void make_ready(Real dt) {
+        state_.free_loose_concrete();
+        lists_.freshen(state_, now_, dt);
+    }
+
     /// Brings forces, losses and wear up to the present.
     void catch_up() {
         if (evaluated_) return;
-        lists_.freshen(state_, now_, time_step_);
+        make_ready(time_step_);
         pass(true, nullptr, false);
         evaluated_ = true;
     }
