@@ -204,14 +204,6 @@ struct NormalSpring {
     }
 };
 
-/// A stiffness [N/m] and one over it.
-template <class Number>
-struct Stiffness {
-    Number value, inverse;
-    Stiffness(Number k) noexcept : Stiffness(k, reciprocal(k)) {}
-    Stiffness(Number k, Number compliance) noexcept : value(k), inverse(compliance) {}
-};
-
 /// A spring whose stiffness k follows the contact and which makes no energy: while k grows the spring
 /// shortens so that its force stays, and the way adds to it at the mean k of the step (for an overlap that
 /// grows evenly); while k falls the spring stays.
@@ -221,9 +213,9 @@ struct FollowingStiffness {
     Number grown;        ///< 1 - k_before / k_now while k grows, else 0 [-]
     Number mean;         ///< k over the step, over k_now [-]
 
-    static FollowingStiffness of(Number before, Stiffness<Number> now) noexcept {
-        const Number grown = max(Number(1) - before * now.inverse, Number(0));
-        return {before, now.value, grown, Number(1) - grown * (Number(0.5) - grown * Number(1.0 / 6))};
+    static FollowingStiffness of(Number before, Number now, Number one_over_now) noexcept {
+        const Number grown = max(Number(1) - before * one_over_now, Number(0));
+        return {before, now, grown, Number(1) - grown * (Number(0.5) - grown * Number(1.0 / 6))};
     }
     static FollowingStiffness constant(Number k) noexcept { return {k, k, Number(0), Number(1)}; }
 
@@ -253,32 +245,32 @@ struct SlidingSpring {
     /// room. Unlike the usual form, which stretches the spring backwards to make room for the dashpot, this
     /// never books a negative loss.
     static SlidingSpring at(const Vec3Of<Number>& before, const Vec3Of<Number>& trial,
-                            const Vec3Of<Number>& slip, Number limit, Stiffness<Number> k, Number dashpot,
+                            const Vec3Of<Number>& slip, Number limit, Number k, Number dashpot,
                             Real dt) noexcept {
         const Number trial2 = trial.dot(trial), slip2 = slip.dot(slip), least = Number(tiny<Number>);
         // |k s + c v|^2 = elastic2 + 2 both + damping2.
-        const Number elastic2 = k.value * k.value * trial2, damping2 = dashpot * dashpot * slip2;
-        const Number both = k.value * dashpot * trial.dot(slip), limit2 = limit * limit;
+        const Number elastic2 = k * k * trial2, damping2 = dashpot * dashpot * slip2;
+        const Number both = k * dashpot * trial.dot(slip), limit2 = limit * limit;
         const auto slides = (elastic2 + (both + both) + damping2 > limit2) | (elastic2 > limit2);
 
         // With the share of the spring that is kept, and that of the dashpot that acts.
         const auto answer = [&](Number kept, Number acting, Number slipped) -> SlidingSpring {
             const Vec3Of<Number> left = kept * trial;
             const Number damping = acting * dashpot;
-            return {-k.value * left - damping * slip, left, Number(0.5) * k.value * kept * kept * trial2,
+            return {-k * left - damping * slip, left, Number(0.5) * k * kept * kept * trial2,
                     slipped + damping * slip2 * Number(dt)};
         };
         if (!any(slides)) return answer(Number(1), Number(1), Number(0));
 
-        const auto root = [least](Number x) { return x * rsqrt(max(x, least)); };
-        const Number per_length = rsqrt(max(trial2, least));
-        const Number kept = select(slides, min(Number(1), limit * k.inverse * per_length), Number(1));
+        // Roots and divisions of the machine: their unit is idle, and this waits for them.
+        const Number kept = select(slides, min(Number(1), limit / sqrt(max(elastic2, least))), Number(1));
         const Number slipped =
-            max(Number(0.5) * k.value * (Number(1) - kept) * (before.dot(trial) + kept * trial2), Number(0));
-        // The largest share g <= 1 with |k s + g c v| <= limit: a quadratic in g.
-        const Number b = kept * both, room = max(limit2 - kept * kept * elastic2, Number(0));
+            max(Number(0.5) * k * (Number(1) - kept) * (before.dot(trial) + kept * trial2), Number(0));
+        // The largest share g <= 1 with |k s + g c v| <= limit: a quadratic in g. Either the spring is kept
+        // whole or it leaves no room, so the root need not wait for the share that is kept.
+        const Number room = max(limit2 - elastic2, Number(0));
         const Number most =
-            max(root(b * b + damping2 * room) - b, Number(0)) * reciprocal(max(damping2, least));
+            kept * (max(sqrt(both * both + damping2 * room) - both, Number(0)) / max(damping2, least));
         const Number acting = select(damping2 > least, min(Number(1), most), Number(0));
         return answer(kept, select(slides, acting, Number(1)), slipped);
     }

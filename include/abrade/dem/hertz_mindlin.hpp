@@ -132,7 +132,7 @@ public:
 
         const bool total = params_.spring == Spring::total, by_springs = params_.slider == Slider::springs;
         const auto stiffness = total ? FollowingStiffness<Number>::constant(kt)
-                                     : FollowingStiffness<Number>::of(memory.stiffness, {kt, compliance});
+                                     : FollowingStiffness<Number>::of(memory.stiffness, kt, compliance);
         const Vec3Of<Number> before =
             turn_into_plane(memory.spring, contact.normal, Number(1) - stiffness.grown);
         const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
@@ -140,7 +140,7 @@ public:
         const Number limit = select(
             touching, Number(params_.friction) * (by_springs ? push : max(normal.force, Number(0))), far);
         const Number beside = dashpot * Number(tangential_over_normal_dashpot_);
-        auto tangential = SlidingSpring<Number>::at(before, trial, slip, limit, {kt, compliance},
+        auto tangential = SlidingSpring<Number>::at(before, trial, slip, limit, kt,
                                                     by_springs ? Number(0) : beside, contact.time_step);
         if (by_springs) {
             const Number damping = select(kt * kt * trial.dot(trial) <= limit * limit, beside, Number(0));

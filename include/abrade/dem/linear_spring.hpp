@@ -73,9 +73,8 @@ public:
         const Vec3Of<Number> way = contact.travel - contact.travel.dot(contact.normal) * contact.normal;
         const Vec3Of<Number> trial = before + begun * way;
         const Number limit = select(touching, Number(params_.friction) * normal.force, far);
-        const auto tangential =
-            SlidingSpring<Number>::at(before, trial, slip, limit, {kt, Number(1 / tangential_stiffness())},
-                                      root_mass * Number(dashpot_tangential_), contact.time_step);
+        const auto tangential = SlidingSpring<Number>::at(
+            before, trial, slip, limit, kt, root_mass * Number(dashpot_tangential_), contact.time_step);
 
         const Vec3Of<Number> none = Vec3Of<Number>::Zero();
         const Vec3Of<Number> force = normal.force * contact.normal + tangential.force;

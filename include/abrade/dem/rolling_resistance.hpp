@@ -105,7 +105,8 @@ public:
 
         // Where a contact begins k_r is that of no overlap.
         const auto following = FollowingStiffness<Number>::of(
-            max(memory.stiffness, a * law_.normal_stiffness(Number(0), contact.curvature)), stiffness);
+            max(memory.stiffness, a * law_.normal_stiffness(Number(0), contact.curvature)), stiffness,
+            Number(1) / stiffness);
         const Vec3Of<Number> before =
             turn_into_plane(memory.turn, contact.normal, Number(1) - following.grown);
         const auto spring = SlidingSpring<Number>::at(before, before + (following.mean * begun) * way,

@@ -1,0 +1,60 @@
+// What a contact costs that touches and sticks, all of it in cache: gather, law, scatter.
+
+#include <abrade/abrade.hpp>
+
+#include <benchmark/benchmark.h>
+
+using namespace abrade;
+
+namespace {
+
+/// Pairs of pressed spheres of 0.02 m that slide slowly over each other.
+template <ContactLaw Law>
+struct Pairs {
+    static constexpr std::size_t count = 64 * pack_lanes;
+    SphereLines lines;
+    std::vector<ContactPack<Law>> packs{count / pack_lanes};
+
+    Pairs() {
+        const Real radius = 0.01;
+        lines.resize(2 * count);
+        for (std::size_t k = 0; k < count; ++k) {
+            const Vec3 at(0.1 * static_cast<Real>(k), 0, 0), apart = Vec3(1, 2, 3).normalized();
+            lines.place[2 * k] = {at, radius};
+            lines.place[2 * k + 1] = {at + (2 - 1e-3) * radius * apart, radius};
+            for (const std::size_t s : {2 * k, 2 * k + 1}) {
+                const Real sign = s % 2 == 0 ? 1 : -1;
+                lines.motion[s] = {sign * Vec3(1e-4, 2e-4, 1e-4), 100, sign * Vec3(1e-4, 0, 1e-4),
+                                   1 / radius};
+            }
+            packs[k / pack_lanes].first[k % pack_lanes] = line_offset(static_cast<Index>(2 * k));
+            packs[k / pack_lanes].second[k % pack_lanes] = line_offset(static_cast<Index>(2 * k + 1));
+        }
+    }
+};
+
+template <ContactLaw Law>
+void contacts_in_cache(benchmark::State& state, const Law& law) {
+    Pairs<Law> pairs;
+    const NoWear wear;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(respond<KernelKind{}>(law, wear, std::span(pairs.packs), PackRun{},
+                                                       pairs.lines, ContactStep{1e-7, 0.5}));
+    state.counters["s/contact"] =
+        benchmark::Counter(static_cast<double>(state.iterations() * Pairs<Law>::count),
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.SetLabel(std::string(instruction_set));
+}
+
+void linear_contacts(benchmark::State& state) {
+    contacts_in_cache(state, LinearSpring{{.stiffness = 1e5, .restitution = 0.5, .friction = 0.5}});
+}
+void hertz_contacts(benchmark::State& state) {
+    contacts_in_cache(state,
+                      HertzMindlin{{.youngs = 1e8, .poisson = 0.25, .restitution = 0.5, .friction = 0.5}});
+}
+
+BENCHMARK(linear_contacts);
+BENCHMARK(hertz_contacts);
+
+}  // namespace
