@@ -100,6 +100,21 @@ inline std::string tics(const std::string& axis, Real low, Real high, int pixels
     return "set " + axis + "tics " + to_text(tic_step(low, high, pixels / pixels_per_tic)) + "\n";
 }
 
+/// Labels at 1, 2 and 5 where an axis spans so little that powers of ten would leave one or two.
+inline std::string logarithmic_scale(const std::string& name, const Axis& axis) {
+    if (!axis.logarithmic) return "";
+    std::string s = "set logscale " + name + "\nset format " + name + " '%g'\n";
+    if (!(axis.min && axis.max && *axis.max < 60 * *axis.min)) return s;
+    std::string tics;
+    for (Real power = std::pow(10.0, std::floor(std::log10(*axis.min))); power <= *axis.max; power *= 10)
+        for (const Real factor : {1.0, 2.0, 5.0})
+            if (const Real at = factor * power; at >= *axis.min && at <= *axis.max) {
+                const std::string number = to_text(at);
+                tics += (tics.empty() ? "'" : ", '") + number + "' " + number;
+            }
+    return s + "set " + name + "tics (" + tics + ")\n";
+}
+
 /// The look that all pictures share.
 inline std::string frame(const std::string& title, const Axis& x, const Axis& y) {
     std::string s = "set title " + gnuplot_text(title) + " font 'sans,17' textcolor '#222222'\n";
@@ -107,8 +122,7 @@ inline std::string frame(const std::string& title, const Axis& x, const Axis& y)
     s += "set grid back linecolor '#e2e2e2' linetype 1 linewidth 0.7\n";
     s += "set xlabel " + axis_title(x) + " textcolor '#222222'\nset ylabel " + axis_title(y) +
          " textcolor '#222222'\n";
-    if (x.logarithmic) s += "set logscale x\nset format x '%g'\n";
-    if (y.logarithmic) s += "set logscale y\nset format y '%g'\n";
+    s += logarithmic_scale("x", x) + logarithmic_scale("y", y);
     return s + "set xrange " + limits(x) + "\nset yrange " + limits(y) + "\n";
 }
 
