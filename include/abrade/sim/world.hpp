@@ -250,14 +250,21 @@ private:
     /// Loads of a slab are complete: concrete takes its wear, bodies move.
     void finish_slab(Index slab, const Move* move, MotionSums& sums) noexcept {
         SphereStore& store = state_.store;
-        for (const SphereImage& image : store.images_of(slab)) store.collect(image);
+        for (const SphereImage& image : store.images_of(slab))
+            if (!flies(image)) store.collect(image);
         const Index first = store.first_slot(slab), last = store.first_slot(slab + 1);
         if constexpr (P::has_wear)
             for (Index slot = first; slot < last; ++slot) take_wear(slot);
         if (!move) return;
         sums += move_spheres(state_, first, store.first_clump_slot(slab), *move);
         move_clumps(state_, store.clumps_of(slab), *move, sums);
-        for (const SphereImage& image : store.images_of(slab)) store.refresh(image);
+        for (const SphereImage& image : store.images_of(slab))
+            if (!flies(image)) store.refresh(image);
+    }
+
+    /// What flies is in no contact, and `State::land` brings its image up to the present.
+    bool flies(const SphereImage& image) const noexcept {
+        return state_.pace[at(image.owner)] == Pace::flying;
     }
 
     void take_wear(Index slot) noexcept {
