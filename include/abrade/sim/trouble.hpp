@@ -3,6 +3,8 @@
 
 #include <abrade/sim/impact.hpp>
 
+#include <chrono>
+
 namespace abrade {
 
 /// What the engine finds wrong with a step.
@@ -20,6 +22,20 @@ struct StepSeconds {
     Real forces = 0, motion = 0;
     StepSeconds& operator+=(const StepSeconds& o) noexcept {
         return forces += o.forces, motion += o.motion, *this;
+    }
+};
+
+/// Reads the clock in some steps only: it would cost small scenes dear.
+struct Stopwatch {
+    using Clock = std::chrono::steady_clock;
+    explicit Stopwatch(bool on) : running(on), last(on ? Clock::now() : Clock::time_point{}) {}
+    bool running;
+    Clock::time_point last;
+    void lap(Real& total) {
+        if (!running) return;
+        const auto now = Clock::now();
+        total += std::chrono::duration<Real>(now - last).count();
+        last = now;
     }
 };
 

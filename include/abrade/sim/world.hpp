@@ -5,8 +5,6 @@
 #include <abrade/sim/lists.hpp>
 #include <abrade/sim/trouble.hpp>
 
-#include <chrono>
-
 namespace abrade {
 
 /// Between steps the lines hold places of now and velocities half a step old. Forces of now are either
@@ -108,8 +106,6 @@ public:
     }
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     struct alignas(64) PassSums {
         ContactSums contacts;
         BondSums bonds;
@@ -224,19 +220,6 @@ private:
             if (lists_.outrun() && trouble_.cause == Trouble::Cause::none) report_fastest();
         }
     }
-
-    /// Reads the clock in some steps only: it would cost small scenes dear.
-    struct Stopwatch {
-        explicit Stopwatch(bool on) : running(on), last(on ? Clock::now() : Clock::time_point{}) {}
-        bool running;
-        Clock::time_point last;
-        void lap(Real& total) {
-            if (!running) return;
-            const auto now = Clock::now();
-            total += std::chrono::duration<Real>(now - last).count();
-            last = now;
-        }
-    };
 
     void evaluate_slab(Index slab, const ContactStep& step, PassSums& sums) noexcept {
         SphereLines& lines = state_.store.lines;
