@@ -173,7 +173,8 @@ TEST_CASE("what is fed, and concrete, must lie within the period") {
                             .classes = {{0.005, 1, StoneShape::sphere}},
                             .region = {{0.1, -0.01, 0}, {0.2, 0.03, 0.05}}};
     CHECK(message_of(scene) ==
-          "Feed.region.x must be inside Scene.bounds, from 0 to 0.125, along a periodic axis, got 0.2 m");
+          "Feed.region.x must be inside Scene.bounds, from 0 to 0.125, along a periodic axis, got 0.2 m; "
+          "move it or widen the bounds");
     scene = tube(0.125);
     scene.concrete = ConcreteBlock{flat_lattice(0.5, 0.02, {.layers = 1})};
     const std::string said = message_of(scene);

@@ -131,8 +131,9 @@ private:
     }
 
     /// Candidates that live longer are picked less often, but more of them do not touch, and spheres that
-    /// could fly are held by them. Both cost the same at the best life. Measured, in evaluations of a
-    /// candidate that does not touch: a look at a pair or a sphere costs ten, a sphere's step eight.
+    /// could fly are held by them. Both cost the same at the best life. Taken from profiles, in evaluations
+    /// of a candidate that does not touch: a look at a pair or a sphere costs some ten, a sphere's step some
+    /// eight.
     void choose_life(const ContactCensus& census, Index spheres, Index held) noexcept {
         const Real idle = static_cast<Real>(census.candidates - census.touching);
         const Real kept = std::max(0.0, held - 2 * static_cast<Real>(census.touching));

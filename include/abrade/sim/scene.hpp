@@ -114,7 +114,7 @@ struct Scene {
                         {name + "." + "xyz"[a],
                          "inside Scene.bounds, from " + to_text(bounds.low[a]) + " to " +
                              to_text(bounds.high[a]) + ", along a periodic axis",
-                         "m"},
+                         "m", "move it or widen the bounds"},
                         low < bounds.low[a] ? low : high);
             };
             if (feed) require_inside(feed->region.low[a], feed->region.high[a], "Feed.region");
