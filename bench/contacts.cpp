@@ -41,7 +41,7 @@ void contacts_in_cache(benchmark::State& state, const Law& law) {
         benchmark::DoNotOptimize(respond<KernelKind{}>(law, wear, std::span(pairs.packs), PackRun{},
                                                        pairs.lines, ContactStep{1e-7, 0.5}));
     state.counters["s/contact"] =
-        benchmark::Counter(static_cast<double>(state.iterations() * Pairs<Law>::count),
+        benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(Pairs<Law>::count),
                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
     state.SetLabel(std::string(instruction_set));
 }
