@@ -115,6 +115,41 @@ TEST_CASE("a runaway overlap is caught: springs too soft for the impact") {
     check_sound(sim, error);
 }
 
+TEST_CASE("the last step of a run is looked at, too, and so is a state before it becomes the last good one") {
+    Scene scene;
+    scene.gravity.setZero();
+    scene.add_sphere(0.01, {.position = {0, 0, 0.0125}, .velocity = {0, 0, -5}});
+    scene.add_wall({0, 0, 0}, {0, 0, 1});
+    // 2.5 mm of gap and 5 mm a step: apart, then an overlap of a quarter of the radius at the end.
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e3}});
+    const RunError error = error_of(sim, {.end_time = 1e-3, .time_step = 1e-3});
+    CHECK(error.step == 1);
+    CHECK(error.time == 1e-3);
+    CHECK(says(error, "overlaps Scene.walls[0] by 25 %"));
+    check_sound(sim, error);
+}
+
+TEST_CASE("a body that moves by more than its radius in a step is caught before it passes through another") {
+    const auto meeting = [](Real speed, bool free_flight) {
+        Scene scene;
+        scene.gravity.setZero();
+        scene.add_sphere(0.05, {.position = {-10, 0, 0}});
+        scene.add_sphere(0.01, {.position = {0.1, 0, 0}, .velocity = {-speed, 0, 0}});
+        scene.add_sphere(0.01, {.position = {-0.1, 0, 0}, .velocity = {speed, 0, 0}});
+        auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e3}});
+        return error_of(sim, {.end_time = 0.1, .time_step = 1e-4, .free_flight = free_flight});
+    };
+    for (const bool free_flight : {false, true}) {
+        const RunError fast = meeting(150, free_flight);
+        CHECK(fast.step == 1);
+        CHECK((fast.id == 1 || fast.id == 2));
+        CHECK(says(fast, "moves 1.5 of its radius in a step"));
+        CHECK(says(fast, "take a step of at most 6.66e-05 s"));
+        // Just slow enough: they meet, and are seen to.
+        CHECK(says(meeting(99, free_flight), "overlaps"));
+    }
+}
+
 TEST_CASE("two stones: the message names both, and the limit is that of the smaller") {
     Scene scene;
     scene.gravity.setZero();

@@ -226,7 +226,9 @@ TEST_CASE("a clump of nothing is refused") {
 }
 
 TEST_CASE("a step too small to count its steps is refused") {
-    CHECK(has(run(one_stone(), {.end_time = 1, .time_step = 1e-30}), "steps must be fewer than"));
+    const std::string said = run(one_stone(), {.end_time = 1, .time_step = 1e-30});
+    CHECK(has(said, "steps must be fewer than"));
+    CHECK(has(said, "set by contacts of the lightest stone, stone with id 0"));
 }
 
 TEST_CASE("slots are filled before the first run") {
@@ -246,6 +248,32 @@ TEST_CASE("bounds, outlet and gauge are checked") {
     scene.stones.clear();
     scene.bounds = {{1, 1, 1}, {-1, -1, -1}};
     CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.bounds along x must be low < high"));
+}
+
+TEST_CASE("walls lie along periodic axes; stones are within a million periods") {
+    const auto with_wall = [](const Vec3& normal) {
+        Scene scene = one_stone();
+        scene.bounds = {{-1, -1, -1}, {1, 1, 1}};
+        scene.periodic_along = {true, false, false};
+        scene.add_wall({0, 0, -0.5}, normal);
+        return scene;
+    };
+    CHECK_NOTHROW(simulate(with_wall({0, 1, 1})).contact(law).run({.end_time = 1e-3}));
+    CHECK(has(run(with_wall({0.1, 0, 1}), {.end_time = 1e-3}),
+              "Scene.walls[0].normal.x must be 0, for space is periodic along that axis"));
+    Scene scene = with_wall({0, 0, 1});
+    scene.stones[0].state.position.x() = 1e5;
+    CHECK_NOTHROW(simulate(scene).contact(law).run({.end_time = 1e-3}));
+    scene.stones[0].state.position.x() = 1e17;
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.stones[0].position.x must be within a million periods"));
+}
+
+TEST_CASE("masses that no arithmetic can hold are refused") {
+    for (const Real density : {1e-300, 1e300}) {
+        Scene scene = one_stone();
+        scene.stones[0].density = density;
+        CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.stones[0]: mass must be from 1e-30 to 1e+30 kg"));
+    }
 }
 
 TEST_CASE("nothing moves: the observer is still called at its times") {

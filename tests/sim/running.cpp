@@ -37,6 +37,28 @@ Scene box_of_stones(int stones, Real speed = 2) {
     return scene;
 }
 
+/// A spring that needs to remember nothing.
+struct BareSpring {
+    static constexpr std::string_view name = "BareSpring";
+    using Params = NoParams;
+    template <class Number>
+    struct Memory {};
+    explicit BareSpring(Params = {}) {}
+    const Params& params() const noexcept {
+        static constexpr Params none{};
+        return none;
+    }
+    template <class Number>
+    ContactResponse<Number, Memory<Number>> respond(const ContactKinematics<Number>& c,
+                                                    const Memory<Number>&) const noexcept {
+        const Number overlap = max(c.overlap, Number(0));
+        return {{Number(1e6) * overlap * c.normal, Number(0.5e6) * overlap * overlap, Number(0), Number(0)},
+                {}};
+    }
+    Real stable_dt(Real mass, Real) const noexcept { return 0.2 * std::sqrt(mass / 1e6); }
+    ContactRigidity rigidity(Real) const noexcept { return {1e6, 0, 0}; }
+};
+
 /// Every bit of what moves.
 std::vector<Real> state(const Particles& p) {
     std::vector<Real> all;
@@ -68,6 +90,26 @@ TEST_CASE("a run ends exactly at its end time, and may be asked to end there aga
         sim.run({.end_time = end, .time_step = 1.3e-6});
         CHECK(sim.steps() == steps);
     }
+}
+
+TEST_CASE("an end that is less than a step away is reached") {
+    Scene scene;
+    scene.add_sphere(0.01, {});
+    auto sim = simulate(scene).contact(law);
+    sim.run({.end_time = 1e-3, .time_step = 1e-5});
+    for (const Real ahead : {1e-18, 1e-12, 1e-6}) {
+        const Index steps = sim.steps();
+        const Real end = sim.time() + ahead;
+        sim.run({.end_time = end, .time_step = 1e-5});
+        CHECK(sim.time() == end);
+        CHECK(sim.steps() - steps == 1);
+    }
+    CHECK(sim.ledger().residual_relative() < 1e-12);
+    // Springs so soft that the stable step is longer than the whole run.
+    auto soft = simulate(scene).contact(LinearSpring{{.stiffness = 1e-9}});
+    soft.run({.end_time = 0.01});
+    CHECK(soft.time() == 0.01);
+    CHECK(soft.particles().velocity[0].z() == doctest::Approx(-0.01 * standard_gravity).scale(0));
 }
 
 TEST_CASE("run() twice is run() once") {
@@ -190,6 +232,15 @@ TEST_CASE("bits do not depend on threads or on the run: concrete, stones, water,
     CHECK(same_bits(one, run(1)));
     CHECK(same_bits(one, run(2)));
     CHECK(same_bits(one, run(3)));
+}
+
+TEST_CASE("a law with an empty memory runs, whole packs at once") {
+    static_assert(AnswersPacks<BareSpring>);
+    auto sim = simulate(box_of_stones(18)).contact(BareSpring{});
+    sim.run({.end_time = 0.2});
+    CHECK(sim.ledger().residual_relative() < 1e-12);
+    CHECK(std::abs(sim.ledger().integration_residue()) < 1e-3 * sim.ledger().throughput());
+    CHECK(sim.ledger().interaction_work != 0);
 }
 
 TEST_CASE("policies that are absent cost no byte") {

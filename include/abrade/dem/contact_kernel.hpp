@@ -84,11 +84,19 @@ struct PackSums {
 
 namespace detail {
 
-/// Lane k of a pack's memory. Memory<Number> is made of Numbers and vectors of them alone.
+/// Of a Memory<Number>, which is made of Numbers and vectors of them alone, or empty.
+template <class Memory, class PackedMemory>
+inline constexpr std::size_t numbers_in = [] {
+    constexpr std::size_t numbers = std::is_empty_v<Memory> ? 0 : sizeof(PackedMemory) / sizeof(Pack);
+    static_assert(std::is_empty_v<Memory> || sizeof(Memory) == numbers * sizeof(Real),
+                  "a contact's memory must be made of its Number");
+    return numbers;
+}();
+
+/// Lane k of a pack's memory.
 template <class Memory, class PackedMemory>
 Memory memory_of_lane(const PackedMemory& all, int lane) noexcept {
-    constexpr std::size_t numbers = sizeof(PackedMemory) / sizeof(Pack);
-    static_assert(sizeof(Memory) == numbers * sizeof(Real), "a contact's memory must be made of its Number");
+    constexpr std::size_t numbers = numbers_in<Memory, PackedMemory>;
     Memory one;
     for (std::size_t n = 0; n < numbers; ++n)
         std::memcpy(reinterpret_cast<std::byte*>(&one) + n * sizeof(Real),
@@ -100,7 +108,7 @@ Memory memory_of_lane(const PackedMemory& all, int lane) noexcept {
 
 template <class PackedMemory, class Memory>
 void set_memory_of_lane(PackedMemory& all, int lane, const Memory& one) noexcept {
-    constexpr std::size_t numbers = sizeof(PackedMemory) / sizeof(Pack);
+    constexpr std::size_t numbers = numbers_in<Memory, PackedMemory>;
     for (std::size_t n = 0; n < numbers; ++n)
         std::memcpy(reinterpret_cast<std::byte*>(&all) + n * sizeof(Pack) +
                         static_cast<std::size_t>(lane) * sizeof(Real),

@@ -58,7 +58,8 @@ public:
         state.store.arrange(state.particles, departure.moved, list_skin_, state.scene.periodic());
         const auto [smallest, largest] =
             std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
-        if (largest != state.particles.radius.end()) state.size_ratio = *smallest / *largest;
+        if (largest != state.particles.radius.end())
+            state.smallest_radius = *smallest, state.size_ratio = *smallest / *largest;
         state.find_flyers();
         find_pairs(state);
         built_at_.resize(at(state.store.spheres()));

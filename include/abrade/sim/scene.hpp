@@ -59,7 +59,8 @@ struct Scene {
     /// normal that is not finite or 0.
     Scene& add_wall(const Vec3& point, const Vec3& normal, Index material = 0) {
         require(normal.norm() > 0 && normal.allFinite(),
-                {"Scene.walls[" + std::to_string(walls.size()) + "].normal", "finite and longer than 0"},
+                {"Scene.walls[" + std::to_string(walls.size()) + "].normal", "finite and longer than 0", "",
+                 "{0, 0, 1} is a floor"},
                 normal.norm());
         walls.push_back({point, normal.normalized(), material});
         return *this;
@@ -69,8 +70,7 @@ struct Scene {
     Periodic periodic() const {
         Periodic space;
         for (int a = 0; a < 3; ++a)
-            if (periodic_along[static_cast<std::size_t>(a)])
-                space.low[a] = bounds.low[a], space.period[a] = bounds.high[a] - bounds.low[a];
+            if (periodic(a)) space.low[a] = bounds.low[a], space.period[a] = bounds.high[a] - bounds.low[a];
         return space;
     }
 
@@ -78,8 +78,7 @@ struct Scene {
     Box open_bounds() const noexcept {
         Box space = bounds;
         for (int a = 0; a < 3; ++a)
-            if (periodic_along[static_cast<std::size_t>(a)])
-                space.low[a] = Box{}.low[a], space.high[a] = Box{}.high[a];
+            if (periodic(a)) space.low[a] = Box{}.low[a], space.high[a] = Box{}.high[a];
         return space;
     }
 
@@ -88,27 +87,33 @@ struct Scene {
         require_finite(gravity, "Scene.gravity", "m/s2");
         for (int a = 0; a < 3; ++a)
             require(bounds.low[a] < bounds.high[a],
-                    {std::string("Scene.bounds along ") + "xyz"[a], "low < high, high - low", "m"},
+                    {std::string("Scene.bounds along ") + "xyz"[a], "low < high, high - low", "m",
+                     "swap them or widen the box"},
                     bounds.high[a] - bounds.low[a]);
         for (std::size_t n = 0; n < walls.size(); ++n)
-            walls[n].validate("Scene.walls[" + std::to_string(n) + "]");
+            validate(walls[n], "Scene.walls[" + std::to_string(n) + "]");
         for (std::size_t n = 0; n < stones.size(); ++n)
             validate(stones[n], "Scene.stones[" + std::to_string(n) + "]");
-        for (std::size_t a = 0; a < 3; ++a) {
-            const Real size = bounds.high[static_cast<int>(a)] - bounds.low[static_cast<int>(a)];
-            require(!periodic_along[a] || std::isfinite(size),
-                    {"Scene.bounds along a periodic axis", "finite", "m"}, size);
+        for (int a = 0; a < 3; ++a) {
+            const Real size = bounds.high[a] - bounds.low[a];
+            require(!periodic(a) || std::isfinite(size),
+                    {"Scene.bounds along a periodic axis", "finite", "m", "set both bounds of that axis"},
+                    size);
         }
         for (const auto& [place, name] : {std::pair(outlet, "Scene.outlet"), std::pair(gauge, "Scene.gauge")})
-            require(!place || std::isfinite(*place), {name, "finite", "m"}, place.value_or(0));
+            require(!place || std::isfinite(*place), {name, "finite", "m", "leave it out for none"},
+                    place.value_or(0));
         if (concrete) {
-            require_positive(concrete->density, "Scene.concrete.density", "kg/m3");
-            require(!concrete->lattice.sites.empty(), {"Scene.concrete.lattice", "of at least one sphere"},
-                    0);
+            require_positive(concrete->density, "Scene.concrete.density", "kg/m3",
+                             "concrete has 2200 to 2500");
+            require(
+                !concrete->lattice.sites.empty(),
+                {"Scene.concrete.lattice", "of at least one sphere", "spheres", "make it by flat_lattice()"},
+                0);
         }
         if (feed) feed->validate();
         for (int a = 0; a < 3; ++a) {
-            if (!periodic_along[static_cast<std::size_t>(a)]) continue;
+            if (!periodic(a)) continue;
             const auto require_inside = [&](Real low, Real high, const std::string& name) {
                 require(low >= bounds.low[a] && high <= bounds.high[a],
                         {name + "." + "xyz"[a],
@@ -127,9 +132,19 @@ struct Scene {
     }
 
 private:
+    bool periodic(int axis) const noexcept { return periodic_along[static_cast<std::size_t>(axis)]; }
+
+    void validate(const Plane& wall, const std::string& name) const {
+        wall.validate(name);
+        for (int a = 0; a < 3; ++a)
+            require(!periodic(a) || std::abs(wall.normal[a]) < 1e-9,
+                    {name + ".normal." + "xyz"[a], "0, for space is periodic along that axis", "",
+                     "turn the wall along the axis, or gravity instead of the wall"},
+                    wall.normal[a]);
+    }
     void validate(const Stone& stone, const std::string& name) const {
         const BodyState& state = stone.state;
-        require_positive(stone.density, name + ".density", "kg/m3");
+        require_positive(stone.density, name + ".density", "kg/m3", "stone has 2500 to 2800");
         require(!stone.clump.members.empty(),
                 {name + ".clump", "of at least one sphere", "spheres", "make clumps with make_clump()"}, 0);
         for (std::size_t m = 0; m < stone.clump.members.size(); ++m) {
@@ -138,18 +153,29 @@ private:
             require_finite(stone.clump.members[m].centre, member + ".centre", "m");
         }
         require_positive(stone.clump.volume, name + ".clump.volume", "m3", "make clumps with make_clump()");
+        constexpr Real lightest = 1e-30, heaviest = 1e30;  // beyond, products of what follows overflow
+        const Real mass = stone.density * stone.clump.volume;
+        require(mass >= lightest && mass <= heaviest,
+                {name + ": mass", "from " + to_text(lightest) + " to " + to_text(heaviest) + " kg", "kg",
+                 "look at the units of density and radius"},
+                mass);
         require_finite(state.position, name + ".position", "m");
         require_finite(state.velocity, name + ".velocity", "m/s");
         require_finite(state.angular_velocity, name + ".angular_velocity", "rad/s");
         require(std::abs(state.orientation.norm() - 1) < 1e-6,
                 {name + ".orientation", "of length 1", "", "normalise it"}, state.orientation.norm());
-        for (int a = 0; a < 3; ++a)
-            require(periodic_along[static_cast<std::size_t>(a)] ||
-                        (state.position[a] >= bounds.low[a] && state.position[a] <= bounds.high[a]),
-                    {name + ".position." + "xyz"[a],
-                     "inside Scene.bounds, from " + to_text(bounds.low[a]) + " to " + to_text(bounds.high[a]),
-                     "m", "move the stone or widen the bounds"},
-                    state.position[a]);
+        for (int a = 0; a < 3; ++a) {
+            constexpr Real most_periods = 1e6;  // more leave too few digits for where in the period it is
+            const Real beyond = periodic(a) ? most_periods * (bounds.high[a] - bounds.low[a]) : 0;
+            require(
+                state.position[a] >= bounds.low[a] - beyond && state.position[a] <= bounds.high[a] + beyond,
+                {name + ".position." + "xyz"[a],
+                 (periodic(a) ? "within a million periods of Scene.bounds, from "
+                              : "inside Scene.bounds, from ") +
+                     to_text(bounds.low[a]) + " to " + to_text(bounds.high[a]),
+                 "m", "move the stone or widen the bounds"},
+                state.position[a]);
+        }
     }
 };
 

@@ -209,21 +209,30 @@ private:
         return true;
     }
 
+    std::string who_limits() const {
+        const std::string limit(stable_.limit);
+        return stable_.body < 0 ? limit
+                                : limit + ", " + TroubleText(*world_, time_step_).name_of(stable_.body);
+    }
     Index steps_to(Real end_time) const {
-        const Real steps = std::ceil((end_time - time_) / time_step_ - 1e-9);
         constexpr Real most = std::numeric_limits<Index>::max();
+        const Real steps =
+            end_time > time_ ? std::max(std::ceil((end_time - time_) / time_step_ - 1e-9), 1.0) : 0;
         require(static_cast<Real>(step_) + steps < most,
                 {"RunOptions.end_time over the time step: steps", "fewer than " + to_text(most), "",
-                 "run for a shorter time or with a larger step"},
+                 "run for a shorter time, or with a larger step than " + short_text(time_step_) +
+                     " s; stable: " + short_text(stable_.seconds) + " s, set by " + who_limits()},
                 steps);
-        return static_cast<Index>(std::max(steps, 0.0));
+        return static_cast<Index>(steps);
     }
 
     void prepare(const RunOptions& options) {
         require(std::isfinite(options.end_time) && options.end_time >= time_,
-                {"RunOptions.end_time", "finite and not before now (" + to_text(time_) + " s)", "s"},
+                {"RunOptions.end_time", "finite and not before now (" + to_text(time_) + " s)", "s",
+                 "end times count from the start of the simulation"},
                 options.end_time);
-        require(options.safety > 0 && options.safety <= 1, {"RunOptions.safety", "in (0, 1]"},
+        require(options.safety > 0 && options.safety <= 1,
+                {"RunOptions.safety", "in (0, 1]", "", "it is a share of the stable step; 0.5 is common"},
                 options.safety);
         require_not_negative(options.observe_every, "RunOptions.observe_every", "s");
         require_not_negative(options.time_step, "RunOptions.time_step", "s");
@@ -231,7 +240,8 @@ private:
         require_not_negative(options.sleep_speed, "RunOptions.sleep_speed", "m/s");
         require_not_negative(options.sleep_after, "RunOptions.sleep_after", "s");
         require(options.sleep_speed == 0 || options.sleep_after > 0 || !scene_.gravity.isZero(),
-                {"RunOptions.sleep_after", "> 0 where bodies may sleep and there is no gravity", "s"},
+                {"RunOptions.sleep_after", "> 0 where bodies may sleep and there is no gravity", "s",
+                 "say how long a body is slow before it sleeps"},
                 options.sleep_after);
         if (!world_) build_world();
         const auto& radius = world_->particles().radius;
@@ -293,6 +303,10 @@ private:
         world_->step(t, time_step_, step_ % steps_between_checks == 0);
         ++step_;
         time_ = t + time_step_;
+        look_for_trouble();
+    }
+
+    void look_for_trouble() {
         if (const Trouble trouble = world_->take_trouble(); trouble.cause != Trouble::Cause::none)
             raise(trouble);
     }
@@ -305,9 +319,13 @@ private:
                        step_, time_, particles().id[static_cast<std::size_t>(trouble.body)]);
     }
 
-    void balance() { ledger_ = world_->publish(); }
+    void balance() {
+        ledger_ = world_->publish();
+        look_for_trouble();
+    }
     void remember() {
         world_->publish();
+        look_for_trouble();
         last_good_ = take_snapshot(world_->particles(), world_->concrete(), time_, step_);
         remembered_ = step_;
     }

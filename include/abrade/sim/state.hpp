@@ -45,6 +45,7 @@ struct State {
     Index broken_tension = 0, broken_shear = 0;
     bool pattern_changed = false;  ///< a bond broke
     bool loosened = false;         ///< concrete came loose
+    Real smallest_radius = 0;      ///< of a sphere [m]
     Real size_ratio = 1;           ///< smallest radius over largest [-]
     Real gauge_volume = 0;         ///< solid, net downstream [m3]
     std::vector<char> past_gauge;  ///< [body]

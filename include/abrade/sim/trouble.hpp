@@ -9,12 +9,20 @@ namespace abrade {
 
 /// What the engine finds wrong with a step.
 struct Trouble {
-    enum class Cause : std::uint8_t { none, not_finite, lost, overlap, outran_period, step_too_long };
+    enum class Cause : std::uint8_t {
+        none,
+        not_finite,
+        lost,
+        overlap,
+        long_stride,
+        outran_period,
+        step_too_long
+    };
     Cause cause = Cause::none;
     Index body = -1, other = -1;  ///< bodies; wall w is -1 - w
-    Real measure = 0;             ///< overlap over the smaller radius [-]; a stable step [s]
-    bool bonded = false;          ///< the two are held by a bond, not by a contact
-    DeepContact contact{};        ///< where it was one that overlapped
+    Real measure = 0;       ///< overlap over the smaller radius, stride over radius [-]; a stable step [s]
+    bool bonded = false;    ///< the two are held by a bond, not by a contact
+    DeepContact contact{};  ///< where it was one that overlapped
 };
 
 /// Wall time of parts of a step [s], summed over threads.

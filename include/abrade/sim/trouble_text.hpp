@@ -41,6 +41,11 @@ public:
                        short_text(100 * trouble.measure) + " % of the smaller radius (limit " +
                        short_text(100 * World::overlap_limit) + " %), " + where + "; " + remedy(trouble);
                 break;
+            case Cause::long_stride:
+                text = who + " moves " + short_text(trouble.measure) +
+                       " of its radius in a step and could pass through others unseen, " + where +
+                       "; take a step of at most " + short_text(0.999 * time_step_ / trouble.measure) + " s";
+                break;
             case Cause::outran_period:
                 text = who +
                        " is so fast that neighbour lists would need a skin wider than the periodic axes "

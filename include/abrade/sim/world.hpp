@@ -3,7 +3,7 @@
 
 #include <abrade/sim/advance.hpp>
 #include <abrade/sim/lists.hpp>
-#include <abrade/sim/trouble.hpp>
+#include <abrade/sim/trouble_finder.hpp>
 
 namespace abrade {
 
@@ -23,7 +23,6 @@ public:
         now_ = t;
         lists_.renew(state_, now_, 0);
         publish();
-        if (too_deep_) find_overlap(Move{});
         Ledger& start = state_.accounts;
         start.kinetic_start = ledger_.kinetic;
         start.potential_start = ledger_.potential;
@@ -207,17 +206,19 @@ private:
             timed_ += part.seconds;
         }
         if (evaluate) book(all.contacts, all.bonds), kicked_ = 0;
+        report_overlap(move ? *move : Move{});
         if (move) {
             book(state_.accounts, all.motion);
             FreeFlight& flight = state_.flight;
             flight.note(move->kick, move->drift);
             state_.sleep.stirred |= all.motion.stirs;
-            lists_.note_step(move->drift *
-                             std::max(std::sqrt(all.motion.fastest2),
-                                      flight.fastest + flight.kicks * state_.scene.gravity.norm()));
+            const Real way =
+                move->drift * std::max(std::sqrt(all.motion.fastest2),
+                                       flight.fastest + flight.kicks * state_.scene.gravity.norm());
+            lists_.note_step(way);
             check(all.motion);
-            if (too_deep_) find_overlap(*move);
-            if (lists_.outrun() && trouble_.cause == Trouble::Cause::none) report_fastest();
+            if (way > state_.smallest_radius) report(TroubleFinder(state_).longest_stride(move->drift));
+            if (lists_.outrun()) report(TroubleFinder(state_).fastest());
         }
     }
 
@@ -270,7 +271,7 @@ private:
         state_.broken_tension += bonds.broken_tension, state_.broken_shear += bonds.broken_shear;
         state_.pattern_changed |= bonds.broken_tension + bonds.broken_shear > 0;
         too_deep_ |= contacts.deepest > overlap_limit * (1 + state_.size_ratio);
-        if (bonds.deepest > overlap_limit) report_bond(bonds);
+        if (bonds.deepest > overlap_limit) report(TroubleFinder(state_).crushed_bond(bonds));
     }
     void book(Ledger& to, const MotionSums& motion) const {
         to.interaction_work += motion.interaction_work();
@@ -279,87 +280,26 @@ private:
         to.buoyancy_work += motion.buoyancy;
     }
 
-    /// The sums of an evaluation told that something may be too deep: finds out what. The lines have made
-    /// `last` since then.
-    void find_overlap(const Move& last) {
-        too_deep_ = false;
-        SphereLines then = state_.store.lines;
-        for (std::size_t slot = 0; slot < then.place.size(); ++slot)
-            if (then.motion[slot].inverse_mass > 0)
-                then.place[slot].centre -= last.drift * then.motion[slot].velocity;
-        state_.contacts.each_touching([&](const auto& touching) {
-            const SlotPair& pair = touching.pair;
-            const auto contact = contact_between(then, state_.scene.walls, pair, 0);
-            const Real first = then.place[at(pair.first)].radius,
-                       second = pair.second < 0 ? 0 : then.place[at(pair.second)].radius;
-            DeepContact deep{.reach = first + second,
-                             .smaller_radius = pair.second < 0 ? first : std::min(first, second),
-                             .on_plane = pair.second < 0,
-                             .inverse_mass = contact.inverse_mass,
-                             .curvature = contact.curvature};
-            const Real share = contact.overlap / deep.smaller_radius;
-            if (!(share > std::max(overlap_limit, trouble_.measure))) return;
-            const Vec3& n = contact.normal;
-            deep.materials = touching.materials;
-            deep.apart = (deep.reach - contact.overlap) * n;
-            const Real slower = (contact.velocity - touching.before.velocity).dot(n);
-            if (last.kick > 0) deep.slowing = slower / last.kick;
-            deep.velocity = then.motion[at(pair.first)].velocity - slower * n;
-            deep.inverse_mass_along = mobility(then, pair.first, -n);
-            if (!deep.on_plane) {
-                deep.velocity -= then.motion[at(pair.second)].velocity;
-                deep.inverse_mass_along += mobility(then, pair.second, n);
-            }
-            trouble_ = {
-                Trouble::Cause::overlap, body_in(pair.first), body_in(pair.second), share, false, deep};
-        });
+    /// What is first stays, but for overlaps: the deepest counts.
+    void report(const Trouble& found) noexcept {
+        using Cause = Trouble::Cause;
+        const bool deeper = found.cause == Cause::overlap && found.measure > trouble_.measure;
+        if (found.cause != Cause::none && (trouble_.cause == Cause::none || deeper)) trouble_ = found;
     }
-
-    /// How much a force at a sphere's rim along the normal n accelerates that rim [1/kg].
-    Real mobility(const SphereLines& lines, Index slot, const Vec3& n) const {
-        const Index own = state_.store.owner_of(slot);
-        const Index clump = state_.store.clump_of(body_in(slot));
-        if (clump < 0) return lines.motion[at(slot)].inverse_mass;
-        const MovingClump& c = state_.store.clumps[at(clump)];
-        const Vec3 lever = (state_.store.lines.place[at(own)].centre - c.position).cross(n);
-        const Vec3 in_body = c.rotation.transpose() * lever;
-        return c.inverse_mass + in_body.dot(Vec3(c.inverse_inertia.cwiseProduct(in_body)));
+    /// Sums of an evaluation told that something may be too deep. The lines have made `last` since then.
+    void report_overlap(const Move& last) {
+        if (std::exchange(too_deep_, false)) report(TroubleFinder(state_).deepest(last, overlap_limit));
     }
-
-    void report_bond(const BondSums& sums) {
-        const auto& bond = state_.network.bonds()[at(sums.deepest_bond)];
-        trouble_ = {Trouble::Cause::overlap, bond.bodies.first, bond.bodies.second, sums.deepest, true, {}};
-    }
-
-    void report_fastest() {
-        trouble_ = {Trouble::Cause::outran_period, 0};
-        const auto speed = [&](Index b) { return state_.store.velocity_of(state_.particles, b).norm(); };
-        for (Index b = 1; b < state_.particles.bodies(); ++b)
-            if (speed(b) > speed(trouble_.body)) trouble_.body = b;
-    }
-
     void check(const MotionSums& motion) {
-        // (10 km/s)^2: no speed of this field.
-        constexpr Real too_fast2 = 1e8;
         const Box space = state_.scene.open_bounds();
         const Vec3 low = detail::first_three(motion.low), high = detail::first_three(motion.high);
         const bool nobody = !(low.x() <= high.x());
         const bool near_bounds = state_.flight.furthest(state_.scene.gravity) >= state_.flight.margin;
         if (near_bounds) state_.land();
-        const bool sound = motion.fastest2 < too_fast2 && detail::first_three(motion.finite).allFinite();
+        const bool sound = motion.fastest2 < square(TroubleFinder<P>::fastest_of_this_field) &&
+                           detail::first_three(motion.finite).allFinite();
         if (sound && !near_bounds && (nobody || (space.contains(low) && space.contains(high)))) return;
-        if (trouble_.cause != Trouble::Cause::none) return;
-        for (Index b = 0; b < state_.particles.bodies(); ++b) {
-            const Vec3 v = state_.store.velocity_of(state_.particles, b);
-            const bool turns_soundly = state_.store.turns_soundly(state_.particles, b);
-            if (!(v.squaredNorm() < too_fast2) || !turns_soundly) {
-                trouble_ = {Trouble::Cause::not_finite, b};
-                return;
-            }
-            if (trouble_.cause == Trouble::Cause::none &&
-                !space.contains(state_.store.position_of(state_.particles, b)))
-                trouble_ = {Trouble::Cause::lost, b};
-        }
+        report(TroubleFinder(state_).unsound_or_lost());
     }
 
     /// Sediment past the gauge, net.
