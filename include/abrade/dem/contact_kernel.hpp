@@ -182,6 +182,21 @@ Pack worn_off(const Wear& wear, const ContactKinematics<Pack>& contact,
     }
 }
 
+/// Up to about here lists and lines stay in a third cache of 32 MiB.
+inline constexpr std::size_t spheres_in_cache = 30'000;
+
+/// Asks for the pack eight further on and for the lines of the next: scenes larger than the caches would
+/// wait for them, 52 ns a particle-step instead of 42 for a million. First partners come nearly in order, so
+/// the machine sees them coming by itself.
+template <class Law>
+void fetch_ahead(std::span<ContactPack<Law>> packs, std::size_t p, const LineReader& at) noexcept {
+    constexpr std::size_t cache_line = 64;
+    const std::size_t last = packs.size() - 1;
+    const auto* far = reinterpret_cast<const std::byte*>(&packs[std::min(p + 8, last)]);
+    for (std::size_t n = 0; n < sizeof(ContactPack<Law>); n += cache_line) __builtin_prefetch(far + n, 1);
+    for (const LineOffset second : packs[std::min(p + 1, last)].second) at.fetch(second);
+}
+
 /// combine(first, second) of the lines of each lane, as columns.
 template <class Law, class Combine>
 QuadColumns gather(const ContactPack<Law>& pack, const Combine& combine) noexcept {
@@ -244,8 +259,10 @@ template <KernelKind kind, ContactLaw Law, class Wear>
     constexpr Quad difference{{-1, -1, -1, 1}}, reaction{{-1, -1, -1, 1}};
     [[maybe_unused]] const Plane plane = kind.on_plane ? *run.plane : Plane{};
 
+    const bool large = lines.place.size() > detail::spheres_in_cache;
     PackSums sums;
     for (std::size_t p = 0; p < packs.size(); ++p) {
+        if (large) detail::fetch_ahead(packs, p, at);
         ContactPack<Law>& pack = packs[p];
         ContactKinematics<Pack> contact;
         Vec3Of<Pack> arm;  // lambda n: times a radius, from the contact point to the centre

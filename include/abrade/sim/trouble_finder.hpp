@@ -64,10 +64,11 @@ public:
     }
 
     /// The sphere that moves furthest for its radius in a step of dt, if that is further than its radius: two
-    /// such could pass through each other between two looks.
+    /// such could pass through each other between two looks. One that is alone has nothing to meet.
     Trouble longest_stride(Real dt) const {
         Trouble found;
         const SphereLines& lines = state_.store.lines;
+        if (state_.particles.bodies() == 1 && state_.scene.walls.empty()) return found;
         for (Index slot = 0; slot < state_.store.spheres(); ++slot) {
             if (!(lines.motion[at(slot)].inverse_mass > 0)) continue;
             Vec3 v = lines.motion[at(slot)].velocity;
