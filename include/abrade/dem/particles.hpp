@@ -82,7 +82,7 @@ struct Particles {
         require(clump.principal_moments.minCoeff() > 0,
                 {"Clump.principal_moments", "> 0", "m5", "make clumps with make_clump()"},
                 clump.principal_moments.minCoeff());
-        require_positive(density, "Particles.add.density", "kg/m3", "most stone has 2500 to 2800 kg/m3");
+        require_positive(density, "Particles.add.density", "kg/m3", "stone has 2500 to 2800");
         require(std::abs(state.orientation.norm() - 1) < 1e-6,
                 {"BodyState.orientation", "a unit quaternion", "", "normalise it"}, state.orientation.norm());
         require_finite(state.position, "BodyState.position", "m");

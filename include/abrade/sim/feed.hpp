@@ -35,7 +35,7 @@ struct FeedParams {
 
     void validate() const {
         require_positive(volume_rate, "Feed.volume_rate", "m3/s");
-        require_positive(density, "Feed.density", "kg/m3", "most stone has 2500 to 2800 kg/m3");
+        require_positive(density, "Feed.density", "kg/m3", "stone has 2500 to 2800");
         require_finite(velocity, "Feed.velocity", "m/s");
         require_finite(start, "Feed.start", "s");
         require(!classes.empty(),
