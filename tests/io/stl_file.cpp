@@ -139,7 +139,7 @@ TEST_CASE("broken text, with its line") {
 
 TEST_CASE("numbers that are none, and surfaces that are not closed") {
     CHECK(has(message_of(replaced(ascii(), "vertex 1", "vertex nan")),
-              "input: 'stone.stl': SurfaceMesh.triangles[0].corners[1].x must be finite, got nan m; mend"));
+              "input: 'stone.stl': SurfaceMesh.triangles[0].corners[2].x must be finite, got nan m; mend"));
     CHECK(has(message_of(replaced(ascii(), "vertex 1", "vertex inf")), "must be finite, got inf m"));
     std::string nan = binary();
     const float bad = std::numeric_limits<float>::quiet_NaN();
