@@ -232,5 +232,6 @@ TEST_CASE("parameters that make no sense are refused, with the rule") {
     for (const Real bad : {-1.0, 90.0, nan}) refused([&](Params& p) { p.friction_angle = bad; });
     for (const Real bad : {-0.1, 1.1, nan}) refused([&](Params& p) { p.damping = bad; });
     CHECK_THROWS_WITH_AS(MohrCoulomb({.tensile = -1, .stiffness = kn}),
-                         "MohrCoulomb.tensile must be finite and > 0, got -1 Pa", InputError);
+                         "MohrCoulomb.tensile must be finite and > 0, got -1 Pa; concrete has 2e6 to 5e6 Pa",
+                         InputError);
 }

@@ -106,6 +106,6 @@ TEST_CASE("a law prints its name and its parameters with their units") {
 }
 
 TEST_CASE("a law that exists can be used: its constructor validates") {
-    CHECK_THROWS_WITH_AS(Spring({.stiffness = -1}), "Spring.stiffness must be finite and > 0, got -1 N/m",
-                         InputError);
+    CHECK_THROWS_WITH_AS(Spring({.stiffness = -1}),
+                         "Spring.stiffness must be finite and > 0, got -1 N/m; check its sign", InputError);
 }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real infinite = std::numeric_limits<Real>::infinity();
+const std::string look = "; look for a division by 0 or an uninitialised number where it is set";
 
 }  // namespace
 
@@ -39,6 +40,7 @@ TEST_CASE("a rule that holds is silent") {
     CHECK_NOTHROW(require_positive(1e-300, "Law.size"));
     CHECK_NOTHROW(require_not_negative(0, "Law.size"));
     CHECK_NOTHROW(require_not_negative(-0.0, "Law.size"));
+    CHECK_NOTHROW(require_finite(-1e300, "Law.size"));
 }
 
 TEST_CASE("the common rules refuse zero, signs, infinities and NaN") {
@@ -51,11 +53,38 @@ TEST_CASE("the common rules refuse zero, signs, infinities and NaN") {
         CHECK_THROWS_AS(require_not_negative(bad, "Law.size", "m"), InputError);
     }
     CHECK(message_of([] { require_positive(-1, "HertzMindlin.youngs", "Pa"); }) ==
-          "HertzMindlin.youngs must be finite and > 0, got -1 Pa");
+          "HertzMindlin.youngs must be finite and > 0, got -1 Pa; check its sign");
     CHECK(message_of([] { require_positive(not_a_number, "Law.size", "m", "measure it"); }) ==
           "Law.size must be finite and > 0, got nan m; measure it");
     CHECK(message_of([] { require_not_negative(infinite, "Law.size", "m"); }) ==
-          "Law.size must be finite and >= 0, got inf m");
+          "Law.size must be finite and >= 0, got inf m" + look);
+}
+
+TEST_CASE("the common rules know a remedy that fits the value; one that is given counts more") {
+    CHECK(message_of([] { require_positive(0, "Law.size"); }) ==
+          "Law.size must be finite and > 0, got 0; was it left unset? give a number above 0");
+    CHECK(message_of([] { require_not_negative(-1, "Law.size"); }) ==
+          "Law.size must be finite and >= 0, got -1; check its sign");
+    CHECK(message_of([] { require_not_negative(-1, "Law.size", "m", "measure it"); }) ==
+          "Law.size must be finite and >= 0, got -1 m; measure it");
+    CHECK(message_of([] { require_positive(infinite, "Law.size"); }) ==
+          "Law.size must be finite and > 0, got inf" + look);
+    CHECK(message_of([] { require_finite(infinite, "Law.start", "s"); }) ==
+          "Law.start must be finite, got inf s" + look);
+    CHECK(message_of([] { require_finite(infinite, "Law.start", "s", "0 starts at once"); }) ==
+          "Law.start must be finite, got inf s; 0 starts at once");
+}
+
+TEST_CASE("a vector that is not finite: the component is named") {
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 place(1, 2, 3);
+        place[axis] = infinite;
+        const std::string refused = std::string("Body.place.") + "xyz"[axis] + " must be finite, got inf m";
+        CHECK(message_of([&] { require_finite(place, "Body.place", "m"); }) == refused + look);
+        CHECK(message_of([&] { require_finite(place, "Body.place", "m", "move it"); }) ==
+              refused + "; move it");
+    }
+    CHECK_NOTHROW(require_finite(Vec3(1, -2, 1e300), "Body.place", "m"));
 }
 
 TEST_CASE("InputError is a std::invalid_argument, for callers that know nothing of us") {

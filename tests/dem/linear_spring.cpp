@@ -232,7 +232,9 @@ TEST_CASE("parameters that make no sense are refused, with the rule") {
         "LinearSpring.stiffness must be finite and > 0, got -1 N/m; stones on concrete use 1e6 to 1e8 N/m",
         InputError);
     CHECK_THROWS_WITH_AS(LinearSpring({.stiffness = 1e6, .restitution = 1.5}),
-                         "LinearSpring.restitution must be in (0, 1], got 1.5", InputError);
+                         "LinearSpring.restitution must be in (0, 1], got 1.5; 1 loses nothing, 0.5 three "
+                         "quarters of the energy",
+                         InputError);
     CHECK(describe(law()) ==
           "LinearSpring(stiffness = 1e+06 N/m, restitution = 0.6, friction = 0.5, tangential_ratio = "
           "0.2857142857142857)");

@@ -2,6 +2,8 @@
 #include <abrade/dem/particles.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
 
+#include "../message_of.hpp"
+
 #include <doctest/doctest.h>
 
 #include <limits>
@@ -124,7 +126,17 @@ TEST_CASE("a body that cannot be is refused and leaves no trace") {
     Particles p;
     for (const Real density : {0.0, -1.0, nan})
         CHECK_THROWS_AS(p.add(sphere, density, {}, Kind::stone), InputError);
-    CHECK_THROWS_AS(p.add(sphere, 1, {.position = {0, nan, 0}}, Kind::stone), InputError);
+    CHECK_THROWS_WITH_AS(p.add(sphere, -1, {}, Kind::stone),
+                         "Particles.add.density must be finite and > 0, got -1 kg/m3; stone has 2500 to 2800",
+                         InputError);
+    CHECK(message_of([&] {
+              p.add(sphere, 1, {.position = {0, nan, 0}}, Kind::stone);
+          }).starts_with("BodyState.position.y must be finite, got nan m; look for"));
+    Clump flat = sphere;
+    flat.principal_moments.x() = 0;
+    CHECK_THROWS_WITH_AS(p.add(flat, 1, {}, Kind::stone),
+                         "Clump.principal_moments must be > 0, got 0 m5; make clumps with make_clump()",
+                         InputError);
     CHECK_THROWS_AS(
         p.add(sphere, 1, {.velocity = {0, 0, std::numeric_limits<Real>::infinity()}}, Kind::stone),
         InputError);

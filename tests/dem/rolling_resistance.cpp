@@ -267,8 +267,10 @@ TEST_CASE("parameters that make no sense are refused; the law says what it is") 
         CHECK_THROWS_AS(linear(bad), InputError);
         CHECK_THROWS_AS(linear(0.3, Linear::Model::elastic_plastic, bad), InputError);
     }
-    CHECK_THROWS_WITH_AS((Linear{{.contact = {.stiffness = 1e6}, .friction = 0.1, .stiffness_factor = 0}}),
-                         "RollingResistance.stiffness_factor must be finite and > 0, got 0", InputError);
+    CHECK_THROWS_WITH_AS(
+        (Linear{{.contact = {.stiffness = 1e6}, .friction = 0.1, .stiffness_factor = 0}}),
+        "RollingResistance.stiffness_factor must be finite and > 0, got 0; 2.25 for spheres, 3 for discs",
+        InputError);
     CHECK_THROWS_AS((Linear{{.friction = 0.1}}), InputError);  // the contact's own parameters count
     CHECK(describe(linear()) ==
           "RollingResistance(stiffness = 1e+06 N/m, restitution = 0.6, friction = 0.5, tangential_ratio = "

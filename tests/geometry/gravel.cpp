@@ -194,11 +194,17 @@ TEST_CASE("axes, of a clump that is known") {
 
 TEST_CASE("what no stone is, is refused") {
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
-    CHECK(message_of({.size = 0}) == "Gravel.size must be finite and > 0, got 0 m");
-    CHECK(message_of({.size = nan}) == "Gravel.size must be finite and > 0, got nan m");
-    CHECK(message_of({.size = 1, .elongation = 1.1}) == "Gravel.elongation must be in [0.2, 1], got 1.1");
-    CHECK(message_of({.size = 1, .flatness = 0.1}) == "Gravel.flatness must be in [0.2, 1], got 0.1");
-    CHECK(message_of({.size = 1, .roundness = nan}) == "Gravel.roundness must be in [0.05, 1], got nan");
+    CHECK(message_of({.size = 0}) ==
+          "Gravel.size must be finite and > 0, got 0 m; was it left unset? give a number above 0");
+    CHECK(message_of({.size = nan}) ==
+          "Gravel.size must be finite and > 0, got nan m; look for a division by 0 or an uninitialised "
+          "number where it is set");
+    CHECK(message_of({.size = 1, .elongation = 1.1}) ==
+          "Gravel.elongation must be in [0.2, 1], got 1.1; it is I / L, 1 where both are equal");
+    CHECK(message_of({.size = 1, .flatness = 0.1}) ==
+          "Gravel.flatness must be in [0.2, 1], got 0.1; it is S / I, 1 where both are equal");
+    CHECK(message_of({.size = 1, .roundness = nan}) ==
+          "Gravel.roundness must be in [0.05, 1], got nan; 1 is round, less has sharper corners");
     CHECK(message_of({.size = 1, .largest_gap = 0}) ==
           "Gravel.largest_gap must be in [0.002, 1], got 0; it is a share of the size");
     CHECK(message_of({.size = 1, .max_spheres = 8}) ==

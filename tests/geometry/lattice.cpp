@@ -136,8 +136,9 @@ TEST_CASE("bodies and spheres that do not fit are refused, with the rule") {
     const Real nan = std::numeric_limits<Real>::quiet_NaN(), infinite = std::numeric_limits<Real>::infinity();
     for (const Real bad : {0.0, -0.02, nan, infinite})
         CHECK_THROWS_AS(flat_lattice(1, 1, {.sphere_diameter = bad}), InputError);
-    CHECK_THROWS_WITH_AS(flat_lattice(1, 1, {.layers = 0}), "LatticeSize.layers must be at least 1, got 0",
-                         InputError);
+    CHECK_THROWS_WITH_AS(
+        flat_lattice(1, 1, {.layers = 0}),
+        "LatticeSize.layers must be at least 1, got 0; a scene without concrete has no lattice", InputError);
     CHECK_THROWS_AS(flat_lattice(1, 1, {.layers = -2}), InputError);
     CHECK_THROWS_WITH_AS(flat_lattice(0.01, 1, {}),
                          "flat_lattice.side must be at least one sphere diameter (0.02 m), got 0.01 m; take "

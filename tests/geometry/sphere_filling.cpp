@@ -154,10 +154,13 @@ TEST_CASE("a mesh becomes a clump, the same one each time") {
 }
 
 TEST_CASE("limits that make no sense are refused") {
-    CHECK(message_of({.max_spheres = 0}) == "SphereFilling.max_spheres must be >= 1, got 0 spheres");
-    CHECK(message_of({.largest_gap = -1}) == "SphereFilling.largest_gap must be finite and >= 0, got -1 m");
-    CHECK(message_of({.samples = 0}) == "SphereFilling.samples must be >= 1, got 0 points");
+    CHECK(message_of({.max_spheres = 0}) ==
+          "SphereFilling.max_spheres must be >= 1, got 0 spheres; more follow the surface closer");
+    CHECK(message_of({.largest_gap = -1}) ==
+          "SphereFilling.largest_gap must be finite and >= 0, got -1 m; 0 goes on up to max_spheres");
+    CHECK(message_of({.samples = 0}) ==
+          "SphereFilling.samples must be >= 1, got 0 points; more see smaller gaps");
     CHECK(message_of({.smallest_radius = 0.7})
               .find("SphereFilling.smallest_radius must be no larger than the "
-                    "largest inscribed sphere (0.5 m), got 0.7 m") == 0);
+                    "largest inscribed sphere (0.5 m), got 0.7 m; make it smaller, or check") == 0);
 }

@@ -1,6 +1,8 @@
 // Volume, centre and inertia of unions of spheres against closed forms and independent integrals.
 #include <abrade/geometry/sphere_union.hpp>
 
+#include "../message_of.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -259,14 +261,36 @@ TEST_CASE("size does not matter, nor does a place far from the origin") {
 }
 
 TEST_CASE("what is no solid is refused") {
-    CHECK_THROWS_AS(union_moments(Spheres{}), InputError);
+    CHECK_THROWS_WITH_AS(union_moments(Spheres{}),
+                         "union_moments.spheres must be at least 1 sphere, got 0; give each its centre and "
+                         "its radius",
+                         InputError);
     CHECK_THROWS_WITH_AS(union_moments(Spheres{{Vec3::Zero(), 0}}),
-                         "Sphere.radius must be finite and > 0, got 0 m", InputError);
+                         "union_moments.spheres[0].radius must be finite and > 0, got 0 m; was it left "
+                         "unset? give a number above 0",
+                         InputError);
     CHECK_THROWS_AS(union_moments(Spheres{{Vec3::Zero(), 1}, {Vec3::Zero(), -1}}), InputError);
     CHECK_THROWS_AS(union_moments(Spheres{{Vec3::Zero(), std::numeric_limits<Real>::quiet_NaN()}}),
                     InputError);
     CHECK_THROWS_AS(union_moments(Spheres{{Vec3::Constant(std::numeric_limits<Real>::quiet_NaN()), 1}}),
                     InputError);
+}
+
+TEST_CASE("a clump that is no solid is refused: the clump, the member and the component are named") {
+    const Real infinite = std::numeric_limits<Real>::infinity();
+    const auto refused = [](const Spheres& members) {
+        return message_of([&] { make_clump("gravel", members); });
+    };
+    CHECK(refused({}) ==
+          "Clump 'gravel'.members must be at least 1 sphere, got 0; give each its centre and its radius");
+    Spheres members(5, {Vec3::Zero(), 1});
+    members[3].centre.x() = infinite;
+    CHECK(refused(members) ==
+          "Clump 'gravel'.members[3].centre.x must be finite, got inf m; look for a division by 0 or an "
+          "uninitialised number where it is set");
+    members[2].radius = -1;  // the first that is wrong
+    CHECK(refused(members) ==
+          "Clump 'gravel'.members[2].radius must be finite and > 0, got -1 m; check its sign");
 }
 
 TEST_CASE("a clump stands in its principal frame") {

@@ -112,5 +112,5 @@ TEST_CASE("a size that is none is refused") {
          {0.0, -0.04, std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity()})
         CHECK_THROWS_AS(make_stone(StoneShape::angular, size), InputError);
     CHECK_THROWS_WITH_AS(make_stone(StoneShape::sphere, -1),
-                         "make_stone.size must be finite and > 0, got -1 m", InputError);
+                         "make_stone.size must be finite and > 0, got -1 m; check its sign", InputError);
 }

@@ -51,7 +51,8 @@ TEST_CASE("a checkpoint comes back bit for bit") {
     CHECK_THROWS_WITH_AS(state.column("spheres", "mass"),
                          "checkpoint has no column spheres/mass; it has: radius", InputError);
     CHECK_THROWS_AS(state.attribute<Real>("step"), InputError);
-    CHECK_THROWS_AS(state.attribute<Real>("missing"), InputError);
+    CHECK_THROWS_WITH_AS(state.attribute<Real>("missing"),
+                         "checkpoint has no attribute missing; it has: random step time", InputError);
 }
 
 TEST_CASE("a save that fails leaves the checkpoint that was there") {
@@ -60,9 +61,10 @@ TEST_CASE("a save that fails leaves the checkpoint that was there") {
     const FieldView uneven[] = {{"x", "m", 1, two}, {"y", "m", 1, three}};
     const FieldGroup first[] = {{"bodies", good}}, second[] = {{"bodies", uneven}};
     save_fields("kept.h5", first);
-    CHECK_THROWS_WITH_AS(
-        save_fields("kept.h5", second),
-        "checkpoint bodies.y must be as long as the other columns of its group (2), got 3 rows", InputError);
+    CHECK_THROWS_WITH_AS(save_fields("kept.h5", second),
+                         "checkpoint bodies.y must be as long as the other columns of its group (2), got 3 "
+                         "rows; put it into another group",
+                         InputError);
     CHECK(!std::filesystem::exists("kept.h5.tmp"));
     CHECK(load_fields("kept.h5").column("bodies", "x").values == two);
 
@@ -74,8 +76,10 @@ TEST_CASE("a save that fails leaves the checkpoint that was there") {
 TEST_CASE("what is not a checkpoint is refused") {
     CHECK_THROWS_AS(load_fields("missing.h5"), InputError);
     Hdf5File::create("other.h5").close();
-    CHECK_THROWS_WITH_AS(load_fields("other.h5"),
-                         "cannot read 'other.h5': it is an HDF5 file but not a checkpoint", InputError);
+    CHECK_THROWS_WITH_AS(
+        load_fields("other.h5"),
+        "cannot read 'other.h5': it is an HDF5 file but not a checkpoint; name one that save_fields() wrote",
+        InputError);
     Hdf5File newer = Hdf5File::create("newer.h5");
     newer.write_attribute("", checkpoint_version_name, checkpoint_version + 1);
     newer.close();

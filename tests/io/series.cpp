@@ -111,11 +111,13 @@ TEST_CASE("a series refuses what would not open") {
     SeriesWriter series{"refused"};
     series.write("stones", 1.0, at);
     CHECK_THROWS_WITH_AS(series.write("stones", 1.0, at),
-                         "SeriesWriter.stones time must be later than the one before (1), got 1 s",
+                         "SeriesWriter.stones time must be later than the one before (1), got 1 s; write "
+                         "each time once, in order",
                          InputError);
     CHECK_THROWS_AS(series.write("stones", std::nan(""), at), InputError);
     CHECK_THROWS_WITH_AS(series.write("stones", 2.0, at, {&wrong, 1}),
-                         "SeriesWriter.stones.speed must be one row per point (2 x 1), got 3 values",
+                         "SeriesWriter.stones.speed must be one row per point (2 x 1), got 3 values; does it "
+                         "belong to another cloud?",
                          InputError);
     CHECK_THROWS_AS(series.write("stones", 2.0, {&wrong, 1}), InputError);  // no constant positions
     CHECK_THROWS_AS(series.write("a b", 2.0, at), InputError);

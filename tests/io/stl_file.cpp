@@ -102,7 +102,8 @@ TEST_CASE("what is written is read back, to the digits of a 32-bit number") {
 
 TEST_CASE("the unit of the file") {
     CHECK(read_stl(put(ascii()), {.unit = 1e-3}).moments().volume == doctest::Approx(1e-9).epsilon(1e-12));
-    CHECK(message_of(ascii(), {.unit = 0}) == "input: StlOptions.unit must be finite and > 0, got 0 m");
+    CHECK(message_of(ascii(), {.unit = 0}) ==
+          "input: StlOptions.unit must be finite and > 0, got 0 m; 1e-3 for a file in millimetres");
 }
 
 TEST_CASE("a file that is cut off is refused wherever it is cut") {
@@ -138,12 +139,12 @@ TEST_CASE("broken text, with its line") {
 
 TEST_CASE("numbers that are none, and surfaces that are not closed") {
     CHECK(has(message_of(replaced(ascii(), "vertex 1", "vertex nan")),
-              "input: 'stone.stl': SurfaceMesh.vertices.x must be finite, got nan m"));
+              "input: 'stone.stl': SurfaceMesh.triangles[0].corners[2].x must be finite, got nan m; mend"));
     CHECK(has(message_of(replaced(ascii(), "vertex 1", "vertex inf")), "must be finite, got inf m"));
     std::string nan = binary();
     const float bad = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(nan.data() + 84 + 12, &bad, 4);
-    CHECK(has(message_of(nan), "SurfaceMesh.vertices.x must be finite, got nan m"));
+    CHECK(has(message_of(nan), "SurfaceMesh.triangles[0].corners[0].x must be finite, got nan m"));
     CHECK(has(message_of(replaced(ascii(), "vertex 1", "vertex 1.001")),
               "SurfaceMesh must be closed and manifold"));
     CHECK(read_stl(put(replaced(ascii(), "vertex 1", "vertex 1.001")), {.merge_distance = 0.01})

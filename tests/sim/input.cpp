@@ -14,6 +14,7 @@ using namespace abrade;
 namespace {
 
 constexpr Real nan_ = std::numeric_limits<Real>::quiet_NaN();
+const std::string look = "; look for a division by 0 or an uninitialised number where it is set";
 const LinearSpring law{{.stiffness = 1e6, .restitution = 0.5}};
 
 Scene one_stone() {
@@ -84,11 +85,11 @@ TEST_CASE("stones: radius, density, position, velocity") {
             };
             const std::string value = std::string(".") + "xyz"[axis] + " must be finite, got " + to_text(bad);
             CHECK(said([&](BodyState& s) { s.position[axis] = bad; }) ==
-                  "Scene.stones[1].position" + value + " m");
+                  "Scene.stones[1].position" + value + " m" + look);
             CHECK(said([&](BodyState& s) { s.velocity[axis] = bad; }) ==
-                  "Scene.stones[1].velocity" + value + " m/s");
+                  "Scene.stones[1].velocity" + value + " m/s" + look);
             CHECK(said([&](BodyState& s) { s.angular_velocity[axis] = bad; }) ==
-                  "Scene.stones[1].angular_velocity" + value + " rad/s");
+                  "Scene.stones[1].angular_velocity" + value + " rad/s" + look);
             CHECK(has(said([&](BodyState& s) { s.orientation.coeffs()[axis] = bad; }),
                       "Scene.stones[1].orientation must be of length 1, got "));
         }
@@ -103,8 +104,9 @@ TEST_CASE("stones: radius, density, position, velocity") {
         Scene scene = one_stone();
         scene.add_stone(make_stone(StoneShape::angular, 0.02), {.position = {1, 0, 0}});
         scene.stones[1].clump.members[3].radius = bad;
-        CHECK(run(scene, {.end_time = 1e-3}) ==
-              "Scene.stones[1].clump.members[3].radius must be finite and > 0, got " + to_text(bad) + " m");
+        CHECK(run(scene, {.end_time = 1e-3})
+                  .starts_with("Scene.stones[1].clump.members[3].radius must be finite and > 0, got " +
+                               to_text(bad) + " m; "));
     }
 }
 
@@ -115,13 +117,14 @@ TEST_CASE("contact laws: stiffness, restitution, friction") {
         CHECK(has(message_of([&] { HertzMindlin{{.youngs = bad}}; }),
                   "HertzMindlin.youngs must be finite and > 0, got " + to_text(bad) + " Pa; 1e7 Pa is soft"));
         CHECK(has(message_of([&] { MohrCoulomb{{.tensile = 1, .stiffness = bad}}; }),
-                  "MohrCoulomb.stiffness must be finite and > 0, got " + to_text(bad) + " N/m"));
+                  "MohrCoulomb.stiffness must be finite and > 0, got " + to_text(bad) + " N/m; E A / d"));
     }
+    const std::string loses = "; 1 loses nothing, 0.5 three quarters of the energy";
     for (const Real bad : {0.0, -0.5, 1.01, nan_}) {
         CHECK(message_of([&] { LinearSpring{{.stiffness = 1, .restitution = bad}}; }) ==
-              "LinearSpring.restitution must be in (0, 1], got " + to_text(bad));
+              "LinearSpring.restitution must be in (0, 1], got " + to_text(bad) + loses);
         CHECK(message_of([&] { HertzMindlin{{.youngs = 1e9, .restitution = bad}}; }) ==
-              "HertzMindlin.restitution must be in (0, 1], got " + to_text(bad));
+              "HertzMindlin.restitution must be in (0, 1], got " + to_text(bad) + loses);
     }
     for (const Real bad : {-0.1, nan_}) {
         CHECK(has(message_of([&] { LinearSpring{{.stiffness = 1, .friction = bad}}; }),
@@ -140,7 +143,7 @@ TEST_CASE("walls, gravity, concrete") {
               "Scene.walls[1].normal must be finite"));
     Scene scene = one_stone();
     scene.add_wall({0, 0, -1}, {0, 0, 1}).add_wall({0, nan_, 1}, {0, 0, -1});
-    CHECK(run(scene, {.end_time = 1e-3}) == "Scene.walls[1].point.y must be finite, got nan m");
+    CHECK(run(scene, {.end_time = 1e-3}) == "Scene.walls[1].point.y must be finite, got nan m" + look);
     scene = one_stone();
     scene.gravity.x() = nan_;
     CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.gravity.x must be finite, got nan m/s2"));
@@ -165,19 +168,24 @@ TEST_CASE("the feed") {
     for (const Real bad : {0.0, -1.0, nan_}) {
         CHECK(has(said([&](FeedParams& f) { f.volume_rate = bad; }), "Feed.volume_rate"));
         CHECK(has(said([&](FeedParams& f) { f.density = bad; }), "Feed.density"));
-        CHECK(has(said([&](FeedParams& f) { f.classes[0].size = bad; }), "Feed.classes.size"));
+        CHECK(has(said([&](FeedParams& f) { f.classes[0].size = bad; }),
+                  "Feed.classes[0].size must be finite and > 0"));
     }
     CHECK(has(said([](FeedParams& f) { f.classes[1].fraction = 0.4; }),
               "Feed.classes.fraction (sum) must be 1, got 0.9; let the fractions add up to 1"));
-    CHECK(has(said([](FeedParams& f) { f.classes[1].fraction = nan_; }), "Feed.classes.fraction"));
+    CHECK(has(said([](FeedParams& f) { f.classes[1].fraction = nan_; }), "Feed.classes[1].fraction"));
     CHECK(has(said([](FeedParams& f) { f.classes[0].fraction = 1.5, f.classes[1].fraction = -0.5; }),
-              "Feed.classes.fraction must be finite and >= 0"));
+              "Feed.classes[1].fraction must be finite and >= 0, got -0.5; check its sign"));
     CHECK(has(said([](FeedParams& f) { f.classes.clear(); }), "at least one stone class"));
-    CHECK(has(said([](FeedParams& f) { f.region = {}; }), "Feed.region"));
-    CHECK(has(said([](FeedParams& f) { f.region.high.x() = -1; }), "Feed.region"));
-    CHECK(has(said([](FeedParams& f) { f.velocity.x() = nan_; }), "velocity"));
+    CHECK(has(said([](FeedParams& f) { f.region = {}; }), "Feed.region along x must be finite"));
+    CHECK(has(said([](FeedParams& f) { f.region.high.x() = -1; }),
+              "Feed.region along x must be finite and low < high, high - low, got -1 m; give both corners"));
+    CHECK(
+        has(said([](FeedParams& f) { f.classes[1].size = 2; }), "Feed.classes[1].size of 2 m: the stone's"));
+    CHECK(has(said([](FeedParams& f) { f.velocity.y() = nan_; }),
+              "Feed.velocity.y must be finite, got nan m/s"));
     CHECK(has(said([](FeedParams& f) { f.start = nan_; }), "Feed.start"));
-    CHECK(has(said([](FeedParams& f) { f.region.high.z() = nan_; }), "Feed.region"));
+    CHECK(has(said([](FeedParams& f) { f.region.high.z() = nan_; }), "Feed.region along z"));
 }
 
 TEST_CASE("an empty scene runs, and nothing happens") {

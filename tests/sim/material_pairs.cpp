@@ -212,13 +212,20 @@ TEST_CASE("a table that makes no sense is refused") {
     const auto of = [](std::vector<std::string> materials, std::vector<Table::Pair> pairs) {
         return message_of([&] { Table{{.materials = materials, .pairs = pairs}}; });
     };
-    CHECK(of({}, {}) == "MaterialPairs.materials must be at least one name, got 0");
-    CHECK(of({"a", "a"}, {}) == "MaterialPairs.materials must be different names, got a twice");
-    CHECK(of({"a", "b"}, {{"a", "c", bounces(1)}}) == "MaterialPairs: a material must be one of a, b, got c");
+    CHECK(of({}, {}) ==
+          "MaterialPairs.materials must be at least one name, got 0; name what bodies are made of, such as "
+          "stone");
+    CHECK(of({"a", "a"}, {}) ==
+          "MaterialPairs.materials must be different names, got a twice; rename or remove one");
+    CHECK(of({"a", "b"}, {{"a", "c", bounces(1)}}) ==
+          "MaterialPairs: a material must be one of a, b, got c; mend its spelling or add it to "
+          "MaterialPairs.materials");
     CHECK(of({"a", "b"}, {{"a", "b", bounces(1)}, {"b", "a", bounces(0.5)}}) ==
-          "MaterialPairs.pairs must be one law for each two materials, got two for b with a");
+          "MaterialPairs.pairs must be one law for each two materials, got two for b with a; remove one: "
+          "their order does not matter");
     CHECK(of({"a", "b"}, {{"a", "b", bounces(2)}}) ==
-          "MaterialPairs, a with b: LinearSpring.restitution must be in (0, 1], got 2");
+          "MaterialPairs, a with b: LinearSpring.restitution must be in (0, 1], got 2; 1 loses nothing, 0.5 "
+          "three quarters of the energy");
     CHECK_THROWS_AS(three().number("wood"), InputError);
     CHECK(describe(Table{{.materials = {"a"}, .pairs = {{"a", "a", {.stiffness = 1e6}}}}}) ==
           "MaterialPairs(a-a.stiffness = 1e+06 N/m, a-a.restitution = 1, a-a.friction = 0, "

@@ -222,7 +222,10 @@ TEST_CASE("a collision's input errors name field, value and rule") {
     CHECK(message(spheres(90)) == "Collision.angle must be in (-90, 90), got 90 degree; 0 is head-on");
     Collision c = spheres(0);
     c.mass_j = 0;
-    CHECK(message(c) == "Collision.mass_j must be finite and > 0, got 0 kg");
-    CHECK(message(spheres(0), -1) == "collide.dt must be finite and > 0, got -1 s");
-    CHECK(message(spheres(0), 1e-5, 1) == "collide.phase must be in [0, 1), got 1");
+    CHECK(message(c) ==
+          "Collision.mass_j must be finite and > 0, got 0 kg; was it left unset? give a number above 0");
+    CHECK(message(spheres(0), -1) ==
+          "collide.dt must be finite and > 0, got -1 s; a fiftieth of the time of contact resolves it");
+    CHECK(message(spheres(0), 1e-5, 1) ==
+          "collide.phase must be in [0, 1), got 1; 0.5 touches halfway through a step");
 }

@@ -33,12 +33,16 @@ public:
         Area area = Area::circle;
 
         void validate() const {
-            require_positive(tensile, "MohrCoulomb.tensile", "Pa");
+            require_positive(tensile, "MohrCoulomb.tensile", "Pa", "concrete has 2e6 to 5e6 Pa");
             require(friction_angle >= 0 && friction_angle < 90,
-                    {"MohrCoulomb.friction_angle", "in [0, 90)", "degrees"}, friction_angle);
-            require_positive(stiffness, "MohrCoulomb.stiffness", "N/m");
-            require_positive(stiffness_ratio, "MohrCoulomb.stiffness_ratio");
-            require(damping >= 0 && damping <= 1, {"MohrCoulomb.damping", "in [0, 1]"}, damping);
+                    {"MohrCoulomb.friction_angle", "in [0, 90)", "degrees", "the default is 35"},
+                    friction_angle);
+            require_positive(stiffness, "MohrCoulomb.stiffness", "N/m",
+                             "E A / d is about 4e8 N/m for concrete, softer is cheaper");
+            require_positive(stiffness_ratio, "MohrCoulomb.stiffness_ratio", "", "the default is 0.2");
+            require(damping >= 0 && damping <= 1,
+                    {"MohrCoulomb.damping", "in [0, 1]", "", "it is a share of critical damping, 0 for none"},
+                    damping);
         }
         void visit(auto&& f) const {
             f("tensile", tensile, "Pa");

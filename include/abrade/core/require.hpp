@@ -55,20 +55,43 @@ inline void require(bool ok, const Requirement& r, Real value) {
     if (!ok) fail(r, to_text(value));
 }
 
-/// The commonest rules. NaN satisfies none of them.
+namespace detail {
+
+/// What helps against a value that is refused, where the caller knows nothing better.
+inline std::string_view usual_remedy(Real value) {
+    if (!std::isfinite(value)) return "look for a division by 0 or an uninitialised number where it is set";
+    return value == 0 ? "was it left unset? give a number above 0" : "check its sign";
+}
+
+[[noreturn]] inline void fail_usual(Requirement r, Real value) {
+    if (r.remedy.empty()) r.remedy = usual_remedy(value);
+    fail(r, to_text(value));
+}
+
+}  // namespace detail
+
+/// The commonest rules. NaN satisfies none of them. Where no remedy is given the message has one that fits
+/// the value.
 inline void require_positive(Real value, std::string_view field, std::string_view unit = {},
                              std::string_view remedy = {}) {
-    require(value > 0 && std::isfinite(value), {field, "finite and > 0", unit, remedy}, value);
+    if (!(value > 0 && std::isfinite(value)))
+        detail::fail_usual({field, "finite and > 0", unit, remedy}, value);
 }
 inline void require_not_negative(Real value, std::string_view field, std::string_view unit = {},
                                  std::string_view remedy = {}) {
-    require(value >= 0 && std::isfinite(value), {field, "finite and >= 0", unit, remedy}, value);
+    if (!(value >= 0 && std::isfinite(value)))
+        detail::fail_usual({field, "finite and >= 0", unit, remedy}, value);
 }
-/// Names the component: "Scene.stones[3].velocity.y must be finite, got nan m/s".
-inline void require_finite(const Vec3& value, std::string_view field, std::string_view unit = {}) {
+inline void require_finite(Real value, std::string_view field, std::string_view unit = {},
+                           std::string_view remedy = {}) {
+    if (!std::isfinite(value)) detail::fail_usual({field, "finite", unit, remedy}, value);
+}
+/// Names the component: "Scene.stones[3].velocity.y must be finite, got nan m/s; look for ...".
+inline void require_finite(const Vec3& value, std::string_view field, std::string_view unit = {},
+                           std::string_view remedy = {}) {
     for (int a = 0; a < 3; ++a)
         if (!std::isfinite(value[a]))
-            fail({std::string(field) + '.' + "xyz"[a], "finite", unit}, to_text(value[a]));
+            require_finite(value[a], std::string(field) + '.' + "xyz"[a], unit, remedy);
 }
 
 }  // namespace abrade

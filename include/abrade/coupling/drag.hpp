@@ -27,7 +27,10 @@ public:
 
     struct Params {
         Real shape_factor = 1;  ///< [-]
-        void validate() const { require_positive(shape_factor, "CliftGauvin.shape_factor"); }
+        void validate() const {
+            require_positive(shape_factor, "CliftGauvin.shape_factor", "",
+                             "1 for spheres, more for angular stones");
+        }
         void visit(auto&& f) const { f("shape_factor", shape_factor, "-"); }
     };
 

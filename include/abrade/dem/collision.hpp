@@ -25,8 +25,8 @@ struct Collision {
         require_positive(speed, "Collision.speed", "m/s");
         require(angle > -90 && angle < 90, {"Collision.angle", "in (-90, 90)", "degree", "0 is head-on"},
                 angle);
-        require(std::isfinite(spin_i), {"Collision.spin_i", "finite", "rad/s"}, spin_i);
-        require(std::isfinite(spin_j), {"Collision.spin_j", "finite", "rad/s"}, spin_j);
+        require_finite(spin_i, "Collision.spin_i", "rad/s");
+        require_finite(spin_j, "Collision.spin_j", "rad/s");
     }
     Real effective_mass() const noexcept { return mass_i * mass_j / (mass_i + mass_j); }
     Real effective_radius() const noexcept { return radius_i * radius_j / (radius_i + radius_j); }
@@ -162,8 +162,9 @@ private:
 template <Method M, ContactLaw Law>
 CollisionResult collide(const Law& law, const Collision& collision, Real dt, Real phase = 0.5) {
     collision.validate();
-    require_positive(dt, "collide.dt", "s");
-    require(phase >= 0 && phase < 1, {"collide.phase", "in [0, 1)"}, phase);
+    require_positive(dt, "collide.dt", "s", "a fiftieth of the time of contact resolves it");
+    require(phase >= 0 && phase < 1, {"collide.phase", "in [0, 1)", "", "0.5 touches halfway through a step"},
+            phase);
 
     const Real vn = collision.normal_speed(), vt = collision.tangential_speed(),
                mass = collision.effective_mass();
@@ -191,7 +192,9 @@ CollisionResult collide(const Law& law, const Collision& collision, Real dt, Rea
     Real exchanged = 0;
     for (long n = 0; result.steps == 0 || last.distance < reach; ++n) {
         if (n == 10'000'000)
-            fail({"collide.dt", "such that the spheres part within 1e7 steps", "s"}, to_text(dt));
+            fail({"collide.dt", "such that the spheres part within 1e7 steps", "s",
+                  "take a larger step, or a law that pushes them apart"},
+                 to_text(dt));
         stepper.step(dt);
         const Radial now = radial();
         exchanged += 0.5 * (last.turning + now.turning) * (now.distance - last.distance);

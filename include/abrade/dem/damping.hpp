@@ -4,8 +4,14 @@
 #include <abrade/core/require.hpp>
 
 #include <cmath>
+#include <string_view>
 
 namespace abrade {
+
+inline void require_restitution(Real value, std::string_view field) {
+    require(value > 0 && value <= 1,
+            {field, "in (0, 1]", "", "1 loses nothing, 0.5 three quarters of the energy"}, value);
+}
 
 /// Ratio of critical damping zeta that gives restitution e when the contact cannot pull.
 /// A contact that ends when its force falls to zero has
@@ -14,7 +20,7 @@ namespace abrade {
 /// inverted here by bisection. Throws InputError for a restitution outside (0, 1]. T. Schwager, T. Poeschel,
 /// Granular Matter 9 (2007) 465, doi:10.1007/s10035-007-0065-z.
 inline Real damping_ratio_without_tension(Real restitution) {
-    require(restitution > 0 && restitution <= 1, {"restitution", "in (0, 1]"}, restitution);
+    require_restitution(restitution, "damping_ratio_without_tension.restitution");
     const auto restitution_of = [](Real zeta) {
         const Real s2 = 1 - zeta * zeta;
         if (std::abs(s2) < 1e-12) return std::exp(-2.0);
@@ -33,7 +39,7 @@ inline Real damping_ratio_without_tension(Real restitution) {
 /// The same for a contact that may pull until its overlap ends: zeta = -ln e / sqrt(pi^2 + ln^2 e). Throws
 /// InputError for a restitution outside (0, 1].
 inline Real damping_ratio_with_tension(Real restitution) {
-    require(restitution > 0 && restitution <= 1, {"restitution", "in (0, 1]"}, restitution);
+    require_restitution(restitution, "damping_ratio_with_tension.restitution");
     const Real log_e = std::log(restitution);
     return -log_e / std::sqrt(square(pi) + square(log_e));
 }

@@ -59,15 +59,16 @@ public:
 
         void validate() const {
             require_positive(youngs, "HertzMindlin.youngs", "Pa", "1e7 Pa is soft, stone is near 5e10 Pa");
-            require(poisson > -1 && poisson <= 0.5, {"HertzMindlin.poisson", "in (-1, 0.5]"}, poisson);
-            require(restitution > 0 && restitution <= 1, {"HertzMindlin.restitution", "in (0, 1]"},
-                    restitution);
-            require_not_negative(friction, "HertzMindlin.friction");
-            require_not_negative(youngs_other, "HertzMindlin.youngs_other", "Pa");
-            require(poisson_other > -1 && poisson_other <= 0.5,
-                    {"HertzMindlin.poisson_other", "in (-1, 0.5]"}, poisson_other);
+            require_poisson(poisson, "HertzMindlin.poisson");
+            require_restitution(restitution, "HertzMindlin.restitution");
+            require_not_negative(friction, "HertzMindlin.friction", "", "0 slides freely");
+            require_not_negative(youngs_other, "HertzMindlin.youngs_other", "Pa",
+                                 "0 means the same material");
+            require_poisson(poisson_other, "HertzMindlin.poisson_other");
             require(largest_overlap > 0 && largest_overlap <= 0.2,
-                    {"HertzMindlin.largest_overlap", "in (0, 0.2]"}, largest_overlap);
+                    {"HertzMindlin.largest_overlap", "in (0, 0.2]", "",
+                     "it is a share of the radius; beyond 0.2 a run ends"},
+                    largest_overlap);
         }
         void visit(auto&& f) const {
             f("youngs", youngs, "Pa");
@@ -80,6 +81,12 @@ public:
             f("youngs_other", youngs_other, "Pa");
             f("poisson_other", poisson_other, "-");
             f("largest_overlap", largest_overlap, "-");
+        }
+
+    private:
+        static void require_poisson(Real value, std::string_view field) {
+            require(value > -1 && value <= 0.5,
+                    {field, "in (-1, 0.5]", "", "concrete has about 0.2, rubber nearly 0.5"}, value);
         }
     };
 

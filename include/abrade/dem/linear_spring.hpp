@@ -26,10 +26,10 @@ public:
         void validate() const {
             require_positive(stiffness, "LinearSpring.stiffness", "N/m",
                              "stones on concrete use 1e6 to 1e8 N/m");
-            require(restitution > 0 && restitution <= 1, {"LinearSpring.restitution", "in (0, 1]"},
-                    restitution);
-            require_not_negative(friction, "LinearSpring.friction");
-            require_positive(tangential_ratio, "LinearSpring.tangential_ratio");
+            require_restitution(restitution, "LinearSpring.restitution");
+            require_not_negative(friction, "LinearSpring.friction", "", "0 slides freely");
+            require_positive(tangential_ratio, "LinearSpring.tangential_ratio", "",
+                             "2/7 gives both directions the same period");
         }
         void visit(auto&& f) const {
             f("stiffness", stiffness, "N/m");

@@ -31,16 +31,21 @@ public:
         std::vector<Pair> pairs;
 
         void validate() const {
-            require(!materials.empty(), {"MaterialPairs.materials", "at least one name"}, 0);
+            require(!materials.empty(),
+                    {"MaterialPairs.materials", "at least one name", "",
+                     "name what bodies are made of, such as stone"},
+                    0);
             for (std::size_t a = 0; a < materials.size(); ++a)
                 for (std::size_t b = 0; b < a; ++b)
                     if (materials[a] == materials[b])
-                        fail({"MaterialPairs.materials", "different names"}, materials[a] + " twice");
+                        fail({"MaterialPairs.materials", "different names", "", "rename or remove one"},
+                             materials[a] + " twice");
             std::vector<MaterialPair> seen;
             for (const Pair& pair : pairs) {
                 const auto which = MaterialPair::of(number(pair.first), number(pair.second));
                 if (std::find(seen.begin(), seen.end(), which) != seen.end())
-                    fail({"MaterialPairs.pairs", "one law for each two materials"},
+                    fail({"MaterialPairs.pairs", "one law for each two materials", "",
+                          "remove one: their order does not matter"},
                          "two for " + pair.first + " with " + pair.second);
                 seen.push_back(which);
                 try {
@@ -64,7 +69,9 @@ public:
                 if (materials[n] == material) return static_cast<Index>(n);
                 known += (n ? ", " : "") + materials[n];
             }
-            fail({"MaterialPairs: a material", "one of " + known}, material);
+            fail({"MaterialPairs: a material", "one of " + known, "",
+                  "mend its spelling or add it to MaterialPairs.materials"},
+                 material);
         }
     };
 

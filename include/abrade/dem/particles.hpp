@@ -76,15 +76,18 @@ struct Particles {
     /// Adds a body and returns its index. A clump without spheres or volume, a density [kg/m3] of 0 or less,
     /// or a state that is not finite throws InputError.
     Index add(const Clump& clump, Real density, const BodyState& state, Kind body_kind) {
-        require(!clump.members.empty() && clump.volume > 0 && clump.principal_moments.minCoeff() > 0,
+        require(!clump.members.empty() && clump.volume > 0,
                 {"Clump.volume", "> 0, of at least one sphere", "m3", "make clumps with make_clump()"},
                 clump.volume);
-        require_positive(density, "density", "kg/m3");
+        require(clump.principal_moments.minCoeff() > 0,
+                {"Clump.principal_moments", "> 0", "m5", "make clumps with make_clump()"},
+                clump.principal_moments.minCoeff());
+        require_positive(density, "Particles.add.density", "kg/m3", "stone has 2500 to 2800");
         require(std::abs(state.orientation.norm() - 1) < 1e-6,
                 {"BodyState.orientation", "a unit quaternion", "", "normalise it"}, state.orientation.norm());
-        require(
-            state.position.allFinite() && state.velocity.allFinite() && state.angular_velocity.allFinite(),
-            {"BodyState", "finite", "", "look for a NaN in position or velocity"}, state.position.sum());
+        require_finite(state.position, "BodyState.position", "m");
+        require_finite(state.velocity, "BodyState.velocity", "m/s");
+        require_finite(state.angular_velocity, "BodyState.angular_velocity", "rad/s");
         const Index b = bodies();
         const Real m = density * clump.volume;
         const bool held = body_kind == Kind::fixed;

@@ -46,9 +46,12 @@ public:
 
         void validate() const {
             contact.validate();
-            require_not_negative(friction, "RollingResistance.friction");
-            require_not_negative(damping, "RollingResistance.damping");
-            require_positive(stiffness_factor, "RollingResistance.stiffness_factor");
+            require_not_negative(friction, "RollingResistance.friction", "",
+                                 "it is the tangent of the steepest slope that a sphere rests on");
+            require_not_negative(damping, "RollingResistance.damping", "",
+                                 "it is a share of critical damping, 0 for none");
+            require_positive(stiffness_factor, "RollingResistance.stiffness_factor", "",
+                             "2.25 for spheres, 3 for discs");
         }
         void visit(auto&& f) const {
             contact.visit(f);

@@ -11,7 +11,7 @@ namespace abrade {
 /// Throws InputError when Q or n is not > 0, or the channel does not slope.
 inline Real normal_depth(const Invert& section, Real discharge, Real manning) {
     require_positive(discharge, "normal_depth.discharge", "m3/s");
-    require_positive(manning, "normal_depth.manning", "s/m^(1/3)");
+    require_positive(manning, "normal_depth.manning", "s/m^(1/3)", "concrete has 0.012 to 0.020");
     require_positive(section.slope, "Invert.slope", "m/m", "uniform flow needs a slope");
     const auto carried = [&](Real depth) {
         const Real area = section.flow_area(depth);
@@ -44,10 +44,11 @@ public:
 
         void validate() const {
             section.validate();
-            require_positive(discharge, "UniformFlow.discharge", "m3/s");
+            require_positive(discharge, "UniformFlow.discharge", "m3/s", "a dry channel needs no fluid");
             require_positive(manning, "UniformFlow.manning", "s/m^(1/3)", "concrete has 0.012 to 0.020");
-            require_positive(density, "UniformFlow.density", "kg/m3");
-            require_positive(viscosity, "UniformFlow.viscosity", "Pa s");
+            require_positive(density, "UniformFlow.density", "kg/m3", "water has 1000 kg/m3");
+            require_positive(viscosity, "UniformFlow.viscosity", "Pa s",
+                             "water has 1.31e-3 Pa s at 10 degrees C");
         }
         void visit(auto&& f) const {
             f("discharge", discharge, "m3/s");

@@ -30,9 +30,9 @@ struct Gravel {
 
     void validate() const {
         require_positive(size, "Gravel.size", "m");
-        require_share(elongation, 0.2, "Gravel.elongation");
-        require_share(flatness, 0.2, "Gravel.flatness");
-        require_share(roundness, 0.05, "Gravel.roundness");
+        require_share(elongation, 0.2, "Gravel.elongation", "it is I / L, 1 where both are equal");
+        require_share(flatness, 0.2, "Gravel.flatness", "it is S / I, 1 where both are equal");
+        require_share(roundness, 0.05, "Gravel.roundness", "1 is round, less has sharper corners");
         require(largest_gap >= 0.002 && largest_gap <= 1,
                 {"Gravel.largest_gap", "in [0.002, 1]", {}, "it is a share of the size"}, largest_gap);
         require(max_spheres >= 9,
@@ -41,8 +41,9 @@ struct Gravel {
     }
 
 private:
-    static void require_share(Real value, Real least, std::string_view field) {
-        require(value >= least && value <= 1, {field, "in [" + short_text(least) + ", 1]"}, value);
+    static void require_share(Real value, Real least, std::string_view field, std::string_view remedy) {
+        require(value >= least && value <= 1, {field, "in [" + short_text(least) + ", 1]", {}, remedy},
+                value);
     }
 };
 

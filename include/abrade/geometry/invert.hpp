@@ -23,7 +23,9 @@ struct Invert {
                 {"Invert.arc_radius", "at least half the width (" + to_text(0.5 * width) + " m)", "m",
                  "widen the arc or narrow the channel"},
                 arc_radius);
-        require(slope >= 0 && slope < 1, {"Invert.slope", "at least 0 and below 1", "m/m"}, slope);
+        require(slope >= 0 && slope < 1,
+                {"Invert.slope", "at least 0 and below 1", "m/m", "it is the sine of the bed's angle"},
+                slope);
     }
 
     Real bed_height(Real y) const noexcept {

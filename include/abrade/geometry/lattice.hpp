@@ -53,7 +53,8 @@ inline void check_size(const LatticeSize& size, Real length, Real width,
     for (const Real each : {length, width}) require_positive(each, side, "m");
     const Real shortest_side = std::min(length, width);
     require_positive(size.sphere_diameter, "LatticeSize.sphere_diameter", "m");
-    require(size.layers >= 1, {"LatticeSize.layers", "at least 1"}, size.layers);
+    require(size.layers >= 1,
+            {"LatticeSize.layers", "at least 1", "", "a scene without concrete has no lattice"}, size.layers);
     require(shortest_side >= size.sphere_diameter,
             {side, "at least one sphere diameter (" + to_text(size.sphere_diameter) + " m)", "m",
              "take smaller spheres or a larger body"},

@@ -28,7 +28,8 @@ public:
             for (std::size_t j = i + 1; j < n; ++j)
                 for (std::size_t k = j + 1; k < n; ++k) add_if_face({i, j, k});
         require(faces_.size() == 2 * n - 4 && n >= 4,
-                {"RoundedPolyhedron.shape", "corners of a convex solid, with 2 n - 4 faces", "faces"},
+                {"RoundedPolyhedron.shape", "corners of a convex solid, with 2 n - 4 faces", "faces",
+                 "leave out points within, and move one where four lie in a face"},
                 static_cast<Real>(faces_.size()));
         set(Mat3::Identity(), 0);
     }

@@ -24,10 +24,12 @@ struct SphereFilling {
     Index samples = 4000;      ///< points of the surface that are watched, at least one a triangle
 
     void validate() const {
-        require(max_spheres >= 1, {"SphereFilling.max_spheres", ">= 1", "spheres"}, max_spheres);
-        require_not_negative(largest_gap, "SphereFilling.largest_gap", "m");
-        require_not_negative(smallest_radius, "SphereFilling.smallest_radius", "m");
-        require(samples >= 1, {"SphereFilling.samples", ">= 1", "points"}, samples);
+        require(max_spheres >= 1,
+                {"SphereFilling.max_spheres", ">= 1", "spheres", "more follow the surface closer"},
+                max_spheres);
+        require_not_negative(largest_gap, "SphereFilling.largest_gap", "m", "0 goes on up to max_spheres");
+        require_not_negative(smallest_radius, "SphereFilling.smallest_radius", "m", "0 allows any");
+        require(samples >= 1, {"SphereFilling.samples", ">= 1", "points", "more see smaller gaps"}, samples);
     }
 };
 
@@ -275,7 +277,8 @@ inline SphereFillingResult fill_with_spheres(const SurfaceMesh& mesh, const Sphe
     deepest = detail::largest_ball_near(deepest, distance);
     require(deepest.radius > 0 && deepest.radius >= limits.smallest_radius,
             {"SphereFilling.smallest_radius",
-             "no larger than the largest inscribed sphere (" + short_text(deepest.radius) + " m)", "m"},
+             "no larger than the largest inscribed sphere (" + short_text(deepest.radius) + " m)", "m",
+             "make it smaller, or check the surface's unit"},
             limits.smallest_radius);
 
     detail::GreedyFilling filling(samples, limits);

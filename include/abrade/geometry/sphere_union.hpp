@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -59,12 +61,17 @@ inline RawMoments exact_moments(std::span<const Sphere> spheres) {
 /// Volume, centroid and inertia tensor of the union of `spheres`: what overlaps counts once.
 /// One and two spheres: closed form (slices of balls). More: detail::SphereSlices, whose error was measured
 /// at 1e-12 of each quantity on rows, grids and heaps of spheres.
-/// Throws InputError when there is no sphere, or one with a radius that is not > 0.
-inline SolidMoments union_moments(std::span<const Sphere> spheres) {
-    require(!spheres.empty(), {"union_moments.spheres", "at least 1 sphere"}, 0);
-    for (const Sphere& s : spheres) {
-        require_positive(s.radius, "Sphere.radius", "m");
-        require(s.centre.allFinite(), {"Sphere.centre", "finite", "m"}, s.centre.sum());
+/// Throws InputError when there is no sphere, a centre that is not finite or a radius that is not > 0;
+/// `field` says in messages whose spheres they are.
+inline SolidMoments union_moments(std::span<const Sphere> spheres,
+                                  std::string_view field = "union_moments.spheres") {
+    require(!spheres.empty(), {field, "at least 1 sphere", "", "give each its centre and its radius"}, 0);
+    for (std::size_t n = 0; n < spheres.size(); ++n) {
+        const auto& [centre, radius] = spheres[n];
+        if (centre.allFinite() && radius > 0 && std::isfinite(radius)) continue;
+        const std::string name = std::string{field} + "[" + std::to_string(n) + "]";
+        require_finite(centre, name + ".centre", "m");
+        require_positive(radius, name + ".radius", "m");
     }
     return spheres.size() <= 2 ? detail::exact_moments(spheres).about_centroid()
                                : detail::slice_moments(spheres);
@@ -81,8 +88,9 @@ struct Clump {
 };
 
 /// Moves `members` into the principal frame of their union. A single sphere stays where it is, exactly.
+/// Throws InputError as `union_moments` does, with the clump's name and the member's number.
 inline Clump make_clump(std::string name, std::vector<Sphere> members) {
-    const SolidMoments moments = union_moments(members);
+    const SolidMoments moments = union_moments(members, "Clump '" + name + "'.members");
     Clump clump{std::move(name), std::move(members), moments.volume, Vec3::Zero(), 0};
     if (clump.members.size() == 1) {
         const Real r = clump.members[0].radius;

@@ -79,19 +79,22 @@ private:
         "numbers in each (or allow a merge_distance)";
 
     void check_triangles() {
-        require(!triangles_.empty(), {"SurfaceMesh.triangles", "at least 4", "triangles"}, 0);
+        require(!triangles_.empty(),
+                {"SurfaceMesh.triangles", "at least 4", "triangles", "is the surface empty?"}, 0);
         low_ = high_ = vertices_.empty() ? Vec3(Vec3::Zero()) : vertices_[0];
-        for (const Vec3& v : vertices_) {
-            require_finite(v, "SurfaceMesh.vertices", "m");
+        for (std::size_t n = 0; n < vertices_.size(); ++n) {
+            const Vec3& v = vertices_[n];
+            if (!v.allFinite()) require_finite(v, "SurfaceMesh.vertices[" + std::to_string(n) + "]", "m");
             low_ = low_.cwiseMin(v);
             high_ = high_.cwiseMax(v);
         }
         for (std::size_t t = 0; t < triangles_.size(); ++t) {
             for (const std::size_t v : triangles_[t])
-                require(v < vertices_.size(),
-                        {"SurfaceMesh.triangles[" + std::to_string(t) + "]",
-                         "made of vertices below " + std::to_string(vertices_.size())},
-                        static_cast<Real>(v));
+                require(
+                    v < vertices_.size(),
+                    {"SurfaceMesh.triangles[" + std::to_string(t) + "]",
+                     "made of vertices below " + std::to_string(vertices_.size()), "", "they count from 0"},
+                    static_cast<Real>(v));
             const Vec3 ab = corner(t, 1) - corner(t, 0), ac = corner(t, 2) - corner(t, 0);
             const Real height_share =
                 ab.cross(ac).norm() / std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
@@ -236,11 +239,16 @@ private:
 /// vertices are dropped. Throws InputError as the constructor of SurfaceMesh does, and when merge_distance
 /// is not >= 0.
 inline SurfaceMesh mesh_of_triangles(std::span<const std::array<Vec3, 3>> loose, Real merge_distance = 0) {
-    require_not_negative(merge_distance, "mesh_of_triangles.merge_distance", "m");
+    require_not_negative(merge_distance, "mesh_of_triangles.merge_distance", "m",
+                         "0 merges equal vertices only");
     Real extent = 0;
-    for (const auto& triangle : loose)
-        for (const Vec3& v : triangle) {
-            require_finite(v, "SurfaceMesh.vertices", "m");
+    for (std::size_t t = 0; t < loose.size(); ++t)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3& v = loose[t][k];
+            if (!v.allFinite())
+                require_finite(
+                    v, "SurfaceMesh.triangles[" + std::to_string(t) + "].corners[" + std::to_string(k) + "]",
+                    "m", "mend the surface where it was made");
             extent = std::max(extent, v.cwiseAbs().maxCoeff());
         }
     detail::PointNumbers numbers(merge_distance, 1e-6 * extent);

@@ -57,11 +57,16 @@ struct Checkpoint {
     template <class Value>
     const Value& attribute(std::string_view name) const {
         const auto found = attributes.find(name);
-        if (found == attributes.end()) throw InputError("checkpoint has no attribute " + std::string{name});
+        if (found == attributes.end()) {
+            std::string known;
+            for (const auto& entry : attributes) known += " " + entry.first;
+            throw InputError("checkpoint has no attribute " + std::string{name} +
+                             "; it has:" + (known.empty() ? " nothing" : known));
+        }
         const Value* value = std::get_if<Value>(&found->second);
         if (value == nullptr)
             throw InputError("checkpoint attribute " + std::string{name} +
-                             " is of another kind than asked for");
+                             " is of another kind than asked for; ask for what was saved");
         return *value;
     }
 };
@@ -85,7 +90,7 @@ inline void save_fields(const std::filesystem::path& path, std::span<const Field
                         {label + "." + std::string{field.name},
                          "as long as the other columns of its group (" +
                              std::to_string(group.fields.front().count()) + ")",
-                         "rows"},
+                         "rows", "put it into another group"},
                         static_cast<Real>(field.count()));
                 file.write(group.name, field);
             }
@@ -113,10 +118,11 @@ inline Checkpoint load_fields(const std::filesystem::path& path) {
     checkpoint.attributes = file.attributes();
     const auto version = checkpoint.attributes.find(checkpoint_version_name);
     if (version == checkpoint.attributes.end())
-        throw InputError("cannot read '" + path.string() + "': it is an HDF5 file but not a checkpoint");
+        throw InputError("cannot read '" + path.string() +
+                         "': it is an HDF5 file but not a checkpoint; name one that save_fields() wrote");
     if (version->second != AttributeValue{checkpoint_version})
         throw InputError("cannot read '" + path.string() + "': it is a checkpoint of another version than " +
-                         std::to_string(checkpoint_version));
+                         std::to_string(checkpoint_version) + "; read it with the Abrade that saved it");
     checkpoint.attributes.erase(version);
     for (const std::string& group : file.names()) {
         std::vector<Column>& columns = checkpoint.groups[group];

@@ -267,10 +267,13 @@ private:
     static void check(const FieldView& field) {
         const std::string label = "FieldView '" + std::string{field.name} + "'";
         if (field.name.empty() || field.name.find('/') != field.name.npos || field.name == ".")
-            fail({label, "named, without '/'"}, "'" + std::string{field.name} + "'");
-        require(field.components >= 1, {label, "of one component or more"}, field.components);
+            fail({label, "named, without '/'", {}, "what it lies in is the group"},
+                 "'" + std::string{field.name} + "'");
+        require(field.components >= 1,
+                {label, "of one component or more", {}, "1 for numbers, 3 for vectors"}, field.components);
         require(field.values.size() % static_cast<std::size_t>(field.components) == 0,
-                {label, "whole rows of " + std::to_string(field.components) + " components", "values"},
+                {label, "whole rows of " + std::to_string(field.components) + " components", "values",
+                 "check its components and its values"},
                 static_cast<Real>(field.values.size()));
     }
 

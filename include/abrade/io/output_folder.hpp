@@ -90,7 +90,7 @@ private:
 
     /// Absolute, links followed, so that the sibling is on the same disk.
     static std::filesystem::path resolve(const std::filesystem::path& given) {
-        if (given.empty()) fail({"output folder", "a path"}, "''");
+        if (given.empty()) fail({"output folder", "a path", {}, "name a folder"}, "''");
         std::error_code error;
         std::filesystem::path path =
             std::filesystem::weakly_canonical(std::filesystem::absolute(given), error);

@@ -31,7 +31,7 @@ public:
                           Hdf5Storage storage = {.number = StoredNumber::real32, .gzip = 1})
         : stem_{stem}, storage_{storage}, data_{Hdf5File::create(with_suffix(".h5"))} {
         if (storage.number == StoredNumber::int32)
-            fail({"SeriesWriter storage", "real32 or real64"}, "int32");
+            fail({"SeriesWriter storage", "real32 or real64", {}, "positions are no whole numbers"}, "int32");
     }
 
     /// Stores, once, what does not change: positions [m] (3 components) and fields of a cloud. Every later
@@ -54,7 +54,8 @@ public:
         const std::size_t points = checked_count(c, positions);
         require(c.constant_fields.empty() || points == c.points,
                 {"SeriesWriter." + c.name + " positions",
-                 "as many as those of its constant fields (" + std::to_string(c.points) + ")", "points"},
+                 "as many as those of its constant fields (" + std::to_string(c.points) + ")", "points",
+                 "call set_constant again"},
                 static_cast<Real>(points));
         add_time(c, time, points, &positions, fields);
     }
@@ -63,7 +64,10 @@ public:
     void write(std::string_view cloud, Real time, std::span<const FieldView> fields) {
         Cloud& c = find_or_begin(cloud);
         if (c.constant_geometry.empty())
-            fail({"SeriesWriter." + c.name, "given positions by set_constant before it is written without"},
+            fail({"SeriesWriter." + c.name,
+                  "given positions by set_constant before it is written without",
+                  {},
+                  "call it once"},
                  "none");
         add_time(c, time, c.points, nullptr, fields);
     }
@@ -103,7 +107,7 @@ private:
     Cloud& find_or_begin(std::string_view name) {
         if (const auto found = clouds_.find(name); found != clouds_.end()) return found->second;
         if (name.empty() || name.find_first_of("/<>&\"' ") != name.npos)
-            fail({"SeriesWriter cloud", "a name without spaces, '/' or signs of XML"},
+            fail({"SeriesWriter cloud", "a name without spaces, '/' or signs of XML", {}, "join words by _"},
                  "'" + std::string{name} + "'");
         Cloud& c = clouds_[std::string{name}];
         c.name = name;
@@ -129,7 +133,8 @@ private:
     }
 
     static std::size_t checked_count(const Cloud& c, const FieldView& positions) {
-        require(positions.components == 3, {"SeriesWriter." + c.name + " positions", "of 3 components"},
+        require(positions.components == 3,
+                {"SeriesWriter." + c.name + " positions", "of 3 components", {}, "x, y and z of each point"},
                 positions.components);
         return positions.count();
     }
@@ -144,17 +149,18 @@ private:
             field.values.size() == points * static_cast<std::size_t>(field.components),
             {"SeriesWriter." + c.name + "." + std::string{field.name},
              "one row per point (" + std::to_string(points) + " x " + std::to_string(field.components) + ")",
-             "values"},
+             "values", "does it belong to another cloud?"},
             static_cast<Real>(field.values.size()));
         return store(group, field);
     }
 
     void add_time(Cloud& c, Real time, std::size_t points, const FieldView* positions,
                   std::span<const FieldView> fields) {
-        require(std::isfinite(time) && time > c.last_time,
-                {"SeriesWriter." + c.name + " time",
-                 "later than the one before (" + to_text(c.last_time) + ")", "s"},
-                time);
+        require(
+            std::isfinite(time) && time > c.last_time,
+            {"SeriesWriter." + c.name + " time", "later than the one before (" + to_text(c.last_time) + ")",
+             "s", "write each time once, in order"},
+            time);
         const std::string group = c.name + "/time_" + std::to_string(c.times);
         std::string text = "      <Grid Name=\"" + c.name +
                            "\" GridType=\"Uniform\">\n        <Time Value=\"" + to_text(time) + "\"/>\n" +

@@ -27,8 +27,9 @@ struct StlOptions {
     Real merge_distance = 0;  ///< vertices within this of one another are one [m]; 0: equal ones only
 
     void validate() const {
-        require_positive(unit, "StlOptions.unit", "m");
-        require_not_negative(merge_distance, "StlOptions.merge_distance", "m");
+        require_positive(unit, "StlOptions.unit", "m", "1e-3 for a file in millimetres");
+        require_not_negative(merge_distance, "StlOptions.merge_distance", "m",
+                             "0 merges equal vertices only");
     }
 };
 

@@ -35,25 +35,30 @@ struct FeedParams {
 
     void validate() const {
         require_positive(volume_rate, "Feed.volume_rate", "m3/s");
-        require_positive(density, "Feed.density", "kg/m3");
-        require(velocity.allFinite(), {"Feed.velocity", "finite", "m/s"}, velocity.sum());
-        require(std::isfinite(start), {"Feed.start", "finite", "s"}, start);
-        require(!classes.empty(), {"Feed.classes", "at least one stone class"}, 0);
+        require_positive(density, "Feed.density", "kg/m3", "stone has 2500 to 2800");
+        require_finite(velocity, "Feed.velocity", "m/s");
+        require_finite(start, "Feed.start", "s");
+        require(!classes.empty(),
+                {"Feed.classes", "at least one stone class", "", "or leave Scene.feed empty"}, 0);
+        const auto name = [](std::size_t n) { return "Feed.classes[" + std::to_string(n) + "]"; };
         Real total = 0;
-        for (const StoneClass& c : classes) {
-            require_positive(c.size, "Feed.classes.size", "m");
-            require_not_negative(c.fraction, "Feed.classes.fraction");
-            total += c.fraction;
+        for (std::size_t n = 0; n < classes.size(); ++n) {
+            require_positive(classes[n].size, name(n) + ".size", "m");
+            require_not_negative(classes[n].fraction, name(n) + ".fraction");
+            total += classes[n].fraction;
         }
         require(std::abs(total - 1) < 1e-6,
                 {"Feed.classes.fraction (sum)", "1", "", "let the fractions add up to 1"}, total);
         const Vec3 size = region.high - region.low;
-        require(size.minCoeff() > 0 && size.allFinite(), {"Feed.region", "a finite box with low < high", "m"},
-                size.minCoeff());
-        for (const StoneClass& c : classes) {
-            const Real across = 2 * make_stone(c.shape, c.size).bounding_radius;
+        for (int a = 0; a < 3; ++a)
+            require(size[a] > 0 && std::isfinite(size[a]),
+                    {std::string("Feed.region along ") + "xyz"[a], "finite and low < high, high - low", "m",
+                     "give both corners, the lower one first"},
+                    size[a]);
+        for (std::size_t n = 0; n < classes.size(); ++n) {
+            const Real across = 2 * make_stone(classes[n].shape, classes[n].size).bounding_radius;
             require(across <= std::min(size.x(), size.y()),
-                    {"Feed.classes.size of " + to_text(c.size) + " m: the stone's length",
+                    {name(n) + ".size of " + to_text(classes[n].size) + " m: the stone's length",
                      "at most the feed region's " + to_text(std::min(size.x(), size.y())) + " m", "m",
                      "widen the region or feed smaller stones"},
                     across);

@@ -31,10 +31,13 @@ public:
         Real tangential_weight = 1;  ///< [-]
 
         void validate() const {
-            require_not_negative(coefficient, "SubParticleAbrasion.coefficient", "m3/J");
-            require_positive(acceleration, "SubParticleAbrasion.acceleration");
-            require_not_negative(normal_weight, "SubParticleAbrasion.normal_weight");
-            require_not_negative(tangential_weight, "SubParticleAbrasion.tangential_weight");
+            require_not_negative(coefficient, "SubParticleAbrasion.coefficient", "m3/J", "0 wears nothing");
+            require_positive(acceleration, "SubParticleAbrasion.acceleration", "",
+                             "1 does not accelerate wear");
+            require_not_negative(normal_weight, "SubParticleAbrasion.normal_weight", "",
+                                 "0 leaves impacts out");
+            require_not_negative(tangential_weight, "SubParticleAbrasion.tangential_weight", "",
+                                 "0 leaves sliding out");
         }
         void visit(auto&& f) const {
             f("coefficient", coefficient, "m3/J");
