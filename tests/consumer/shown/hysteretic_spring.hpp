@@ -33,7 +33,7 @@ public:
         const double k1 = params_.stiffness, e2 = abrade::square(params_.restitution);
         const Number none(0), overlap = max(contact.overlap, none), deepest = max(memory.deepest, overlap);
         const Number spring = max(overlap - Number(1 - e2) * deepest, none), force = Number(k1 / e2) * spring;
-        const Number grown2 = deepest * deepest - memory.deepest * memory.deepest;
+        const Number grown2 = (deepest - memory.deepest) * (deepest + memory.deepest);  // never below 0
         return {{force * contact.normal, Number(0.5) * force * spring, Number(0.5 * k1 * (1 - e2)) * grown2,
                  none},
                 {select(contact.overlap > none, deepest, none)}};
