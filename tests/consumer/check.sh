@@ -26,6 +26,9 @@ fi
 "$work/build/consumer"
 
 if [ "$kind" = package ]; then
+    said="$(OMP_NUM_THREADS=1 "$work/build/own_law")"
+    grep -Eq '^restitution 0\.(599|600)' <<<"$said" || { printf 'own_law said:\n%s\n' "$said"; exit 1; }
+
     # A component that is not there is refused by name.
     mkdir "$work/wrong"
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(wrong CXX)\nfind_package(abrade REQUIRED COMPONENTS oi)\n' \

@@ -1,0 +1,56 @@
+// Programs that pages show are the tested ones, and the check of that can fail.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string read(const fs::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Files of tests/consumer/shown that no page below `root` holds as a whole code block.
+std::vector<std::string> not_shown(const fs::path& root) {
+    std::string pages = read(root / "README.md");
+    for (const auto& entry : fs::directory_iterator(root / "docs"))
+        if (entry.path().extension() == ".md") pages += read(entry.path());
+    std::vector<std::string> found;
+    for (const auto& entry : fs::directory_iterator(root / "tests/consumer/shown"))
+        if (pages.find("\n```cpp\n" + read(entry.path()) + "```\n") == std::string::npos)
+            found.push_back(entry.path().filename().string());
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("what pages show is what is tested, to the letter") {
+    for (const std::string& file : not_shown(fs::path(ABRADE_INCLUDE_DIR).parent_path()))
+        FAIL_CHECK("tests/consumer/shown/" << file << " stands in no code block of README.md or docs/*.md");
+}
+
+TEST_CASE("a page that shows something else is found") {
+    const fs::path root = "made_up_house";
+    fs::remove_all(root);
+    fs::create_directories(root / "docs");
+    fs::create_directories(root / "tests/consumer/shown");
+    std::ofstream(root / "tests/consumer/shown/law.hpp") << "int law;\n";
+    const auto shows = [&](const std::string& page, const std::string& text) {
+        std::ofstream(root / page) << text;
+        return not_shown(root).empty();
+    };
+    CHECK(!shows("README.md", "No code.\n"));
+    CHECK(!shows("docs/law.md", "\n```cpp\nint  law;\n```\n"));
+    CHECK(!shows("docs/law.md", "\n```cpp\nint law;\nint more;\n```\n"));
+    CHECK(shows("docs/law.md", "\n```cpp\nint law;\n```\n"));
+    CHECK(!shows("docs/law.md", "Gone.\n"));
+    CHECK(shows("README.md", "\n```cpp\nint law;\n```\n"));
+    fs::remove_all(root);
+}
