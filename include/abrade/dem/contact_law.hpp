@@ -5,7 +5,7 @@
 // positive, `force` is the force on i, `velocity` is that of i relative to j at the contact point.
 
 #include <abrade/core/law.hpp>
-#include <abrade/core/pack.hpp>
+#include <abrade/core/simd.hpp>
 
 #include <compare>
 
