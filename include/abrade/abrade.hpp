@@ -1,7 +1,9 @@
 #pragma once
 // The whole house, but for files: <abrade/io/...> needs HDF5 and is included on its own.
 
+#include <abrade/bond/elastic_brittle.hpp>
 #include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/bond/parallel_bond.hpp>
 #include <abrade/coupling/drag.hpp>
 #include <abrade/dem/hertz_mindlin.hpp>
 #include <abrade/dem/linear_spring.hpp>

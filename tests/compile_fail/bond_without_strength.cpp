@@ -12,9 +12,7 @@ struct Eternal {
     const Params& params() const noexcept;
     abrade::BondResponse<Memory> respond(const abrade::BondKinematics&, abrade::Real,
                                          const Memory&) const noexcept;
-    abrade::Real stiffness() const noexcept;
-    abrade::Real tangential_stiffness() const noexcept;
-    abrade::Real damping_ratio() const noexcept;
+    abrade::BondRigidity rigidity(abrade::Real, abrade::Real) const noexcept;
 };
 
 int main() {

@@ -22,7 +22,7 @@ Real sum_of_areas(const Lattice& lattice) {
 }
 Real closest_pair(const Lattice& lattice) {
     Real closest = 1e300;
-    for (const auto& [i, j] : lattice.neighbours())
+    for (const auto& [i, j] : lattice.bonds)
         closest = std::min(closest, (lattice.sites[static_cast<std::size_t>(i)].centre -
                                      lattice.sites[static_cast<std::size_t>(j)].centre)
                                         .norm());
@@ -77,7 +77,7 @@ TEST_CASE("sites stand where site() says, neighbours are counted once") {
         const LatticeSite& site = lattice.sites[static_cast<std::size_t>(s)];
         CHECK(lattice.site(site.along, site.across, site.layer) == s);
     }
-    const auto pairs = lattice.neighbours();
+    const auto pairs = lattice.bonds;
     CHECK(pairs.size() == 4 * 4 * 3 + 5 * 3 * 3 + 5 * 4 * 2);
     std::set<std::pair<Index, Index>> seen;
     for (const auto& [i, j] : pairs) {
@@ -156,4 +156,72 @@ TEST_CASE("a slab with a NaN or infinite width is refused") {
     CHECK_THROWS_AS(flat_lattice(1, nan, {}), InputError);
     CHECK_THROWS_AS(flat_lattice(1, infinite, {}), InputError);
     CHECK_THROWS_AS(flat_lattice(infinite, 1, {}), InputError);
+}
+
+TEST_CASE(
+    "hexagonal lattice: twelve neighbours inside, none nearer than a diameter, the whole body's volume") {
+    for (const Real stretch : {1.0, 1.03}) {
+        const Real d = 0.02, length = d + 11.5 * d * stretch,
+                   width = d + (11 - 2.0 / 3) * d * std::sqrt(0.75) * stretch;
+        const Lattice lattice = hexagonal_lattice(length, width, {.sphere_diameter = d, .layers = 6});
+        REQUIRE(lattice.count_along == 12);
+        REQUIRE(lattice.count_across == 11);
+        std::vector<int> degree(lattice.sites.size(), 0);
+        for (const auto& [i, j] : lattice.bonds) {
+            const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+            CHECK(i < j);
+            CHECK((lattice.sites[a].centre - lattice.sites[b].centre).norm() >= d * (1 - 1e-9));
+            ++degree[a], ++degree[b];
+        }
+        Real volume = 0, area = 0;
+        int touching = 0;
+        for (std::size_t s = 0; s < lattice.sites.size(); ++s) {
+            const LatticeSite& site = lattice.sites[s];
+            volume += site.cell_volume;
+            const bool inside = site.along > 0 && site.along < 11 && site.across > 0 && site.across < 10 &&
+                                site.layer > 0 && site.layer < 5;
+            CHECK(site.held == (site.layer == 5));
+            CHECK(std::abs(site.centre.x()) + 0.5 * d <= 0.5 * length * (1 + 1e-9));
+            CHECK(std::abs(site.centre.y()) + 0.5 * d <= 0.5 * width * (1 + 1e-9));
+            if (!inside) continue;
+            CHECK(degree[s] == 12);
+            ++touching;
+        }
+        for (const Real column : lattice.column_area) area += column;
+        CHECK(touching == 10 * 9 * 4);
+        const Real height = d + 5 * d * std::sqrt(2.0 / 3);
+        CHECK(area == doctest::Approx(length * width).epsilon(1e-12).scale(0));
+        CHECK(volume == doctest::Approx(length * width * height).epsilon(1e-12).scale(0));
+    }
+}
+
+TEST_CASE("a body from spheres that stand anywhere: bonds by brute force, shares, columns, what is held") {
+    std::vector<Vec3> centres;
+    const Real r = 0.01;
+    for (int n = 0; n < 400; ++n)  // a spiral of sorts, so that no axis is special
+        centres.push_back({0.06 * std::cos(1.7 * n), 0.05 * std::sin(2.3 * n), 0.0005 * n});
+    const Lattice lattice = lattice_of(centres, r, 3e-3, 0.1, 0.01);
+    std::vector<std::pair<Index, Index>> pairs;
+    for (Index i = 0; i < 400; ++i)
+        for (Index j = i + 1; j < 400; ++j)
+            if ((centres[static_cast<std::size_t>(i)] - centres[static_cast<std::size_t>(j)]).norm() <=
+                2.2 * r)
+                pairs.emplace_back(i, j);
+    CHECK(lattice.bonds == pairs);
+    Real volume = 0;
+    for (std::size_t s = 0; s < lattice.sites.size(); ++s) {
+        const LatticeSite& site = lattice.sites[s];
+        CHECK(site.centre == centres[s]);
+        CHECK(site.held == (centres[s].z() < 0.01));
+        REQUIRE(site.column >= 0);
+        REQUIRE(static_cast<std::size_t>(site.column) < lattice.column_area.size());
+        volume += site.cell_volume;
+    }
+    CHECK(volume == doctest::Approx(3e-3).epsilon(1e-12).scale(0));
+    CHECK_THROWS_AS(lattice_of({}, r, 1e-3), InputError);
+    CHECK_THROWS_AS(lattice_of(centres, 0, 1e-3), InputError);
+    CHECK_THROWS_AS(lattice_of(centres, r, -1), InputError);
+    centres[7].y() = std::nan("");
+    CHECK_THROWS_WITH_AS(lattice_of(centres, r, 1e-3), doctest::Contains("lattice_of.centres[7].y"),
+                         InputError);
 }

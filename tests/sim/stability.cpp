@@ -107,7 +107,7 @@ auto block(Index side, Real damping, Real ratio) {
             free.p().add(ball, 2400, {.position = site.centre},
                          site.layer + 1 == side ? Kind::fixed : Kind::concrete);
         std::vector<BondedPair> bonded;
-        for (const auto& [i, j] : lattice.neighbours())
+        for (const auto& [i, j] : lattice.bonds)
             if (lattice.sites[static_cast<std::size_t>(i)].layer + 1 < side)
                 bonded.push_back({i, j});  // not within the fixed base
         free.state.network.build(free.p(), bonded);

@@ -13,18 +13,32 @@ struct BondKinematics {
     Real compression = 0;          ///< rest length - length [m]; negative in tension
     Vec3 velocity = Vec3::Zero();  ///< of i relative to j, halfway between the spheres [m/s]
     Real radius = 0;               ///< of the bonded spheres (the smaller) [m]
+    Real length = 0;               ///< between their centres, unloaded [m]
     Real effective_mass = 0;       ///< [kg]
     Real time_step = 0;            ///< [s]
     Vec3 travel = Vec3::Zero();    ///< of i relative to j, over the step that led here [m]
+
+    // What laws that carry moments see beside (`CarriesMoments`); nobody fills it in for the others.
+    Vec3 spin = Vec3::Zero();    ///< angular velocity of i relative to j [rad/s]
+    Vec3 turn = Vec3::Zero();    ///< over the step that led here [rad]
+    Real effective_inertia = 0;  ///< 1/(1/I_i + 1/I_j) [kg m2]
+};
+
+/// How stiff a bond is.
+struct BondRigidity {
+    Real normal = 0, tangential = 0;  ///< [N/m]
+    Real damping_ratio = 0;           ///< share of critical damping [-]
+    Real bending = 0, twisting = 0;   ///< of laws that carry moments [N m]
 };
 
 /// The answer. Losses are energies over the step centred on t_n, never negative.
 struct BondLoad {
-    Vec3 force = Vec3::Zero();  ///< on i [N]
-    Real stored = 0;            ///< [J]
-    Real lost_bond = 0;         ///< damping while intact, and what is released as the bond breaks [J]
-    Real lost_normal = 0;       ///< by a broken bond, which is a contact [J]
-    Real lost_tangential = 0;   ///< by a broken bond, which is a contact [J]
+    Vec3 force = Vec3::Zero();   ///< on i [N]
+    Real stored = 0;             ///< [J]
+    Real lost_bond = 0;          ///< damping while intact, and what is released as the bond breaks [J]
+    Real lost_normal = 0;        ///< by a broken bond, which is a contact [J]
+    Real lost_tangential = 0;    ///< by a broken bond, which is a contact [J]
+    Vec3 couple = Vec3::Zero();  ///< on i, its opposite on j; of laws that carry moments alone [N m]
 };
 
 template <class Memory>
@@ -37,7 +51,7 @@ struct BondResponse {
 /// A bond law is a pure function of kinematics, what is left of the strength (1 sound, 0 gone), and memory.
 /// - `Memory` value-initialises to "sound, unloaded"; `memory.broken` tells what became of it;
 /// - `strength(left_i, left_j)` joins what is left of the strength of the two spheres;
-/// - stiffnesses [N/m] and damping let the engine find the stable step of the network.
+/// - `rigidity(radius, length)` lets the engine find the stable step of the network.
 // clang-format off
 template <class B>
 concept BondLaw = Law<B> &&
@@ -46,11 +60,13 @@ concept BondLaw = Law<B> &&
     { memory.broken } -> std::convertible_to<bool>;
     { law.respond(bond, Real{}, memory) } noexcept -> std::same_as<BondResponse<typename B::Memory>>;
     { law.strength(Real{}, Real{}) } noexcept -> std::same_as<Real>;
-    { law.stiffness() } -> std::same_as<Real>;
-    { law.tangential_stiffness() } -> std::same_as<Real>;
-    { law.damping_ratio() } -> std::same_as<Real>;
+    { law.rigidity(Real{}, Real{}) } noexcept -> std::same_as<BondRigidity>;
 };
 // clang-format on
+
+/// Asks for the spin of its two spheres and answers with a couple. `carries_moments` may be left out.
+template <class B>
+concept CarriesMoments = B::carries_moments;
 
 /// Nothing is bonded: no memory, no work, no code.
 struct NoBond {
@@ -68,9 +84,7 @@ struct NoBond {
     }
     BondResponse<Memory> respond(const BondKinematics&, Real, const Memory&) const noexcept { return {}; }
     Real strength(Real, Real) const noexcept { return 0; }
-    Real stiffness() const noexcept { return 0; }
-    Real tangential_stiffness() const noexcept { return 0; }
-    Real damping_ratio() const noexcept { return 0; }
+    BondRigidity rigidity(Real, Real) const noexcept { return {}; }
 };
 
 static_assert(BondLaw<NoBond>);

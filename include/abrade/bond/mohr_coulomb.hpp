@@ -1,7 +1,7 @@
 #pragma once
 // Bonds that yield on a straight Mohr-Coulomb line whose tensile cut-off degrades with wear.
 
-#include <abrade/bond/bond_law.hpp>
+#include <abrade/bond/bond_springs.hpp>
 
 namespace abrade {
 
@@ -63,43 +63,19 @@ public:
     explicit MohrCoulomb(Params params) : params_(params) {
         params_.validate();
         tan_phi_ = std::tan(radians(params_.friction_angle));
-        dashpot_normal_ = 2 * params_.damping * std::sqrt(stiffness());
-        dashpot_shear_ = 2 * params_.damping * std::sqrt(tangential_stiffness());
     }
     const Params& params() const noexcept { return params_; }
 
     BondResponse<Memory> respond(const BondKinematics& bond, Real strength_left,
                                  const Memory& memory) const noexcept {
-        const Real kn = stiffness(), ks = tangential_stiffness(), dt = bond.time_step;
-        const Real approach = -bond.velocity.dot(bond.normal);
-        const Vec3 slip = bond.velocity + approach * bond.normal;
-        const Vec3 way = bond.travel - bond.travel.dot(bond.normal) * bond.normal;
-        const Vec3 before = turn_into_plane(memory.spring, bond.normal), shear = before + way;
-        const Real root_mass = std::sqrt(bond.effective_mass);
-        const Real cn = root_mass * dashpot_normal_, cs = root_mass * dashpot_shear_;
-
-        if (!memory.broken) {
-            const Real fn = kn * bond.compression, limit = strength_left * capacity(bond.radius);
-            const Real shear2 = shear.squaredNorm();
-            const Real elastic = 0.5 * kn * square(bond.compression) + 0.5 * ks * shear2;
-            if (-fn > limit) return {{Vec3::Zero(), 0, elastic, 0, 0}, {Vec3::Zero(), true}, Fate::tension};
-            if (square(ks) * shear2 <= square((fn + limit) * tan_phi_)) {
-                const Vec3 force = (fn + cn * approach) * bond.normal - ks * shear - cs * slip;
-                const Real damped = (cn * square(approach) + cs * slip.squaredNorm()) * dt;
-                return {{force, elastic, damped, 0, 0}, {shear, false}, Fate::intact};
-            }
-            if (bond.compression <= 0)
-                return {{Vec3::Zero(), 0, elastic, 0, 0}, {Vec3::Zero(), true}, Fate::shear};
-            BondResponse<Memory> broken = slide(bond, before, shear, cn, cs);
-            broken.load.lost_bond = std::max(0.0, elastic - broken.load.stored) + broken.load.lost_normal;
-            broken.load.lost_normal = broken.load.lost_tangential = 0;
-            broken.fate = Fate::shear;
-            return broken;
-        }
-        if (bond.compression > 0) return slide(bond, before, shear, cn, cs);
-        return {{Vec3::Zero(), 0, 0, 0, 0.5 * ks * memory.spring.squaredNorm()},
-                {Vec3::Zero(), true},
-                Fate::intact};
+        const BondRigidity k = rigidity(bond.radius, bond.length);
+        const BondSprings springs(bond, k, tan_phi_, memory.spring);
+        if (memory.broken) return springs.broken<Memory>();
+        const Real limit = strength_left * capacity(bond.radius);
+        if (-springs.push() > limit) return springs.breaks<Memory>(Fate::tension);
+        if (springs.shear_force() > (springs.push() + limit) * tan_phi_)
+            return springs.breaks<Memory>(Fate::shear);
+        return {springs.sound(), {springs.shear(), false}, Fate::intact};
     }
 
     Real strength(Real left_i, Real left_j) const noexcept {
@@ -113,27 +89,13 @@ public:
 
     Real stiffness() const noexcept { return params_.stiffness; }
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.stiffness_ratio; }
-    Real damping_ratio() const noexcept { return params_.damping; }
-
-private:
-    /// A broken bond: spring, dashpot and slider without tension.
-    BondResponse<Memory> slide(const BondKinematics& bond, const Vec3& before, const Vec3& shear, Real cn,
-                               Real cs) const noexcept {
-        const Real dt = bond.time_step, approach = -bond.velocity.dot(bond.normal);
-        const Vec3 slip = bond.velocity + approach * bond.normal;
-        const Real depth = std::max(bond.compression, 0.0), push = stiffness() * depth;
-        const auto normal = NormalSpring<Real>::pushing(push, 0.5 * push * depth, cn, approach, dt);
-        const auto tangential = SlidingSpring<Real>::at(before, shear, slip, tan_phi_ * normal.force,
-                                                        tangential_stiffness(), cs, dt);
-        const Vec3 force = normal.force * bond.normal + tangential.force;
-        return {{force, normal.stored + tangential.stored, 0, normal.lost, tangential.lost},
-                {tangential.spring, true},
-                Fate::intact};
+    BondRigidity rigidity(Real /*radius*/, Real /*length*/) const noexcept {
+        return {stiffness(), tangential_stiffness(), params_.damping};
     }
 
+private:
     Params params_;
     Real tan_phi_ = 0;
-    Real dashpot_normal_ = 0, dashpot_shear_ = 0;  ///< 2 zeta sqrt(k); times sqrt(m_eff) [N s/m]
 };
 
 static_assert(BondLaw<MohrCoulomb>);

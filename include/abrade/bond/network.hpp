@@ -32,6 +32,17 @@ struct BondSums {
     }
 };
 
+/// How the two of a bond moved when last seen, the first relative to the second.
+template <class Law>
+struct SeenEnds {
+    Vec3 velocity = Vec3::Zero();  ///< halfway between them [m/s]
+};
+template <CarriesMoments Law>
+struct SeenEnds<Law> {
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    Vec3 spin = Vec3::Zero();      ///< [rad/s]
+};
+
 /// Two bodies that are held together.
 struct BondedPair {
     Index first = 0, second = 0;
@@ -50,8 +61,9 @@ public:
         Real rest_length = 0;        ///< [m]
         Real radius = 0;             ///< the smaller [m]
         Real effective_mass = 0;     ///< [kg]
+        Real effective_inertia = 0;  ///< [kg m2]
         Real stored = 0;             ///< when last evaluated [J]
-        Vec3 before = Vec3::Zero();  ///< velocity halfway between the spheres, as last seen [m/s]
+        SeenEnds<Law> before{};
         typename Law::Memory memory{};
     };
 
@@ -68,8 +80,10 @@ public:
             bond.bodies = {particles.body[i], particles.body[j]};
             bond.rest_length = (particles.centre[i] - particles.centre[j]).norm();
             bond.radius = std::min(particles.radius[i], particles.radius[j]);
-            bond.effective_mass = 1 / (particles.inverse_mass[at(bond.bodies.first)] +
-                                       particles.inverse_mass[at(bond.bodies.second)]);
+            const auto a = at(bond.bodies.first), b = at(bond.bodies.second);
+            bond.effective_mass = 1 / (particles.inverse_mass[a] + particles.inverse_mass[b]);
+            bond.effective_inertia =
+                1 / (particles.inverse_inertia[a].maxCoeff() + particles.inverse_inertia[b].maxCoeff());
         }
         first_bond_.assign({0, size()});
     }
@@ -173,12 +187,20 @@ private:
         bond.compression = held.rest_length - length;
         const Vec3 velocity = lines.motion[i].velocity - lines.motion[j].velocity -
                               (lambda * (lines.motion[i].rim + lines.motion[j].rim)).cross(bond.normal);
-        bond.velocity = velocity + step.ahead * (velocity - held.before);
+        bond.velocity = velocity + step.ahead * (velocity - held.before.velocity);
         bond.travel = step.time_step * velocity;
-        bond.radius = held.radius;
+        if constexpr (CarriesMoments<Law>) {
+            const Vec3 spin = lines.motion[i].curvature * lines.motion[i].rim -
+                              lines.motion[j].curvature * lines.motion[j].rim;
+            bond.spin = spin + step.ahead * (spin - held.before.spin);
+            bond.turn = step.time_step * spin;
+            bond.effective_inertia = held.effective_inertia;
+            held.before.spin = spin;
+        }
+        bond.radius = held.radius, bond.length = held.rest_length;
         bond.effective_mass = held.effective_mass;
         bond.time_step = step.time_step;
-        held.before = velocity;
+        held.before.velocity = velocity;
 
         const auto [answer, memory, fate] = law.respond(
             bond, law.strength(strength_left(held.bodies.first), strength_left(held.bodies.second)),
@@ -211,6 +233,10 @@ private:
         SphereLoad &first = lines.load[i], &second = lines.load[j];
         first.force += answer.force, first.worn += worn_off, first.lever += lever;
         second.force -= answer.force, second.worn += worn_off, second.lever += lever;
+        if constexpr (CarriesMoments<Law>) {
+            first.lever += lines.motion[i].curvature * answer.couple;  // a torque over the radius
+            second.lever -= lines.motion[j].curvature * answer.couple;
+        }
     }
 
     /// Bodies at the other ends of a body's sound bonds, one after the other.

@@ -1,8 +1,11 @@
 #pragma once
-// Cubic lattices of spheres: a flat slab, and one bent along the arc of an invert.
+// Spheres that stand for a body of concrete: cubic lattices (a slab, the bed of an invert), a hexagonal close
+// packing, and any packing that came from elsewhere.
 
 #include <abrade/geometry/invert.hpp>
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,33 +15,22 @@ namespace abrade {
 struct LatticeSite {
     Vec3 centre = Vec3::Zero();              ///< [m]
     Real cell_volume = 0;                    ///< [m3]; the cells fill the body without gaps
-    Index along = 0, across = 0, layer = 0;  ///< layer 0 is the surface
+    Index along = 0, across = 0, layer = 0;  ///< of regular lattices; layer 0 is the surface
+    Index column = 0;                        ///< of the surface that stands above it
+    bool held = false;                       ///< fixed, as if cast on rock
 };
 
-/// Spheres of one radius on a cubic lattice; layers are counted from the surface down.
-/// Order of sites: `along`, then `across`, then `layer`, the last fastest.
+/// Spheres of one radius. In regular lattices layers are counted from the surface down, and the order of
+/// sites is `along`, then `across`, then `layer`, the last fastest.
 struct Lattice {
     Real radius = 0;  ///< of the spheres [m]
     Index count_along = 0, count_across = 0, count_layers = 0;
     std::vector<LatticeSite> sites;
-    std::vector<Real> column_area;  ///< [along x across] surface of a column's top [m2]
+    std::vector<Real> column_area;               ///< [column] surface of its top [m2]
+    std::vector<std::pair<Index, Index>> bonds;  ///< pairs of sites that are held together, first < second
 
     Index site(Index along, Index across, Index layer) const noexcept {
         return (along * count_across + across) * count_layers + layer;
-    }
-
-    /// The nearest neighbours along the three lattice directions, as pairs of sites (first < second).
-    std::vector<std::pair<Index, Index>> neighbours() const {
-        std::vector<std::pair<Index, Index>> pairs;
-        pairs.reserve(3 * sites.size());
-        for (Index i = 0; i < count_along; ++i)
-            for (Index j = 0; j < count_across; ++j)
-                for (Index k = 0; k < count_layers; ++k) {
-                    if (k + 1 < count_layers) pairs.emplace_back(site(i, j, k), site(i, j, k + 1));
-                    if (j + 1 < count_across) pairs.emplace_back(site(i, j, k), site(i, j + 1, k));
-                    if (i + 1 < count_along) pairs.emplace_back(site(i, j, k), site(i + 1, j, k));
-                }
-        return pairs;
     }
 };
 
@@ -75,26 +67,69 @@ inline Index spheres_that_fit(Real length, Real diameter) {
 }
 }  // namespace detail
 
+namespace detail {
+
+/// Appends a site at the next place in the order of a regular lattice.
+inline void add_site(Lattice& lattice, const Vec3& centre, Real cell_volume, Index i, Index j, Index k) {
+    lattice.sites.push_back({.centre = centre,
+                             .cell_volume = cell_volume,
+                             .along = i,
+                             .across = j,
+                             .layer = k,
+                             .column = i * lattice.count_across + j,
+                             .held = k + 1 == lattice.count_layers});
+}
+
+/// Bonds each site to those of the next places along each direction that lie within `reach` [m].
+inline void bond_neighbours(Lattice& lattice, Real reach) {
+    for (const LatticeSite& from : lattice.sites)
+        for (Index i = std::max(from.along - 1, 0); i <= std::min(from.along + 1, lattice.count_along - 1);
+             ++i)
+            for (Index j = std::max(from.across - 1, 0);
+                 j <= std::min(from.across + 1, lattice.count_across - 1); ++j)
+                for (Index k = std::max(from.layer - 1, 0);
+                     k <= std::min(from.layer + 1, lattice.count_layers - 1); ++k) {
+                    const Index first = lattice.site(from.along, from.across, from.layer),
+                                second = lattice.site(i, j, k);
+                    const Vec3 apart = lattice.sites[static_cast<std::size_t>(second)].centre - from.centre;
+                    if (first < second && apart.squaredNorm() < reach * reach)
+                        lattice.bonds.emplace_back(first, second);
+                }
+}
+
+/// Bonds the nearest neighbours along the three directions of a cubic lattice.
+inline void bond_cubic(Lattice& lattice) {
+    lattice.bonds.reserve(3 * lattice.sites.size());
+    for (const LatticeSite& s : lattice.sites) {
+        const Index here = lattice.site(s.along, s.across, s.layer);
+        if (s.layer + 1 < lattice.count_layers)
+            lattice.bonds.emplace_back(here, lattice.site(s.along, s.across, s.layer + 1));
+        if (s.across + 1 < lattice.count_across)
+            lattice.bonds.emplace_back(here, lattice.site(s.along, s.across + 1, s.layer));
+        if (s.along + 1 < lattice.count_along)
+            lattice.bonds.emplace_back(here, lattice.site(s.along + 1, s.across, s.layer));
+    }
+}
+}  // namespace detail
+
 /// A slab with its surface at z = 0, its centre at x = y = 0. Spacing is stretched a little, never
 /// squeezed, so that the cells fill `length` x `width`.
 inline Lattice flat_lattice(Real length, Real width, const LatticeSize& size) {
     check_size(size, length, width, "flat_lattice.side");
     const Real d = size.sphere_diameter;
     Lattice lattice{
-        0.5 * d, detail::spheres_that_fit(length, d), detail::spheres_that_fit(width, d), size.layers, {},
+        0.5 * d, detail::spheres_that_fit(length, d), detail::spheres_that_fit(width, d), size.layers, {}, {},
         {}};
     const Real dx = length / lattice.count_along, dy = width / lattice.count_across;
     for (Index i = 0; i < lattice.count_along; ++i)
         for (Index j = 0; j < lattice.count_across; ++j) {
             lattice.column_area.push_back(dx * dy);
             for (Index k = 0; k < size.layers; ++k)
-                lattice.sites.push_back(
-                    {{(i + 0.5) * dx - 0.5 * length, (j + 0.5) * dy - 0.5 * width, -(k + 0.5) * d},
-                     dx * dy * d,
-                     i,
-                     j,
-                     k});
+                detail::add_site(
+                    lattice, {(i + 0.5) * dx - 0.5 * length, (j + 0.5) * dy - 0.5 * width, -(k + 0.5) * d},
+                    dx * dy * d, i, j, k);
         }
+    detail::bond_cubic(lattice);
     return lattice;
 }
 
@@ -109,6 +144,7 @@ inline Lattice invert_lattice(const Invert& invert, const LatticeSize& size) {
                     detail::spheres_that_fit(span, 2 * std::asin(0.5 * d / (radius + 0.5 * d))),
                     size.layers,
                     {},
+                    {},
                     {}};
     const Real dx = invert.length / lattice.count_along, dtheta = span / lattice.count_across;
     for (Index i = 0; i < lattice.count_along; ++i)
@@ -117,13 +153,98 @@ inline Lattice invert_lattice(const Invert& invert, const LatticeSize& size) {
             lattice.column_area.push_back(dx * dtheta * radius);
             for (Index k = 0; k < size.layers; ++k) {
                 const Real r = radius + (k + 0.5) * d;
-                lattice.sites.push_back({{(i + 0.5) * dx, r * std::sin(theta), radius - r * std::cos(theta)},
-                                         dx * dtheta * r * d,
-                                         i,
-                                         j,
-                                         k});
+                detail::add_site(lattice, {(i + 0.5) * dx, r * std::sin(theta), radius - r * std::cos(theta)},
+                                 dx * dtheta * r * d, i, j, k);
             }
         }
+    detail::bond_cubic(lattice);
+    return lattice;
+}
+
+/// A slab of hexagonal close-packed spheres (coordination 12, solid fraction pi / sqrt(18)), its surface at
+/// z = 0, its centre at x = y = 0. Rows lie along x; the next row is half a sphere further on, the next layer
+/// in the hollows. Rows and spheres in them are spaced a little wider, never closer, so that they fill
+/// `length` x `width`. Touching neighbours are bonded, and those that this spacing left at most a tenth of a
+/// diameter apart.
+inline Lattice hexagonal_lattice(Real length, Real width, const LatticeSize& size) {
+    check_size(size, length, width, "hexagonal_lattice.side");
+    const Real d = size.sphere_diameter, row = d * std::sqrt(0.75), layer = d * std::sqrt(2.0 / 3);
+    for (const Real side : {length, width})
+        require(side >= 1.5 * d * (1 - 1e-12),
+                {"hexagonal_lattice.side", "at least one and a half sphere diameters of " + to_text(d) + " m",
+                 "m", "take smaller spheres or a larger body"},
+                side);
+    // Half a sphere more for the rows that stand half a sphere on, a third of a row for the layers that do.
+    Lattice lattice{0.5 * d,
+                    detail::spheres_that_fit(length - 0.5 * d, d),
+                    detail::spheres_that_fit(width - d + row * 2 / 3, row),
+                    size.layers,
+                    {},
+                    {},
+                    {}};
+    const Real dx = (length - d) / (lattice.count_along - 0.5),
+               dy = (width - d) / (lattice.count_across - 2.0 / 3);
+    const Real area = length * width / (lattice.count_along * lattice.count_across);
+    for (Index i = 0; i < lattice.count_along; ++i)
+        for (Index j = 0; j < lattice.count_across; ++j) {
+            lattice.column_area.push_back(area);
+            for (Index k = 0; k < size.layers; ++k) {
+                const Real x = 0.5 * d + (i + 0.5 * ((j + k) % 2)) * dx,
+                           y = 0.5 * d + (j + (k % 2) / 3.0) * dy;
+                detail::add_site(lattice, {x - 0.5 * length, y - 0.5 * width, -0.5 * d - k * layer},
+                                 area * (k == 0 || k + 1 == size.layers ? 0.5 * (d + layer) : layer), i, j,
+                                 k);
+            }
+        }
+    detail::bond_neighbours(lattice, 1.1 * d);
+    return lattice;
+}
+
+/// A body from spheres that stand somewhere already, a random packing for one: those whose gap is at most
+/// `gap` times the diameter are bonded, those that stand below `held_below` [m] are fixed, and each stands
+/// for an equal share of `volume` [m3]. Columns are squares of one diameter. Throws InputError for no
+/// spheres, a centre that is not finite, a radius or volume that is not > 0.
+inline Lattice lattice_of(const std::vector<Vec3>& centres, Real radius, Real volume, Real gap = 0.05,
+                          Real held_below = -std::numeric_limits<Real>::infinity()) {
+    require(!centres.empty(), {"lattice_of.centres", "at least 1", "", "a body without spheres is none"}, 0);
+    require_positive(radius, "lattice_of.radius", "m");
+    require_positive(volume, "lattice_of.volume", "m3");
+    require_not_negative(gap, "lattice_of.gap");
+    Lattice lattice{radius, 0, 0, 0, {}, {}, {}};
+    Vec3 low = centres.front(), high = low;
+    for (std::size_t n = 0; n < centres.size(); ++n) {
+        require_finite(centres[n], "lattice_of.centres[" + std::to_string(n) + "]", "m");
+        low = low.cwiseMin(centres[n]), high = high.cwiseMax(centres[n]);
+    }
+    const Real d = 2 * radius;
+    lattice.count_along = static_cast<Index>((high.x() - low.x()) / d) + 1;
+    lattice.count_across = static_cast<Index>((high.y() - low.y()) / d) + 1;
+    lattice.column_area.assign(
+        static_cast<std::size_t>(lattice.count_along) * static_cast<std::size_t>(lattice.count_across),
+        d * d);
+    for (const Vec3& x : centres) {
+        const auto i = static_cast<Index>((x.x() - low.x()) / d),
+                   j = static_cast<Index>((x.y() - low.y()) / d);
+        lattice.sites.push_back({.centre = x,
+                                 .cell_volume = volume / static_cast<Real>(centres.size()),
+                                 .along = i,
+                                 .across = j,
+                                 .column = i * lattice.count_across + j,
+                                 .held = x.z() < held_below});
+    }
+    // Along the longest axis in order, so that only those within reach along it are compared.
+    int axis = 0;
+    (high - low).maxCoeff(&axis);
+    std::vector<Index> order(centres.size());
+    for (std::size_t n = 0; n < order.size(); ++n) order[n] = static_cast<Index>(n);
+    const auto at = [&](Index n) -> const Vec3& { return centres[static_cast<std::size_t>(n)]; };
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return at(a)[axis] < at(b)[axis]; });
+    const Real reach = (1 + gap) * d;
+    for (auto a = order.begin(); a != order.end(); ++a)
+        for (auto b = a + 1; b != order.end() && at(*b)[axis] - at(*a)[axis] <= reach; ++b)
+            if ((at(*b) - at(*a)).squaredNorm() <= reach * reach)
+                lattice.bonds.emplace_back(std::min(*a, *b), std::max(*a, *b));
+    std::sort(lattice.bonds.begin(), lattice.bonds.end());
     return lattice;
 }
 

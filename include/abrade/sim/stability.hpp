@@ -70,8 +70,11 @@ void each_end(const Network<B>& network, const B& law, const Particles& particle
         const Vec3 n = apart.normalized();
         const Real lambda = apart.norm() / (particles.radius[at(bond.spheres.first)] +
                                             particles.radius[at(bond.spheres.second)]);
-        const LinkRigidity link = LinkRigidity::damped(law.stiffness(), law.tangential_stiffness(),
-                                                       law.damping_ratio(), bond.effective_mass);
+        const BondRigidity k = law.rigidity(bond.radius, bond.rest_length);
+        LinkRigidity link =
+            LinkRigidity::damped(k.normal, k.tangential, k.damping_ratio, bond.effective_mass);
+        link.turning = std::max(k.bending, k.twisting);
+        link.turning_dashpot = 2 * k.damping_ratio * std::sqrt(link.turning * bond.effective_inertia);
         const auto moves = [&](Index body) { return particles.inverse_mass[at(body)] > 0; };
         visit(bond.bodies.first, n, Vec3(-lambda * particles.radius[at(bond.spheres.first)] * n), link,
               moves(bond.bodies.second));

@@ -202,7 +202,7 @@ private:
                 return wall.distance(site.centre) < (1 - 1e-6) * lattice.radius;
             });
             // Without bonds there is nothing to hold the spheres together: they stand as a rigid bed.
-            const bool held = !P::has_bonds || in_wall || site.layer + 1 == lattice.count_layers;
+            const bool held = !P::has_bonds || in_wall || site.held;
             const Index body =
                 particles.add(sphere, block.density, {.position = site.centre, .material = block.material},
                               held ? Kind::fixed : Kind::concrete);
@@ -210,7 +210,7 @@ private:
         }
         if constexpr (P::has_bonds) {
             std::vector<BondedPair> bonded;
-            for (const auto& [i, j] : lattice.neighbours())
+            for (const auto& [i, j] : lattice.bonds)
                 if (particles.inverse_mass[at(i)] + particles.inverse_mass[at(j)] > 0)
                     bonded.push_back({i, j});
             network.build(particles, std::move(bonded));

@@ -58,9 +58,9 @@ public:
     /// spheres and whole cells of those gone, over the column's surface. Sums up to the volume lost.
     std::vector<Real> depth() const {
         std::vector<Real> depth(lattice_.column_area.size(), 0);
-        const auto layers = static_cast<std::size_t>(lattice_.count_layers);
         for (std::size_t s = 0; s < lattice_.sites.size(); ++s)
-            depth[s / layers] += gone_[s] ? lattice_.sites[s].cell_volume : fractured_[s];
+            depth[static_cast<std::size_t>(lattice_.sites[s].column)] +=
+                gone_[s] ? lattice_.sites[s].cell_volume : fractured_[s];
         for (std::size_t c = 0; c < depth.size(); ++c) depth[c] /= lattice_.column_area[c];
         return depth;
     }

@@ -1,0 +1,77 @@
+#pragma once
+// Bonds that are elastic until they are not: no yield line, no friction while they hold.
+
+#include <abrade/bond/bond_springs.hpp>
+
+namespace abrade {
+
+/// Springs f_n = k_n c (c compression), f_s = -k_s s. The bond breaks when
+///   (max(-f_n, 0) / (A sigma_t))^2 + (|f_s| / (A tau))^2 > 1,   A = pi r^2,
+/// r the smaller radius [m]: the quadratic criterion of cohesive zones (P. P. Camanho, C. G. Davila, M. F. de
+/// Moura, J. Compos. Mater. 37 (2003) 1415, doi:10.1177/0021998303034505). It counts as broken in tension
+/// where that part is the larger. Wear takes its share off both strengths. Pulled alone it breaks at a
+/// stretch of A sigma_t / k_n and gives up (A sigma_t)^2 / (2 k_n). What is left is a frictional contact.
+class ElasticBrittle {
+public:
+    static constexpr std::string_view name = "ElasticBrittle";
+
+    struct Params {
+        Real tensile = 0;            ///< sigma_t [Pa]
+        Real shear = 0;              ///< tau [Pa]
+        Real stiffness = 0;          ///< k_n [N/m]
+        Real stiffness_ratio = 0.2;  ///< k_s / k_n [-]
+        Real friction = 0.5;         ///< of what is left once broken [-]
+        Real damping = 0.1;          ///< share of critical damping of one bond [-]
+
+        void validate() const {
+            require_positive(tensile, "ElasticBrittle.tensile", "Pa", "concrete has 1e6 to 5e6");
+            require_positive(shear, "ElasticBrittle.shear", "Pa", "a few times the tensile strength");
+            require_positive(stiffness, "ElasticBrittle.stiffness", "N/m");
+            require_positive(stiffness_ratio, "ElasticBrittle.stiffness_ratio");
+            require_not_negative(friction, "ElasticBrittle.friction");
+            require(damping >= 0 && damping <= 1,
+                    {"ElasticBrittle.damping", "in [0, 1]", "", "0 takes nothing, 1 is critical"}, damping);
+        }
+        void visit(auto&& f) const {
+            f("tensile", tensile, "Pa");
+            f("shear", shear, "Pa");
+            f("stiffness", stiffness, "N/m");
+            f("stiffness_ratio", stiffness_ratio, "-");
+            f("friction", friction, "-");
+            f("damping", damping, "-");
+        }
+    };
+
+    struct Memory {
+        Vec3 spring = Vec3::Zero();  ///< shear spring [m]
+        bool broken = false;
+    };
+
+    explicit ElasticBrittle(Params params) : params_(params) { params_.validate(); }
+    const Params& params() const noexcept { return params_; }
+
+    BondResponse<Memory> respond(const BondKinematics& bond, Real strength_left,
+                                 const Memory& memory) const noexcept {
+        const BondRigidity k = rigidity(bond.radius, bond.length);
+        const BondSprings springs(bond, k, params_.friction, memory.spring);
+        if (memory.broken) return springs.broken<Memory>();
+        const Real area = strength_left * pi * square(bond.radius);
+        const Real pulled = square(std::max(-springs.push(), 0.0) / params_.tensile),
+                   sheared = square(springs.shear_force() / params_.shear);
+        if (pulled + sheared > square(area))
+            return springs.breaks<Memory>(pulled > sheared ? Fate::tension : Fate::shear);
+        return {springs.sound(), {springs.shear(), false}, Fate::intact};
+    }
+
+    Real strength(Real left_i, Real left_j) const noexcept { return 0.5 * (left_i + left_j); }
+    BondRigidity rigidity(Real /*radius*/, Real /*length*/) const noexcept {
+        return {params_.stiffness, params_.stiffness * params_.stiffness_ratio, params_.damping};
+    }
+
+private:
+    Params params_;
+};
+
+static_assert(BondLaw<ElasticBrittle>);
+
+}  // namespace abrade
