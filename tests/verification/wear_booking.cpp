@@ -1,8 +1,6 @@
 // When the energy of a contact is booked as wear: as it flows, when the contact opens, or what is dissipated.
 #include "wear_scenes.hpp"
 
-#include <abrade/wear/sub_particle.hpp>
-
 #include <doctest/doctest.h>
 
 using namespace abrade;
@@ -25,7 +23,6 @@ Real worst_of(Throw impact, const auto& booked) {
 TEST_CASE("an elastic impact: dissipated is nothing, at the end is the integrator's residue, of its order") {
     const Throw elastic{.restitution = 1, .friction = 0};
     CHECK(worst_of(elastic, [](const Bookings& b) { return b.dissipated; }) == 0);
-    CHECK(worn_by(elastic, SubParticleAbrasion{{}}) == 0);
     Real last = 0;
     for (const Real steps : {50.0, 100.0, 200.0, 400.0, 800.0}) {
         Throw impact = elastic;
@@ -33,7 +30,7 @@ TEST_CASE("an elastic impact: dissipated is nothing, at the end is the integrato
         const Real residue = worst_of(impact, [](const Bookings& b) { return b.running; });
         MESSAGE(steps << " steps: at the end " << residue << ", order "
                       << (last > 0 ? std::log2(last / residue) : NAN));
-        if (last > 0) CHECK(residue < 0.35 * last);
+        if (last > 0) CHECK(residue < 0.2 * last);  // third order: an eighth
         last = residue;
     }
     // As it flows without what is negative: all that was brought, whatever the step.
@@ -50,9 +47,9 @@ TEST_CASE("an elastic impact that sticks: what is dissipated falls with the step
         const Real lost = worst_of(impact, [](const Bookings& b) { return b.dissipated; });
         const Real end = worst_of(impact, [](const Bookings& b) { return b.running - b.dissipated; });
         MESSAGE(steps << " steps: dissipated " << lost << ", residue " << end);
+        if (last > 0) CHECK(lost < 0.1 * last);  // 4 times the steps: a sixteenth
         last = lost;
     }
-    CHECK(last < 0.01);
 }
 
 TEST_CASE("over one impact, what is dissipated and the sum at the end are the same to second order") {
@@ -78,7 +75,7 @@ TEST_CASE(
     "a stone that comes to rest: dissipated is all that it brought, the last contact is owed for ever") {
     BookingRecord record;
     Scene scene;
-    scene.concrete = flat_concrete();
+    scene.concrete = flat_concrete(100);
     const Real mass = 0.1, height = 0.01;
     scene.add_sphere(0.02, {.position = {0, 0, 0.02 + height}}, mass / (4.0 / 3 * pi * cube(0.02)));
     auto sim = simulate(std::move(scene))

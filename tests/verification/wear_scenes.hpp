@@ -5,17 +5,49 @@
 #include <abrade/dem/linear_spring.hpp>
 #include <abrade/sim/simulation.hpp>
 
+#include <abrade/wear/archard.hpp>
+#include <abrade/wear/finnie.hpp>
+#include <abrade/wear/ishibashi.hpp>
+#include <abrade/wear/sklar_dietrich.hpp>
+#include <abrade/wear/sub_particle.hpp>
+
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace abrade::verification {
 
-/// Rigid concrete of one sphere with its top at the origin and so much volume that it never wears through.
-inline ConcreteBlock flat_concrete(Real radius = 1e4) {
+/// Rigid concrete of one sphere [m] with its top at the origin, so much of it that it never wears through.
+inline ConcreteBlock flat_concrete(Real radius) {
     const LatticeSite site{.centre = {0, 0, -radius}, .cell_volume = 1};
     const Lattice ground{radius, 1, 1, 1, {site}, {1}};
     return {.lattice = ground};
 }
+
+/// One of the library's laws, chosen at run time: one engine is compiled for all of them.
+struct AnyWear {
+    static constexpr std::string_view name = "AnyWear";
+    using Params = NoParams;
+    std::variant<NoWear, SubParticleAbrasion, Archard, Finnie, SklarDietrich, Ishibashi> law;
+
+    explicit AnyWear(Params) {}
+    template <class Wear>
+    requires(!std::same_as<Wear, AnyWear> && !std::same_as<Wear, Params>) AnyWear(const Wear& one)
+        : law(one) {}
+    const Params& params() const noexcept {
+        static constexpr Params none{};
+        return none;
+    }
+    template <class Number>
+    WearIncrement<Number> increment(const ContactKinematics<Number>& contact,
+                                    const ContactLoad<Number>& load) const noexcept {
+        return std::visit([&](const auto& one) { return one.increment(contact, load); }, law);
+    }
+    Real strength_left(Real fracture) const noexcept {
+        return std::visit([&](const auto& one) { return one.strength_left(fracture); }, law);
+    }
+};
+static_assert(WearLaw<AnyWear>);
 
 /// A sphere that is thrown at that concrete, without gravity, and touches when the share `phase` of a step is
 /// over.
@@ -26,6 +58,7 @@ struct Throw {
     Real restitution = 0.6, friction = 0.3;
     Real steps = 50;  ///< a contact lasts, undamped
     Real phase = 0.5;
+    Real ground = 100;  ///< radius of the concrete: it falls off by far less than an overlap [m]
 
     Real contact_time() const { return pi * std::sqrt(mass / stiffness); }
     Real time_step() const { return contact_time() / steps; }
@@ -35,7 +68,7 @@ struct Throw {
     Scene scene() const {
         Scene scene;
         scene.gravity.setZero();
-        scene.concrete = flat_concrete();
+        scene.concrete = flat_concrete(ground);
         const Real before = (1 + phase) * time_step();
         scene.add_sphere(
             radius,
@@ -53,8 +86,7 @@ auto thrown(const Throw& impact, const Wear& wear) {
         {.end_time = 2 * impact.contact_time() + 4 * impact.time_step(), .time_step = impact.time_step()});
     return sim;
 }
-template <WearLaw Wear>
-Real worn_by(const Throw& impact, const Wear& wear) {
+inline Real worn_by(const Throw& impact, const AnyWear& wear) {
     return thrown(impact, wear).concrete().worn_volume();
 }
 
