@@ -3,8 +3,7 @@
 
 #include "../../examples/common/charts.hpp"
 #include "../../tests/verification/wear_scenes.hpp"
-
-#include <abrade/wear/sklar_dietrich.hpp>
+#include "panels.hpp"
 
 #include <iostream>
 #include <random>
@@ -24,7 +23,7 @@ Real brought_by(const Throw& impact) {
 /// The three bookings of one impact over what it brought, against x.
 struct ThreeBookings {
     Curve never_back{.title = "as it flows, what is negative left out", .style = CurveStyle::points};
-    Curve at_end{.title = "sum at the end of the contact", .style = CurveStyle::points};
+    Curve at_end{.title = "sum at the end of the contact", .style = CurveStyle::dashed};
     Curve dissipated{.title = "dissipated part only", .style = CurveStyle::points};
     void add(Real x, const Throw& impact) {
         const Bookings b = bookings_of(impact);
@@ -35,6 +34,33 @@ struct ThreeBookings {
         dissipated.y.push_back(b.dissipated / brought);
     }
 };
+
+/// The head-on impact of restitution 0.6, step by step.
+void within(const std::filesystem::path& folder) {
+    Curve running{.title = "as it flows"}, never_back{.title = "as it flows, what is negative left out"},
+        at_end{.title = "sum at the end of the contact", .style = CurveStyle::dashed},
+        dissipated{.title = "dissipated part only"};
+    const Throw impact{.steps = 500};
+    BookingRecord record;
+    auto sim = simulate(impact.scene()).contact(impact.law()).wear(RecordingWear{record});
+    sim.run({.end_time = 1.2 * impact.contact_time(),
+             .time_step = impact.time_step(),
+             .observe_every = impact.time_step()},
+            [&](const auto& now) {
+                const Bookings b = record.sums();
+                for (Curve* curve : {&running, &never_back, &at_end, &dissipated})
+                    curve->x.push_back(now.time() / impact.contact_time());
+                running.y.push_back(b.running / brought_by(impact));
+                never_back.y.push_back(b.never_back / brought_by(impact));
+                at_end.y.push_back(b.at_end / brought_by(impact));
+                dissipated.y.push_back(b.dissipated / brought_by(impact));
+            });
+    draw(LineChart{.title = "Within one impact head-on, restitution 0.6: what is booked until then",
+                   .x = {.label = "time / duration without damping", .min = 0, .max = 1.2},
+                   .y = {.label = "booked / energy brought", .min = 0, .max = 1.15},
+                   .curves = {never_back, running, dissipated, at_end}},
+         folder / "verification_wear_booking_within.png");
+}
 
 void over_restitution(const std::filesystem::path& folder) {
     Curve lost{.title = "lost, 1 - e^2"};
@@ -47,7 +73,7 @@ void over_restitution(const std::filesystem::path& folder) {
     draw(LineChart{.title = "One impact head-on, 50 steps a contact: what is booked",
                    .x = {.label = "restitution", .min = 0, .max = 1.02},
                    .y = {.label = "booked / energy brought", .min = 0, .max = 1.15},
-                   .curves = {lost, booked.never_back, booked.at_end, booked.dissipated}},
+                   .curves = {lost, booked.at_end, booked.never_back, booked.dissipated}},
          folder / "verification_wear_booking_restitution.png");
 }
 
@@ -67,7 +93,7 @@ void over_angle(const std::filesystem::path& folder) {
     draw(LineChart{.title = "One impact at 5 m/s, restitution 0.6, friction 0.3, 50 steps a contact",
                    .x = {.label = "angle between path and surface", .unit = "degree", .min = 0, .max = 90},
                    .y = {.label = "booked / energy brought", .min = 0, .max = 1.15},
-                   .curves = {lost, booked.never_back, booked.at_end, booked.dissipated}},
+                   .curves = {lost, booked.at_end, booked.never_back, booked.dissipated}},
          folder / "verification_wear_booking_angle.png");
 }
 
@@ -77,27 +103,33 @@ void to_rest(const std::filesystem::path& folder) {
         at_end{.title = "sum at the end of each contact"}, dissipated{.title = "dissipated part only"};
     BookingRecord record;
     Scene scene;
-    scene.concrete = ConcreteBlock{flat_lattice(1, 0.2, {.layers = 1})};
+    scene.concrete = ConcreteBlock{flat_lattice(3, 0.3, {.layers = 1})};
     const Real radius = 0.025, mass = 2650 * 4.0 / 3 * pi * cube(radius);
-    scene.add_sphere(radius, {.position = {-0.43, 0.003, 0.08}, .velocity = {1, 0.02, 0}});
+    scene.add_sphere(radius, {.position = {-1.4, 0.003, 0.08}, .velocity = {1, 0.02, 0}});
     auto sim = simulate(std::move(scene))
                    .contact(LinearSpring{{.stiffness = 1e6, .restitution = 0.6, .friction = 0.5}})
                    .wear(RecordingWear{record});
-    const Real brought = 0.5 * mass * 1.0004 + mass * standard_gravity * (0.08 - radius);
+    const Real kinetic = 0.5 * mass * 1.0004;
     sim.run({.end_time = 3, .time_step = 2e-5, .observe_every = 5e-4}, [&](const auto& now) {
         const Bookings b = record.sums();
         for (Curve* curve : {&running, &never_back, &at_end, &dissipated}) curve->x.push_back(now.time());
-        running.y.push_back(b.running / brought), never_back.y.push_back(b.never_back / brought);
-        at_end.y.push_back(b.at_end / brought), dissipated.y.push_back(b.dissipated / brought);
+        running.y.push_back(b.running), never_back.y.push_back(b.never_back);
+        at_end.y.push_back(b.at_end), dissipated.y.push_back(b.dissipated);
     });
     const Bookings b = record.sums();
-    std::cout << "to rest: contacts " << record.contacts() << ", dissipated " << b.dissipated / brought
-              << ", at the end " << b.at_end / brought << " and owed " << b.still_owed / brought
-              << ", never back " << b.never_back / brought << " of what was brought (to the surface's top)\n";
-    never_back.style = CurveStyle::dashed;
+    std::size_t sphere = 0;
+    while (sim.particles().kind[sphere] != Kind::stone) ++sphere;
+    const Real brought = kinetic + mass * standard_gravity * (0.08 - sim.particles().position[sphere].z());
+    for (Curve* curve : {&running, &never_back, &at_end, &dissipated})
+        for (Real& y : curve->y) y /= brought;
+    std::cout << "to rest: speed " << sim.particles().velocity[sphere].norm() << " m/s, contacts "
+              << record.contacts() << ", dissipated " << b.dissipated / brought << ", at the end "
+              << b.at_end / brought << " and owed " << b.still_owed / brought << ", never back "
+              << b.never_back / brought << " of what was brought\n";
+    at_end.style = CurveStyle::dashed;
     draw(
         LineChart{.title = "A sphere hops over a bed of spheres and comes to rest: what is booked until then",
-                  .x = {.label = "time", .unit = "s", .min = 0, .max = 1.5},
+                  .x = {.label = "time", .unit = "s", .min = 0, .max = 3},
                   .y = {.label = "booked / energy brought", .min = 0},
                   .curves = {never_back, running, dissipated, at_end}},
         folder / "verification_wear_booking_rest.png");
@@ -123,10 +155,7 @@ void many(std::ostream& out) {
 /// The worst over phases of first touch, against steps a contact.
 void orders(const std::filesystem::path& folder) {
     const SklarDietrich sklar{{.tensile = 7e6, .youngs = 5e10}};
-    Curve end{.title = "restitution 1, sum at the end: the residue", .style = CurveStyle::points},
-        apart{.title = "restitution 0.6: sum at the end less dissipated", .style = CurveStyle::points},
-        approach{.title = "work of approach less 1/2 m w^2", .style = CurveStyle::points},
-        second{.title = "second order", .style = CurveStyle::dashed};
+    Curve end, apart, approach;
     for (const Real steps : {12.5, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0, 1600.0}) {
         Real worst_end = 0, worst_apart = 0, worst_approach = 0;
         for (const Real phase : phases) {
@@ -139,18 +168,25 @@ void orders(const std::filesystem::path& folder) {
                 worst_approach,
                 std::abs(worn_by(oblique, sklar) * sklar.energy_of_detachment() / (0.5 * oblique.mass) - 1));
         }
-        for (Curve* curve : {&end, &apart, &approach, &second}) curve->x.push_back(steps);
+        for (Curve* curve : {&end, &apart, &approach}) curve->x.push_back(steps);
         end.y.push_back(worst_end), apart.y.push_back(worst_apart), approach.y.push_back(worst_approach);
-        second.y.push_back(5 / square(steps));
     }
     for (std::size_t n = 0; n < end.x.size(); ++n)
         std::cout << end.x[n] << " steps: residue " << end.y[n] << ", end less dissipated " << apart.y[n]
                   << ", approach " << approach.y[n] << '\n';
-    draw(LineChart{.title = "Energy booked for one impact: error against steps, the worst of seven phases",
-                   .x = {.label = "steps a contact", .logarithmic = true},
-                   .y = {.label = "error / energy brought", .logarithmic = true},
-                   .curves = {end, apart, approach, second}},
-         folder / "verification_wear_orders.png");
+    draw(
+        abrade::charts::PanelChart{
+            .title = "Energy booked for one impact: the worst of seven phases of first touch",
+            .x = {.label = "steps a contact", .min = 10, .max = 2000, .logarithmic = true},
+            .y = {.label = "error / energy brought", .min = 1e-9, .max = 1, .logarithmic = true},
+            .names = {"restitution 1: sum at the end, all of it residue",
+                      "restitution 0.6: sum at the end less dissipated", "work of approach less 1/2 m w^2"},
+            .panels = {{.curves = {end, apart, approach}}},
+            .slopes = {{50, 4e-3, -2, 10, "order 2"}, {50, 3e-6, -3, 8, "order 3"}},
+            .columns = 1,
+            .panel_width = 900,
+            .panel_height = 520},
+        folder / "verification_wear_orders.png");
 }
 
 }  // namespace
@@ -159,7 +195,8 @@ int main(int argc, char** argv) {
     try {
         const std::filesystem::path folder = argc > 1 ? argv[1] : "out/charts/wear_laws";
         std::filesystem::create_directories(folder);
-        over_restitution(folder), over_angle(folder), to_rest(folder), many(std::cout), orders(folder);
+        within(folder), over_restitution(folder), over_angle(folder), to_rest(folder), many(std::cout),
+            orders(folder);
         std::cout << "pictures in " << folder.string() << '\n';
     } catch (const std::exception& problem) {
         std::cerr << problem.what() << '\n';

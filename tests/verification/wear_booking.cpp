@@ -71,6 +71,23 @@ TEST_CASE("over one impact, what is dissipated and the sum at the end are the sa
         }
 }
 
+TEST_CASE("a sphere that slides and rolls without leaving the ground: at the end nothing is ever booked") {
+    BookingRecord record;
+    Scene scene;
+    scene.concrete = flat_concrete(1e4);
+    const Real mass = 0.1;
+    scene.add_sphere(0.02, {.position = {0, 0, 0.02 - mass * standard_gravity / 1e6}, .velocity = {2, 0, 0}},
+                     mass / (4.0 / 3 * pi * cube(0.02)));
+    auto sim = simulate(std::move(scene))
+                   .contact(LinearSpring{{.stiffness = 1e6, .restitution = 0.3, .friction = 0.3}})
+                   .wear(RecordingWear{record});
+    sim.run({.end_time = 0.3, .time_step = 2e-5});
+    const Bookings b = record.sums();
+    CHECK(b.dissipated == doctest::Approx(mass * 4 / 7).epsilon(0.01).scale(0));  // m v^2 / 7, wear02
+    CHECK(b.still_owed == doctest::Approx(b.dissipated).epsilon(1e-3).scale(0));
+    CHECK(b.at_end == 0);
+}
+
 TEST_CASE(
     "a stone that comes to rest: dissipated is all that it brought, the last contact is owed for ever") {
     BookingRecord record;

@@ -116,8 +116,10 @@ TEST_CASE("a sphere that slides until it rolls, and a block until it stops (wear
     MESSAGE("block: Ishibashi " << by_ishibashi / (2e-10 * friction) - 1 << ", sub-particle "
                                 << by_paper / (0.55e-7 * friction) - 1 << ", impact energy over friction "
                                 << by_sklar / friction);
+    // Placed in touch, which begins its contacts, at the 1e-5 m/s along the normal that the great sphere
+    // makes.
     CHECK(slid(block(), mass, 0.02, 4, finnie, 0.75).concrete().worn_volume() <
-          1e-6 * mass * 4 / (1e8 * 2 * 2));
+          1e-4 * mass * 4 / (1e8 * 2 * 2));
 }
 
 TEST_CASE("Sklar-Dietrich: published impacts (wear03), as a formula and through the engine") {
@@ -163,23 +165,21 @@ TEST_CASE("the energy of an impact is the work of approach: second order, whatev
     }
 }
 
-TEST_CASE(
-    "Finnie between spheres: of grazing impacts the share v_t^2 dt / (2 d v_n) goes unseen, none is seen "
-    "twice") {
-    Throw impact{.along = 0.1, .across = 4, .stiffness = 1e5, .ground = 0.01};
-    const Real d = impact.radius + impact.ground, most = impact.mass * 16 / (1e8 * 2 * 2);
-    const Real share = 16 * impact.time_step() / (2 * d * 0.1);
-    const int throws = 500;
-    int seen = 0;
-    for (int n = 0; n < throws; ++n) {
-        impact.phase = (n + 0.5) / throws;
-        const Real cut = worn_by(impact, finnie);
-        seen += cut > 0;
-        REQUIRE(cut < 0.35 * most);  // f is at most 0.33
+TEST_CASE("Finnie: each impact is seen once, grazing ones and those that touch as a step ends") {
+    // Fast along the surface of a small sphere, where overlap does not grow by the way along the normal.
+    Throw grazing{.along = 0.1, .across = 4, .stiffness = 1e5, .ground = 0.01};
+    Throw aligned{.along = 2, .across = 5};
+    const Real most = grazing.mass * 16 / (1e8 * 2 * 2), cut = worn_by(aligned, finnie);
+    for (int n = 0; n < 200; ++n) {
+        grazing.phase = (n + 0.5) / 200;
+        const Real worn = worn_by(grazing, finnie);
+        REQUIRE(worn > 0);
+        REQUIRE(worn < 0.35 * most);  // f is at most 0.33
     }
-    const Real unseen = 1 - static_cast<Real>(seen) / throws;
-    MESSAGE("grazing impacts unseen: " << unseen << ", by the formula " << share);
-    CHECK(unseen == doctest::Approx(share).epsilon(0.3).scale(0));
+    for (const Real phase : {0.0, 1e-15, 1e-12, 1e-9, 1 - 1e-9, 1 - 1e-12, 1 - 1e-15}) {
+        aligned.phase = phase;
+        CHECK(worn_by(aligned, finnie) == doctest::Approx(cut).epsilon(1e-6).scale(0));
+    }
 }
 
 TEST_CASE("an elastic impact head-on: nothing is dissipated, so the sub-particle law wears nothing") {

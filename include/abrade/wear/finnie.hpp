@@ -18,9 +18,8 @@ namespace abrade {
 ///
 /// An impact is booked in the step in which its contact begins, with that step's velocity at the contact
 /// point (spin counts) and the effective mass: of a stone against rigid concrete its own mass, against one
-/// bonded sphere little more than that sphere's. A clump that lands on several spheres at once is booked as
-/// often. A contact is seen to begin where overlap + n . travel <= 0, which never holds twice; of spheres
-/// whose centres are d apart the share v_t^2 dt / (2 d v_n) goes unseen.
+/// bonded sphere less than that sphere's. A clump that lands on several spheres at once is booked as often.
+/// Broken bonds that close again are not told to begin, and wear nothing.
 class Finnie {
 public:
     static constexpr std::string_view name = "Finnie";
@@ -64,14 +63,13 @@ public:
     template <class Number>
     WearIncrement<Number> increment(const ContactKinematics<Number>& contact,
                                     const ContactLoad<Number>& /*load*/) const noexcept {
-        const auto touches = contact.overlap > Number(0);
-        const auto begins = contact.overlap + contact.travel.dot(contact.normal) <= Number(0);
-        if (!any(touches & begins)) return {Number(0), Number(0)};
+        const auto begins = (contact.overlap > Number(0)) & (contact.touched == Number(0));
+        if (!any(begins)) return {Number(0), Number(0)};
         const Number along = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> across = contact.velocity + along * contact.normal;
         const Number cut =
             volume(Number(1) / contact.inverse_mass, max(along, Number(0)), sqrt(across.dot(across)));
-        return {Number(0), select(touches & begins, cut, Number(0))};
+        return {Number(0), select(begins, cut, Number(0))};
     }
     Real strength_left(Real /*fracture*/) const noexcept { return 1; }
 
