@@ -158,30 +158,30 @@ constexpr Real mm3 = 1e9;
 Summary wear_laws(const OutputFolder& folder) {
     Summary summary{
         {"speed_m_per_s", speed}, {"mass_kg", mass}, {"restitution", restitution}, {"friction", mu}};
-    LineChart chart{.title = "One impact at 5 m/s under each law; lines: closed forms where there are any",
+    LineChart chart{.title = "One impact at 5 m/s under each law",
                     .x = {.label = "angle between path and surface", .unit = "degree", .min = 0, .max = 90},
                     .y = {.label = "worn volume / that law's largest", .min = 0, .max = 1.1}};
-    const std::vector<Real> degrees = evenly(3, 90, 30);
     const auto law_cases = cases();
-    std::vector<Curve> points;
+    Curve closed_forms{.title = "closed forms, where there are", .style = CurveStyle::points};
     for (const Case& c : law_cases) {
-        Curve exact{.title = c.title}, measured{.x = degrees, .style = CurveStyle::points};
-        Real largest = 0, worst = 0;
-        for (const Real angle : degrees) {
-            measured.y.push_back(worn_by_impact(c.law, angle));
-            largest = std::max(largest, measured.y.back());
-            exact.x.push_back(angle), exact.y.push_back(c.impact(angle));
+        Curve curve{.title = c.title};
+        std::vector<Real> exact;
+        for (const Real angle : evenly(3, 90, 30)) {
+            curve.x.push_back(angle), curve.y.push_back(worn_by_impact(c.law, angle));
+            exact.push_back(c.impact(angle));
         }
-        for (std::size_t n = 0; n < degrees.size(); ++n) {
-            if (std::isfinite(exact.y[n]))
-                worst = std::max(worst, std::abs(measured.y[n] - exact.y[n]) / largest);
-            measured.y[n] /= largest, exact.y[n] /= largest;
+        const Real largest = *std::max_element(curve.y.begin(), curve.y.end());
+        Real worst = 0;
+        for (std::size_t n = 0; n < exact.size(); ++n) {
+            if (std::isfinite(exact[n])) worst = std::max(worst, std::abs(curve.y[n] - exact[n]) / largest);
+            curve.y[n] /= largest;
+            closed_forms.x.push_back(curve.x[n]), closed_forms.y.push_back(exact[n] / largest);
         }
         summary[c.key + "_impact_largest_mm3"] = mm3 * largest;
         summary[c.key + "_impact_error_of_largest"] = worst;
-        chart.curves.push_back(std::move(exact)), points.push_back(std::move(measured));
+        chart.curves.push_back(std::move(curve));
     }
-    for (Curve& curve : points) chart.curves.push_back(std::move(curve));
+    chart.curves.push_back(std::move(closed_forms));
     draw(chart, folder.path("worn_against_angle.png"));
 
     for (const Case& c : law_cases) {

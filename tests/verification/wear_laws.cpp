@@ -122,6 +122,20 @@ TEST_CASE("a sphere that slides until it rolls, and a block until it stops (wear
           1e-4 * mass * 4 / (1e8 * 2 * 2));
 }
 
+TEST_CASE("Archard against the work of friction: the same in sliding, more of it where an impact sticks") {
+    const Ishibashi by_work{{.impact = 0, .friction = 1e-13 / 0.3}};
+    for (const Real degrees : {15.0, 30.0, 45.0, 60.0, 75.0}) {
+        const Throw impact{
+            .along = 5 * std::sin(radians(degrees)), .across = 5 * std::cos(radians(degrees)), .steps = 400};
+        const Real ratio = worn_by(impact, archard) / worn_by(impact, by_work);
+        MESSAGE(degrees << " degrees: Archard over k / (H mu) times the work of friction " << ratio);
+        if (degrees < 31)
+            CHECK(ratio == doctest::Approx(1).epsilon(0.01));
+        else
+            CHECK(ratio > 1);
+    }
+}
+
 TEST_CASE("Sklar-Dietrich: published impacts (wear03), as a formula and through the engine") {
     Real worst = 0;
     for (const auto& row : reference_table("wear03_sklar_dietrich_single_impact.csv")) {

@@ -13,8 +13,8 @@ namespace abrade {
 /// acceleration [-]. Volume only: strength stays. Throws InputError for parameters out of their range.
 ///
 /// A block that slides a distance s under N wears k N s / H; an impact that slides throughout, k / (H mu)
-/// times its frictional work. The distance is that of the bodies, so the elastic way of a contact that sticks
-/// counts too.
+/// times its frictional work. The distance is that of the bodies, elastic or not: an impact that sticks wears
+/// several times what its friction spends. `Ishibashi` with C_1 = 0 and C_2 = k / (H mu) counts that alone.
 class Archard {
 public:
     static constexpr std::string_view name = "Archard";
@@ -26,8 +26,8 @@ public:
 
         void validate() const {
             require_positive(coefficient, "Archard.coefficient", "-", "1e-8 to 1e-2 are usual");
-            require_positive(hardness, "Archard.hardness", "Pa");
-            require_positive(acceleration, "Archard.acceleration");
+            require_positive(hardness, "Archard.hardness", "Pa", "that of the body that wears");
+            require_positive(acceleration, "Archard.acceleration", "", "1 does not accelerate wear");
         }
         void visit(auto&& f) const {
             f("coefficient", coefficient, "-");

@@ -32,12 +32,12 @@ public:
         Real acceleration = 1;   ///< beta [-]
 
         void validate() const {
-            require_positive(flow_stress, "Finnie.flow_stress", "Pa");
-            require_positive(force_ratio, "Finnie.force_ratio");
-            require_positive(depth_ratio, "Finnie.depth_ratio");
-            require(cutting_share > 0 && cutting_share <= 1, {"Finnie.cutting_share", "in (0, 1]"},
-                    cutting_share);
-            require_positive(acceleration, "Finnie.acceleration");
+            require_positive(flow_stress, "Finnie.flow_stress", "Pa", "that of what is cut");
+            require_positive(force_ratio, "Finnie.force_ratio", "", "2 is customary");
+            require_positive(depth_ratio, "Finnie.depth_ratio", "", "2 is customary");
+            require(cutting_share > 0 && cutting_share <= 1,
+                    {"Finnie.cutting_share", "in (0, 1]", "", "1 where each impact cuts"}, cutting_share);
+            require_positive(acceleration, "Finnie.acceleration", "", "1 does not accelerate wear");
         }
         void visit(auto&& f) const {
             f("flow_stress", flow_stress, "Pa");

@@ -26,9 +26,11 @@ public:
         Real acceleration = 1;                                   ///< beta [-]
 
         void validate() const {
-            require_not_negative(impact, "Ishibashi.impact", "m3/J", "there is no default");
-            require_not_negative(friction, "Ishibashi.friction", "m3/J", "there is no default");
-            require_positive(acceleration, "Ishibashi.acceleration");
+            require_not_negative(impact, "Ishibashi.impact", "m3/J",
+                                 "there is no default: give a measured one");
+            require_not_negative(friction, "Ishibashi.friction", "m3/J",
+                                 "there is no default: give a measured one");
+            require_positive(acceleration, "Ishibashi.acceleration", "", "1 does not accelerate wear");
         }
         void visit(auto&& f) const {
             f("impact", impact, "m3/J");

@@ -26,10 +26,11 @@ public:
         Real acceleration = 1;            ///< beta [-]
 
         void validate() const {
-            require_positive(tensile, "SklarDietrich.tensile", "Pa");
-            require_positive(youngs, "SklarDietrich.youngs", "Pa");
-            require_positive(strength_coefficient, "SklarDietrich.strength_coefficient");
-            require_positive(acceleration, "SklarDietrich.acceleration");
+            require_positive(tensile, "SklarDietrich.tensile", "Pa", "concrete has 1e6 to 5e6 Pa");
+            require_positive(youngs, "SklarDietrich.youngs", "Pa", "concrete has 2e10 to 4e10 Pa");
+            require_positive(strength_coefficient, "SklarDietrich.strength_coefficient", "",
+                             "1e6 was calibrated on rock");
+            require_positive(acceleration, "SklarDietrich.acceleration", "", "1 does not accelerate wear");
         }
         void visit(auto&& f) const {
             f("tensile", tensile, "Pa");
