@@ -33,13 +33,15 @@ struct Pairs {
     }
 };
 
-template <ContactLaw Law>
-void contacts_in_cache(benchmark::State& state, const Law& law) {
+template <ContactLaw Law, WearLaw Wear = NoWear>
+void contacts_in_cache(benchmark::State& state, const Law& law, const Wear& wear = {}) {
     Pairs<Law> pairs;
-    const NoWear wear;
+    constexpr KernelKind kind{.wears = !std::same_as<Wear, NoWear>};
+    const std::vector<std::uint8_t> concrete_sides(Pairs<Law>::count, 1);
+    const PackRun run{.concrete_sides = concrete_sides.data()};
     for (auto _ : state)
-        benchmark::DoNotOptimize(respond<KernelKind{}>(law, wear, std::span(pairs.packs), PackRun{},
-                                                       pairs.lines, ContactStep{1e-7, 0.5}));
+        benchmark::DoNotOptimize(
+            respond<kind>(law, wear, std::span(pairs.packs), run, pairs.lines, ContactStep{1e-7, 0.5}));
     state.counters["s/contact"] =
         benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(Pairs<Law>::count),
                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
@@ -54,7 +56,19 @@ void hertz_contacts(benchmark::State& state) {
                       HertzMindlin{{.youngs = 1e8, .poisson = 0.25, .restitution = 0.5, .friction = 0.5}});
 }
 
+/// The same contacts with concrete, by law: what wear adds to a contact.
+template <WearLaw Wear>
+void wear_of_linear_contacts(benchmark::State& state, const Wear& wear) {
+    contacts_in_cache(state, LinearSpring{{.stiffness = 1e5, .restitution = 0.5, .friction = 0.5}}, wear);
+}
+
 BENCHMARK(linear_contacts);
 BENCHMARK(hertz_contacts);
+BENCHMARK_CAPTURE(wear_of_linear_contacts, sub_particle, SubParticleAbrasion{{}});
+BENCHMARK_CAPTURE(wear_of_linear_contacts, archard, Archard{{.coefficient = 1e-4, .hardness = 1e9}});
+BENCHMARK_CAPTURE(wear_of_linear_contacts, finnie, Finnie{{.flow_stress = 1e8}});
+BENCHMARK_CAPTURE(wear_of_linear_contacts, sklar_dietrich,
+                  SklarDietrich{{.tensile = 2.7e6, .youngs = 2.7e10}});
+BENCHMARK_CAPTURE(wear_of_linear_contacts, ishibashi, Ishibashi{{.impact = 1e-9, .friction = 1e-10}});
 
 }  // namespace

@@ -13,4 +13,8 @@
 #include <abrade/geometry/gravel.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
 #include <abrade/sim/simulation.hpp>
+#include <abrade/wear/archard.hpp>
+#include <abrade/wear/finnie.hpp>
+#include <abrade/wear/ishibashi.hpp>
+#include <abrade/wear/sklar_dietrich.hpp>
 #include <abrade/wear/sub_particle.hpp>

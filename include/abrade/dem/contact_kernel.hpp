@@ -128,10 +128,9 @@ inline Vec3 lane_of(const Vec3Of<Pack>& v, int lane) noexcept {
     return {v.x()[lane], v.y()[lane], v.z()[lane]};
 }
 inline ContactKinematics<Real> lane_of(const ContactKinematics<Pack>& c, int lane) noexcept {
-    return {lane_of(c.normal, lane), c.overlap[lane],       lane_of(c.velocity, lane),
-            c.inverse_mass[lane],    c.curvature[lane],     c.time_step,
-            lane_of(c.travel, lane), lane_of(c.spin, lane), lane_of(c.turn, lane),
-            c.inverse_turning[lane]};
+    return {lane_of(c.normal, lane), c.overlap[lane],       lane_of(c.velocity, lane), c.inverse_mass[lane],
+            c.curvature[lane],       c.time_step,           lane_of(c.travel, lane),   c.touched[lane],
+            lane_of(c.spin, lane),   lane_of(c.turn, lane), c.inverse_turning[lane]};
 }
 inline ContactLoad<Real> lane_of(const ContactLoad<Pack>& l, int lane) noexcept {
     return {lane_of(l.force, lane),  l.stored[lane],          l.lost_normal[lane],
@@ -316,6 +315,7 @@ template <KernelKind kind, ContactLaw Law, class Wear>
             contact.inverse_turning = inverse_turning;
             pack.before.spin = spin;
         }
+        if constexpr (kind.wears) contact.touched = select(pack.touched, Pack(1), Pack(0));
         pack.before.velocity = velocity;  // at once, so that it need not be kept
         const ContactLoad<Pack> answer = detail::answer(law, contact, pack, touching);
         pack.touched = touching;

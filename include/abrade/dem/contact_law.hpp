@@ -24,6 +24,9 @@ struct ContactKinematics {
     /// halfway, which is what the positions really did. A spring fed with anything else gains or loses
     /// energy.
     Vec3Of<Number> travel = Vec3Of<Number>::Zero();
+    /// 1 where the two touched when last evaluated, 0 where the contact begins. Told of contacts with
+    /// concrete alone: wear laws count impacts by it.
+    Number touched = Number(1);
 
     // What laws that resist rolling see beside (`ResistsRolling`); nobody fills it in for the others.
     Vec3Of<Number> spin = Vec3Of<Number>::Zero();  ///< angular velocity of i relative to j [rad/s]

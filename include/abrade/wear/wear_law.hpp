@@ -8,11 +8,11 @@ namespace abrade {
 /// Concrete worn off one body by one contact in one step.
 template <class Number>
 struct WearIncrement {
-    Number normal;      ///< by normal loss (impact) [m3]
-    Number tangential;  ///< by tangential loss (sliding) [m3]
+    Number normal;      ///< by impact, along the normal [m3]
+    Number tangential;  ///< by sliding and cutting, across it [m3]
 };
 
-/// A wear law is a pure function of what the contact law lost in a step.
+/// A wear law is a pure function of a contact in one step: how it stands, and what the contact law answered.
 /// - `increment` gives the volume worn off *one* of the two bodies; it is never negative; a template on the
 ///   number type, as contact laws are;
 /// - `strength_left(fracture)` says what a sphere that is worn to `fracture` in [0, 1] still holds.
@@ -24,6 +24,16 @@ concept WearLaw = Law<W> &&
     { law.strength_left(Real{}) } noexcept -> std::same_as<Real>;
 };
 // clang-format on
+
+/// Work of the normal force in one step while the two approach [J], never negative. Over an impact it is the
+/// kinetic energy along the normal, 1/2 m_eff w^2, to O(dt^2), whatever the restitution: until the approach
+/// ends, that is what the normal force takes. Bodies that touch at several points share it among them.
+template <class Number>
+Number work_of_approach(const ContactKinematics<Number>& contact, const ContactLoad<Number>& load) noexcept {
+    const Number push = max(load.force.dot(contact.normal), Number(0));
+    const Number approach = max(-contact.velocity.dot(contact.normal), Number(0));
+    return push * approach * Number(contact.time_step);
+}
 
 /// Nothing wears.
 struct NoWear {
