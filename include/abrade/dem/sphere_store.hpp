@@ -149,15 +149,15 @@ public:
             const auto first = at(particles.first_sphere[b]);
             for (std::size_t s = first; s < first + at(particles.sphere_count[b]); ++s, ++slot) {
                 slot_of_[s] = slot, next_sphere_of[at(slot)] = static_cast<Index>(s);
-                if (old_slot[s] < 0) {
-                    enter(next, at(slot), particles, body, s);
-                    continue;
-                }
-                next.place[at(slot)] = lines.place[at(old_slot[s])];
-                next.motion[at(slot)] = lines.motion[at(old_slot[s])];
-                next.load[at(slot)] = lines.load[at(old_slot[s])];
             }
         }
+        parallel_for(slot, [&](Index n) {
+            const auto to = at(n), s = at(next_sphere_of[to]);
+            if (old_slot[s] < 0) return enter(next, to, particles, particles.body[s], s);
+            const auto from = at(old_slot[s]);
+            next.place[to] = lines.place[from], next.motion[to] = lines.motion[from],
+            next.load[to] = lines.load[from];
+        });
         while (slab + 1 < slabs.count()) begin_slab();
         if (singles) first_clump_slot_[at(slab)] = slot;
         first_slot_[at(slab) + 1] = slot, first_clump_[at(slab) + 1] = static_cast<Index>(next_clumps.size());

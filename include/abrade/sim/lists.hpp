@@ -51,7 +51,8 @@ public:
         const Real fastest = std::sqrt(fastest2(state));
         list_skin_ = std::max(skin_, 2 * shortest_life * dt * fastest);
         if (const Vec3 period = state.scene.periodic().period; !period.isZero()) {
-            const Real room = PeriodNeed(state.particles, state.scene.feed).widest_skin(period);
+            if (!need_ || departure.any || state.feed) need_.emplace(state.particles, state.scene.feed);
+            const Real room = need_->widest_skin(period);
             list_skin_ = std::min(list_skin_, room);
             outrun_ = list_skin_ < 8 * dt * fastest;  // what `refine` asks for
         }
@@ -63,7 +64,8 @@ public:
         state.find_flyers();
         find_pairs(state);
         built_at_.resize(at(state.store.spheres()));
-        for (std::size_t s = 0; s < built_at_.size(); ++s) built_at_[s] = state.store.lines.place[s].centre;
+        parallel_for(state.store.spheres(),
+                     [&](Index s) { built_at_[at(s)] = state.store.lines.place[at(s)].centre; });
         state.loosened = false;
         age_ = 0;
         refine(state, dt);
@@ -92,15 +94,6 @@ private:
 
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
 
-    static Real fastest2(const State<P>& state) noexcept {
-        Real fastest = 0;
-        for (Index s = 0; s < state.store.spheres(); ++s)
-            fastest = std::max(fastest, state.store.lines.motion[at(s)].velocity.squaredNorm());
-        if (state.store.spheres() < state.particles.spheres())  // new ones are not in the store yet
-            for (const Vec3& v : state.particles.velocity) fastest = std::max(fastest, v.squaredNorm());
-        return fastest;
-    }
-
     /// Squares of the longest way since the list was made [m2], and of the highest speed [m2/s2].
     struct Extremes {
         Real way2 = 0, speed2 = 0;
@@ -108,6 +101,16 @@ private:
             return way2 = std::max(way2, o.way2), speed2 = std::max(speed2, o.speed2), *this;
         }
     };
+
+    static Real fastest2(const State<P>& state) {
+        Real fastest = parallel_sum<Extremes>(state.store.spheres(), [&](Index s) {
+                           return Extremes{0, state.store.lines.motion[at(s)].velocity.squaredNorm()};
+                       }).speed2;
+        if (state.store.spheres() < state.particles.spheres())  // new ones are not in the store yet
+            for (const Vec3& v : state.particles.velocity) fastest = std::max(fastest, v.squaredNorm());
+        return fastest;
+    }
+
     Extremes extremes(const State<P>& state) const {
         const SphereLines& lines = state.store.lines;
         return parallel_sum<Extremes>(state.store.spheres(), [&](Index slot) {
@@ -158,11 +161,14 @@ private:
             state.accounts.fed_potential += state.potential_energy(body, x);
             return shift;
         };
+        std::vector<char> outside(at(store.spheres()));
+        parallel_for(store.spheres(), [&](Index slot) {
+            outside[at(slot)] = !space.way_back(store.lines.place[at(slot)].centre).isZero(0);
+        });
         for (Index slot = 0; slot < store.spheres(); ++slot) {
-            Vec3& x = store.lines.place[at(slot)].centre;
-            if (space.way_back(x).isZero(0)) continue;  // most: their body need not be known
+            if (!outside[at(slot)]) continue;
             const Index body = state.particles.body[at(store.sphere_of(slot))];
-            if (store.clump_of(body) < 0) back(x, body);
+            if (store.clump_of(body) < 0) back(store.lines.place[at(slot)].centre, body);
         }
         for (MovingClump& clump : store.clumps) {
             const Vec3 shift = back(clump.position, clump.body);
@@ -247,10 +253,10 @@ private:
     void find_pairs(State<P>& state) {
         const Particles& p = state.particles;
         std::vector<char> passive(at(p.spheres()));
-        for (Index s = 0; s < p.spheres(); ++s) {
+        parallel_for(p.spheres(), [&](Index s) {
             const Kind kind = p.kind[at(p.body[at(s)])];
             passive[at(s)] = kind == Kind::concrete || kind == Kind::fixed;
-        }
+        });
         std::vector<SphereStore::ImageRequest> requests;
         if constexpr (P::has_bonds) {
             state.network.arrange(state.store);
@@ -286,6 +292,7 @@ private:
     Real skin_ = 0, list_skin_ = 0;       ///< asked for, of the present list [m]
     Real inner_skin_ = 0, moved_ = 0;     ///< of the candidates; how far anything may have come since [m]
     Real seconds_ = 0, inner_life_ = 32;  ///< [s], [steps]
+    std::optional<PeriodNeed> need_;      ///< of the bodies that are there
     bool outrun_ = false;
     Index age_ = 0;               ///< steps since the last renewal
     std::vector<Vec3> built_at_;  ///< [slot] where the list was made [m]

@@ -118,13 +118,13 @@ struct State {
 
     /// Sees which slots could fly, once the store is arranged.
     void find_flyers() {
-        pace_if_alone.assign(at(store.spheres()), Pace::every_step);
-        for (Index slot = 0; slot < store.spheres(); ++slot) {
+        pace_if_alone.resize(at(store.spheres()));
+        parallel_for(store.spheres(), [&](Index slot) {
             const Index body = particles.body[at(store.sphere_of(slot))];
             const bool bonded = P::has_bonds && particles.kind[at(body)] == Kind::concrete;
-            if (flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded)
-                pace_if_alone[at(slot)] = Pace::flying;
-        }
+            const bool flies = flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded;
+            pace_if_alone[at(slot)] = flies ? Pace::flying : Pace::every_step;
+        });
     }
 
     /// Lets fly what is in no candidate contact; `land` must have been called.
@@ -148,19 +148,23 @@ struct State {
         });
         if constexpr (P::has_bonds)
             for (const auto& bond : network.bonds()) ground(bond.slots.first), ground(bond.slots.second);
-        Real fastest2 = 0;
         const Box space = scene.open_bounds();
         const bool bounded = space.low.array().isFinite().any() || space.high.array().isFinite().any();
-        flight.margin = std::numeric_limits<Real>::infinity();
-        for (std::size_t slot = 0; slot < pace.size(); ++slot) {
-            if (pace[slot] != Pace::flying || store.lines.motion[slot].inverse_mass == 0) continue;
-            fastest2 = std::max(fastest2, store.lines.motion[slot].velocity.squaredNorm());
-            if (!bounded) continue;
-            const Vec3& x = store.lines.place[slot].centre;
-            flight.margin =
-                std::min({flight.margin, (x - space.low).minCoeff(), (space.high - x).minCoeff()});
-        }
-        flight.fastest = std::sqrt(fastest2);
+        struct Outlook {
+            Real fastest2 = 0, margin = std::numeric_limits<Real>::infinity();
+            Outlook& operator+=(const Outlook& o) noexcept {
+                return fastest2 = std::max(fastest2, o.fastest2), margin = std::min(margin, o.margin), *this;
+            }
+        };
+        const auto all = parallel_sum<Outlook>(store.spheres(), [&](Index slot) {
+            Outlook one;
+            if (pace[at(slot)] != Pace::flying || store.lines.motion[at(slot)].inverse_mass == 0) return one;
+            one.fastest2 = store.lines.motion[at(slot)].velocity.squaredNorm();
+            const Vec3& x = store.lines.place[at(slot)].centre;
+            if (bounded) one.margin = std::min((x - space.low).minCoeff(), (space.high - x).minCoeff());
+            return one;
+        });
+        flight.margin = all.margin, flight.fastest = std::sqrt(all.fastest2);
     }
 
     /// Positions, and velocities as the lines have them.
