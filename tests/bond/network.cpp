@@ -45,8 +45,8 @@ struct Rig {
     void arrange(const std::vector<Index>& moved) {
         store.arrange(p, moved, 0, {});
         network.arrange(store);
-        network.each_bond([&](auto& bond, Index) {
-            bond.slots = {store.slot_of(bond.spheres.first), store.slot_of(bond.spheres.second)};
+        network.pack(store.phantom(), [&](const auto& bond, Index) {
+            return SlotPair{store.slot_of(bond.spheres.first), store.slot_of(bond.spheres.second)};
         });
     }
     void move(Index body, const Vec3& by) {

@@ -7,49 +7,65 @@ namespace abrade {
 
 enum class Fate : std::uint8_t { intact, tension, shear };
 
+/// The fates of a pack of bonds.
+struct PackFate {
+    PackMask tension{}, shear{};
+};
+
 /// Two bonded spheres at time t_n. Signs as in contacts: the normal points from j to i.
-struct BondKinematics {
-    Vec3 normal = Vec3::UnitZ();   ///< unit, from j to i
-    Real compression = 0;          ///< rest length - length [m]; negative in tension
-    Vec3 velocity = Vec3::Zero();  ///< of i relative to j, halfway between the spheres [m/s]
-    Real radius = 0;               ///< of the bonded spheres (the smaller) [m]
-    Real length = 0;               ///< between their centres, unloaded [m]
-    Real effective_mass = 0;       ///< [kg]
-    Real time_step = 0;            ///< [s]
-    Vec3 travel = Vec3::Zero();    ///< of i relative to j, over the step that led here [m]
+template <class Number>
+struct BondKinematicsOf {
+    Vec3Of<Number> normal{Number(0), Number(0), Number(1)};  ///< unit, from j to i
+    Number compression = Number(0);                    ///< rest length - length [m]; negative in tension
+    Vec3Of<Number> velocity = Vec3Of<Number>::Zero();  ///< of i relative to j, halfway between them [m/s]
+    Number radius = Number(0);                         ///< of the bonded spheres (the smaller) [m]
+    Number length = Number(0);                         ///< between their centres, unloaded [m]
+    Number effective_mass = Number(0);                 ///< [kg]
+    Real time_step = 0;                                ///< [s]
+    Vec3Of<Number> travel = Vec3Of<Number>::Zero();  ///< of i relative to j, over the step that led here [m]
 
     // What laws that carry moments see beside (`CarriesMoments`); nobody fills it in for the others.
-    Vec3 spin = Vec3::Zero();    ///< angular velocity of i relative to j [rad/s]
-    Vec3 turn = Vec3::Zero();    ///< over the step that led here [rad]
-    Real effective_inertia = 0;  ///< 1/(1/I_i + 1/I_j) [kg m2]
+    Vec3Of<Number> spin = Vec3Of<Number>::Zero();  ///< angular velocity of i relative to j [rad/s]
+    Vec3Of<Number> turn = Vec3Of<Number>::Zero();  ///< over the step that led here [rad]
+    Number effective_inertia = Number(0);          ///< 1/(1/I_i + 1/I_j) [kg m2]
 };
+using BondKinematics = BondKinematicsOf<Real>;
 
 /// How stiff a bond is.
-struct BondRigidity {
-    Real normal = 0, tangential = 0;  ///< [N/m]
-    Real damping_ratio = 0;           ///< share of critical damping [-]
-    Real bending = 0, twisting = 0;   ///< of laws that carry moments [N m]
+template <class Number>
+struct BondRigidityOf {
+    Number normal = Number(0), tangential = Number(0);  ///< [N/m]
+    Real damping_ratio = 0;                             ///< share of critical damping [-]
+    Number bending = Number(0), twisting = Number(0);   ///< of laws that carry moments [N m]
 };
+using BondRigidity = BondRigidityOf<Real>;
 
 /// The answer. Losses are energies over the step centred on t_n, never negative.
-struct BondLoad {
-    Vec3 force = Vec3::Zero();   ///< on i [N]
-    Real stored = 0;             ///< [J]
-    Real lost_bond = 0;          ///< damping while intact, and what is released as the bond breaks [J]
-    Real lost_normal = 0;        ///< by a broken bond, which is a contact [J]
-    Real lost_tangential = 0;    ///< by a broken bond, which is a contact [J]
-    Vec3 couple = Vec3::Zero();  ///< on i, its opposite on j; of laws that carry moments alone [N m]
+template <class Number>
+struct BondLoadOf {
+    Vec3Of<Number> force = Vec3Of<Number>::Zero();  ///< on i [N]
+    Number stored = Number(0);                      ///< [J]
+    Number lost_bond = Number(0);    ///< damping while intact, and what is released as the bond breaks [J]
+    Number lost_normal = Number(0);  ///< by a broken bond, which is a contact [J]
+    Number lost_tangential = Number(0);  ///< by a broken bond, which is a contact [J]
+    Vec3Of<Number> couple =
+        Vec3Of<Number>::Zero();  ///< on i, its opposite on j; of laws that carry moments [N m]
 };
+using BondLoad = BondLoadOf<Real>;
 
-template <class Memory>
-struct BondResponse {
-    BondLoad load;
+template <class Number, class Memory>
+struct BondResponseOf {
+    BondLoadOf<Number> load;
     Memory memory;
-    Fate fate = Fate::intact;  ///< other than intact in the step in which the bond breaks
+    /// Other than intact in the step in which the bond breaks.
+    std::conditional_t<std::same_as<Number, Pack>, PackFate, Fate> fate{};
 };
+template <class Memory>
+using BondResponse = BondResponseOf<Real, Memory>;
 
 /// A bond law is a pure function of kinematics, what is left of the strength (1 sound, 0 gone), and memory.
-/// - `Memory` value-initialises to "sound, unloaded"; `memory.broken` tells what became of it;
+/// - `Memory` value-initialises to "sound, unloaded"; `memory.broken` tells what became of it. Laws that are
+///   templates on their number type have a `MemoryOf<Number>`, made of Numbers, and broken is 0 or 1;
 /// - `strength(left_i, left_j)` joins what is left of the strength of the two spheres;
 /// - `rigidity(radius, length)` lets the engine find the stable step of the network.
 // clang-format off
@@ -67,6 +83,15 @@ concept BondLaw = Law<B> &&
 /// Asks for the spin of its two spheres and answers with a couple. `carries_moments` may be left out.
 template <class B>
 concept CarriesMoments = B::carries_moments;
+
+/// Its memory is a template on the number type, so that it may answer whole packs of bonds at once.
+template <class B>
+concept AnswersBondPacks = requires(const B& law, const BondKinematicsOf<Pack>& bond,
+                                    const typename B::template MemoryOf<Pack>& memory) {
+    {
+        law.respond(bond, Pack{}, memory)
+        } -> std::same_as<BondResponseOf<Pack, typename B::template MemoryOf<Pack>>>;
+};
 
 /// Nothing is bonded: no memory, no work, no code.
 struct NoBond {

@@ -5,84 +5,90 @@
 
 namespace abrade {
 
+namespace detail {
+inline Fate fate_of(bool tension, bool shear) noexcept {
+    return tension ? Fate::tension : shear ? Fate::shear : Fate::intact;
+}
+inline PackFate fate_of(PackMask tension, PackMask shear) noexcept { return {tension, shear}; }
+}  // namespace detail
+
 /// The two springs of one bond at time t_n, f_n = k_n c (c compression) and f_s = -k_s s, with dashpots
 /// 2 zeta sqrt(k m_eff) beside them while it is sound. A broken bond is a frictional contact with the same
 /// springs, f_n >= 0 and |f_s| <= f_n tan(phi), so breaking under compression changes no normal force.
+template <class Number>
 class BondSprings {
 public:
+    using Mask = decltype(Number(0) > Number(0));
+
     /// `spring` [m] is what the bond remembers of s, `friction` tan(phi).
-    BondSprings(const BondKinematics& bond, const BondRigidity& k, Real friction, const Vec3& spring) noexcept
+    BondSprings(const BondKinematicsOf<Number>& bond, const BondRigidityOf<Number>& k, Real friction,
+                const Vec3Of<Number>& spring) noexcept
         : bond_(bond), k_(k), friction_(friction), approach_(-bond.velocity.dot(bond.normal)),
           slip_(bond.velocity + approach_ * bond.normal), before_(turn_into_plane(spring, bond.normal)),
           shear_(before_ + bond.travel - bond.travel.dot(bond.normal) * bond.normal), remembered_(spring) {
-        normal_dashpot_ = 2 * k.damping_ratio * std::sqrt(k.normal * bond.effective_mass);
-        tangential_dashpot_ = 2 * k.damping_ratio * std::sqrt(k.tangential * bond.effective_mass);
+        const Number twice(2 * k.damping_ratio);
+        normal_dashpot_ = twice * sqrt(k.normal * bond.effective_mass);
+        tangential_dashpot_ = twice * sqrt(k.tangential * bond.effective_mass);
     }
 
-    Real push() const noexcept { return k_.normal * bond_.compression; }         ///< f_n [N]
-    Real shear_force() const noexcept { return k_.tangential * shear_.norm(); }  ///< |f_s| [N]
-    const Vec3& shear() const noexcept { return shear_; }                        ///< s [m]
-    Real stored() const noexcept {                                               ///< [J]
-        return 0.5 * k_.normal * square(bond_.compression) + 0.5 * k_.tangential * shear_.squaredNorm();
-    }
+    Number push() const noexcept { return k_.normal * bond_.compression; }                    ///< f_n [N]
+    Number shear_force() const noexcept { return k_.tangential * sqrt(shear_.dot(shear_)); }  ///< |f_s| [N]
+    const Vec3Of<Number>& shear() const noexcept { return shear_; }                           ///< s [m]
 
-    /// Of a sound bond.
-    BondLoad sound() const noexcept {
-        BondLoad load;
+    /// The answer where `sound` bonds break in `tension` or `shear` in this step, or hold, and the others are
+    /// broken. What the contact that is left of a bond cannot hold is lost in the bond, as are the `also` [J]
+    /// that it held beside these springs. Memory's other members are the caller's.
+    template <class Memory>
+    BondResponseOf<Number, Memory> answer(Mask sound, Mask tension, Mask shear,
+                                          Number also = Number(0)) const noexcept {
+        BondResponseOf<Number, Memory> all;
+        BondLoadOf<Number>& load = all.load;
+        const Number held = Number(0.5) * (k_.normal * bond_.compression * bond_.compression +
+                                           k_.tangential * shear_.dot(shear_));
         load.force = (push() + normal_dashpot_ * approach_) * bond_.normal - k_.tangential * shear_ -
                      tangential_dashpot_ * slip_;
-        load.stored = stored();
-        load.lost_bond = (normal_dashpot_ * square(approach_) + tangential_dashpot_ * slip_.squaredNorm()) *
-                         bond_.time_step;
-        return load;
-    }
+        load.stored = held;
+        load.lost_bond = (normal_dashpot_ * approach_ * approach_ + tangential_dashpot_ * slip_.dot(slip_)) *
+                         Number(bond_.time_step);
+        all.memory.spring = shear_, all.memory.broken = Number(0);
+        const Mask breaks = tension | shear, contact = breaks | !sound;
+        if (!any(contact)) return all;
 
-    /// Of one that breaks in this step and held `also` [J] beside its springs: what the contact that is left
-    /// cannot hold is lost in the bond.
-    template <class Memory>
-    BondResponse<Memory> breaks(Fate fate, Real also = 0) const noexcept {
-        BondResponse<Memory> answer = bond_.compression > 0 ? slide<Memory>() : open<Memory>();
-        const Real held = stored() + also;
-        answer.load.lost_bond = std::max(0.0, held - answer.load.stored) + answer.load.lost_normal;
-        answer.load.lost_normal = answer.load.lost_tangential = 0;
-        answer.fate = fate;
-        return answer;
-    }
-
-    /// Of one that is broken: a contact, or nothing where it is open.
-    template <class Memory>
-    BondResponse<Memory> broken() const noexcept {
-        return bond_.compression > 0 ? slide<Memory>() : open<Memory>();
+        const Number zero(0), depth = max(bond_.compression, zero);
+        const Vec3Of<Number> none = Vec3Of<Number>::Zero();
+        const Mask pressed = bond_.compression > zero;
+        const auto normal =
+            NormalSpring<Number>::pushing(k_.normal * depth, Number(0.5) * k_.normal * depth * depth,
+                                          normal_dashpot_, approach_, bond_.time_step);
+        const auto tangential =
+            SlidingSpring<Number>::at(before_, shear_, slip_, Number(friction_) * normal.force, k_.tangential,
+                                      tangential_dashpot_, bond_.time_step);
+        const Number stored = select(pressed, normal.stored + tangential.stored, zero);
+        const Number gone = Number(0.5) * k_.tangential * remembered_.dot(remembered_);
+        const Number lost_normal = select(pressed, normal.lost, zero),
+                     lost_tangential = select(pressed, tangential.lost, gone);
+        load.force = select(
+            contact, select(pressed, Vec3Of<Number>(normal.force * bond_.normal + tangential.force), none),
+            load.force);
+        load.stored = select(contact, stored, held);
+        load.lost_bond = select(breaks, max(held + also - stored, zero) + lost_normal,
+                                select(contact, zero, load.lost_bond));
+        const Mask old = contact & !breaks;
+        load.lost_normal = select(old, lost_normal, zero);
+        load.lost_tangential = select(old, lost_tangential, zero);
+        all.memory.spring = select(contact, select(pressed, tangential.spring, none), shear_);
+        all.memory.broken = select(contact, Number(1), zero);
+        all.fate = detail::fate_of(tension, shear);
+        return all;
     }
 
 private:
-    template <class Memory>
-    BondResponse<Memory> slide() const noexcept {
-        const Real depth = bond_.compression, dt = bond_.time_step;
-        const auto normal =
-            NormalSpring<Real>::pushing(push(), 0.5 * push() * depth, normal_dashpot_, approach_, dt);
-        const auto tangential = SlidingSpring<Real>::at(before_, shear_, slip_, friction_ * normal.force,
-                                                        k_.tangential, tangential_dashpot_, dt);
-        BondResponse<Memory> answer;
-        answer.load.force = normal.force * bond_.normal + tangential.force;
-        answer.load.stored = normal.stored + tangential.stored;
-        answer.load.lost_normal = normal.lost, answer.load.lost_tangential = tangential.lost;
-        answer.memory.spring = tangential.spring, answer.memory.broken = true;
-        return answer;
-    }
-    template <class Memory>
-    BondResponse<Memory> open() const noexcept {
-        BondResponse<Memory> answer;
-        answer.load.lost_tangential = 0.5 * k_.tangential * remembered_.squaredNorm();
-        answer.memory.broken = true;
-        return answer;
-    }
-
-    const BondKinematics& bond_;
-    const BondRigidity& k_;
-    Real friction_, approach_;
-    Vec3 slip_, before_, shear_, remembered_;
-    Real normal_dashpot_ = 0, tangential_dashpot_ = 0;  ///< [N s/m]
+    const BondKinematicsOf<Number>& bond_;
+    const BondRigidityOf<Number>& k_;
+    Real friction_;
+    Number approach_;
+    Vec3Of<Number> slip_, before_, shear_, remembered_;
+    Number normal_dashpot_, tangential_dashpot_;  ///< [N s/m]
 };
 
 }  // namespace abrade

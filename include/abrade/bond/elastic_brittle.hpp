@@ -42,30 +42,36 @@ public:
         }
     };
 
-    struct Memory {
-        Vec3 spring = Vec3::Zero();  ///< shear spring [m]
-        bool broken = false;
+    template <class Number>
+    struct MemoryOf {
+        Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< shear spring [m]
+        Number broken = Number(0);                       ///< 1 where it is
     };
+    using Memory = MemoryOf<Real>;
 
     explicit ElasticBrittle(Params params) : params_(params) { params_.validate(); }
     const Params& params() const noexcept { return params_; }
 
-    BondResponse<Memory> respond(const BondKinematics& bond, Real strength_left,
-                                 const Memory& memory) const noexcept {
-        const BondRigidity k = rigidity(bond.radius, bond.length);
-        const BondSprings springs(bond, k, params_.friction, memory.spring);
-        if (memory.broken) return springs.broken<Memory>();
-        const Real area = strength_left * pi * square(bond.radius);
-        const Real pulled = square(std::max(-springs.push(), 0.0) / params_.tensile),
-                   sheared = square(springs.shear_force() / params_.shear);
-        if (pulled + sheared > square(area))
-            return springs.breaks<Memory>(pulled > sheared ? Fate::tension : Fate::shear);
-        return {springs.sound(), {springs.shear(), false}, Fate::intact};
+    template <class Number>
+    BondResponseOf<Number, MemoryOf<Number>> respond(const BondKinematicsOf<Number>& bond,
+                                                     std::type_identity_t<Number> strength_left,
+                                                     const MemoryOf<Number>& memory) const noexcept {
+        const auto k = rigidity(bond.radius, bond.length);
+        const BondSprings<Number> springs(bond, k, params_.friction, memory.spring);
+        const Number area = strength_left * Number(pi) * bond.radius * bond.radius;
+        const Number pulled = max(-springs.push(), Number(0)) * Number(1 / params_.tensile),
+                     sheared = springs.shear_force() * Number(1 / params_.shear);
+        const auto sound = memory.broken == Number(0);
+        const auto breaks = sound & (pulled * pulled + sheared * sheared > area * area);
+        return springs.template answer<MemoryOf<Number>>(sound, breaks & (pulled > sheared),
+                                                         breaks & (pulled <= sheared));
     }
 
     Real strength(Real left_i, Real left_j) const noexcept { return 0.5 * (left_i + left_j); }
-    BondRigidity rigidity(Real /*radius*/, Real /*length*/) const noexcept {
-        return {params_.stiffness, params_.stiffness * params_.stiffness_ratio, params_.damping};
+    template <class Number>
+    BondRigidityOf<Number> rigidity(Number /*radius*/, Number /*length*/) const noexcept {
+        return {Number(params_.stiffness), Number(params_.stiffness * params_.stiffness_ratio),
+                params_.damping};
     }
 
 private:

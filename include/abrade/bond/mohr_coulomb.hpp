@@ -55,10 +55,12 @@ public:
         }
     };
 
-    struct Memory {
-        Vec3 spring = Vec3::Zero();  ///< shear spring [m]
-        bool broken = false;
+    template <class Number>
+    struct MemoryOf {
+        Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< shear spring [m]
+        Number broken = Number(0);                       ///< 1 where it is
     };
+    using Memory = MemoryOf<Real>;
 
     explicit MohrCoulomb(Params params) : params_(params) {
         params_.validate();
@@ -66,16 +68,17 @@ public:
     }
     const Params& params() const noexcept { return params_; }
 
-    BondResponse<Memory> respond(const BondKinematics& bond, Real strength_left,
-                                 const Memory& memory) const noexcept {
-        const BondRigidity k = rigidity(bond.radius, bond.length);
-        const BondSprings springs(bond, k, tan_phi_, memory.spring);
-        if (memory.broken) return springs.broken<Memory>();
-        const Real limit = strength_left * capacity(bond.radius);
-        if (-springs.push() > limit) return springs.breaks<Memory>(Fate::tension);
-        if (springs.shear_force() > (springs.push() + limit) * tan_phi_)
-            return springs.breaks<Memory>(Fate::shear);
-        return {springs.sound(), {springs.shear(), false}, Fate::intact};
+    template <class Number>
+    BondResponseOf<Number, MemoryOf<Number>> respond(const BondKinematicsOf<Number>& bond,
+                                                     std::type_identity_t<Number> strength_left,
+                                                     const MemoryOf<Number>& memory) const noexcept {
+        const auto k = rigidity(bond.radius, bond.length);
+        const BondSprings<Number> springs(bond, k, tan_phi_, memory.spring);
+        const Number limit = strength_left * capacity(bond.radius), push = springs.push();
+        const auto sound = memory.broken == Number(0);
+        const auto tension = sound & (-push > limit);
+        const auto shear = sound & !tension & (springs.shear_force() > (push + limit) * Number(tan_phi_));
+        return springs.template answer<MemoryOf<Number>>(sound, tension, shear);
     }
 
     Real strength(Real left_i, Real left_j) const noexcept {
@@ -83,14 +86,16 @@ public:
     }
 
     /// Tensile force that breaks a sound bond between spheres of this radius, A sigma_t0 [N].
-    Real capacity(Real radius) const noexcept {
-        return params_.tensile * square(radius) * (params_.area == Area::circle ? pi : 4.0);
+    template <class Number>
+    Number capacity(Number radius) const noexcept {
+        return Number(params_.tensile * (params_.area == Area::circle ? pi : 4.0)) * radius * radius;
     }
 
     Real stiffness() const noexcept { return params_.stiffness; }
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.stiffness_ratio; }
-    BondRigidity rigidity(Real /*radius*/, Real /*length*/) const noexcept {
-        return {stiffness(), tangential_stiffness(), params_.damping};
+    template <class Number>
+    BondRigidityOf<Number> rigidity(Number /*radius*/, Number /*length*/) const noexcept {
+        return {Number(stiffness()), Number(tangential_stiffness()), params_.damping};
     }
 
 private:

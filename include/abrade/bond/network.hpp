@@ -1,8 +1,7 @@
 #pragma once
 // The bonds of a body of concrete: who holds whom, what breaks, and what is still tied to the ground.
 
-#include <abrade/bond/bond_law.hpp>
-#include <abrade/dem/contact_kernel.hpp>
+#include <abrade/bond/bond_pack.hpp>
 #include <abrade/dem/sphere_store.hpp>
 
 #include <span>
@@ -32,15 +31,9 @@ struct BondSums {
     }
 };
 
-/// How the two of a bond moved when last seen, the first relative to the second.
-template <class Law>
-struct SeenEnds {
-    Vec3 velocity = Vec3::Zero();  ///< halfway between them [m/s]
-};
-template <CarriesMoments Law>
-struct SeenEnds<Law> {
-    Vec3 velocity = Vec3::Zero();  ///< [m/s]
-    Vec3 spin = Vec3::Zero();      ///< [rad/s]
+/// Nothing has worn: what `Network::respond` need not ask for.
+struct Unworn {
+    Real operator()(Index /*body*/) const noexcept { return 1; }
 };
 
 /// Two bodies that are held together.
@@ -62,8 +55,8 @@ public:
         Real radius = 0;             ///< the smaller [m]
         Real effective_mass = 0;     ///< [kg]
         Real effective_inertia = 0;  ///< [kg m2]
-        Real stored = 0;             ///< when last evaluated [J]
-        SeenEnds<Law> before{};
+        Real stored = 0;             ///< when last evaluated [J]; in packs until `unpack`
+        SeenEnds<Law, Real> before{};
         typename Law::Memory memory{};
     };
 
@@ -90,6 +83,7 @@ public:
 
     /// Sorts the bonds by the slab that is in charge of them.
     void arrange(const SphereStore& store) {
+        unpack();
         const auto slab_of = [&](const Bond& bond) {
             return std::min(store.slab_of_slot(store.slot_of(bond.spheres.first)),
                             store.slab_of_slot(store.slot_of(bond.spheres.second)));
@@ -101,12 +95,36 @@ public:
         for (const Bond& bond : bonds_) ++first_bond_[at(slab_of(bond)) + 1];
         for (std::size_t s = 1; s < first_bond_.size(); ++s) first_bond_[s] += first_bond_[s - 1];
     }
-    /// Calls `visit(bond, slab)` for each bond, which may set its slots.
+    /// Calls `visit(bond, slab)` for each bond.
     template <class Visit>
     void each_bond(Visit&& visit) {
         for (std::size_t slab = 0; slab + 1 < first_bond_.size(); ++slab)
             for (Index b = first_bond_[slab]; b < first_bond_[slab + 1]; ++b)
                 visit(bonds_[at(b)], static_cast<Index>(slab));
+    }
+    /// Puts the bonds into packs, slab by slab; `slots_of(bond, slab)` says where their spheres are.
+    template <class SlotsOf>
+    void pack(Index phantom, SlotsOf&& slots_of) {
+        each_bond([&](Bond& bond, Index slab) { bond.slots = slots_of(bond, slab); });
+        packs_.clear();
+        first_pack_.assign(first_bond_.size(), 0);
+        for (std::size_t slab = 0; slab + 1 < first_bond_.size(); ++slab) {
+            for (Index b = first_bond_[slab]; b < first_bond_[slab + 1]; ++b)
+                put(b, (b - first_bond_[slab]) % pack_lanes, phantom);
+            first_pack_[slab + 1] = static_cast<Index>(packs_.size());
+        }
+    }
+    /// Brings back from the packs what bonds remember.
+    void unpack() {
+        for (const BondPack<Law>& pack : packs_)
+            for (int k = 0; k < pack_lanes; ++k) {
+                if (pack.bond[static_cast<std::size_t>(k)] < 0) continue;
+                Bond& bond = bonds_[at(pack.bond[static_cast<std::size_t>(k)])];
+                bond.memory = detail::memory_of_lane<typename Law::Memory>(pack.memory, k);
+                bond.before = detail::memory_of_lane<SeenEnds<Law, Real>>(pack.before, k);
+                bond.stored = pack.stored[k];
+            }
+        packs_.clear(), first_pack_.assign(first_pack_.size(), 0);
     }
 
     /// Evaluates the law once for each bond of a slab, commits its memory and adds its answer to the loads.
@@ -116,9 +134,20 @@ public:
     BondSums respond(Index slab, const Law& law, const Wear& wear, SphereLines& lines,
                      const StrengthLeft& strength_left, const ContactStep& step) noexcept {
         BondSums sums;
-        for (Index b = first_bond_[at(slab)]; b < first_bond_[at(slab) + 1]; ++b)
-            respond_one(b, law, wear, lines, strength_left, step, sums);
-        return sums;
+        PackBondSums all;
+        const LineReader at(lines);
+        for (Index p = first_pack_[this->at(slab)]; p < first_pack_[this->at(slab) + 1]; ++p) {
+            BondPack<Law>& pack = packs_[this->at(p)];
+            Vec3Of<Pack> arm;
+            const BondKinematicsOf<Pack> bond = bonds_between(at, pack, step, arm);
+            const auto [load, none, fate] = answer(law, bond, strengths(law, pack, strength_left), pack);
+            pack.stored = load.stored;
+            all.add(load);
+            if (any(bond.compression > Pack(sums.deepest) * bond.radius)) look_deeper(bond, pack, sums);
+            if (any(fate.tension | fate.shear)) note_fates(fate, pack, sums);
+            add_loads(at, pack, load, arm, worn_off(wear, bond, load, pack, sums));
+        }
+        return all.into(sums);
     }
 
     /// Marks [body] what is tied to a fixed body through sound bonds.
@@ -144,6 +173,7 @@ public:
     /// Drops bonds whose body is gone. `moved` says where the spheres are now, `centre` where they stand.
     /// Returns the elastic energy [J] of what went with bodies that are gone.
     Real prune(const Particles& particles, std::span<const Index> moved, std::span<const Vec3> centre) {
+        unpack();
         Real gone = 0;
         const auto dropped = [&](Bond& bond) {
             const BondedPair now{moved[at(bond.spheres.first)], moved[at(bond.spheres.second)]};
@@ -175,68 +205,68 @@ public:
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
 
-    template <class Wear, class StrengthLeft>
-    void respond_one(Index index, const Law& law, const Wear& wear, SphereLines& lines,
-                     const StrengthLeft& strength_left, const ContactStep& step, BondSums& sums) noexcept {
-        Bond& held = bonds_[at(index)];
-        const auto i = at(held.slots.first), j = at(held.slots.second);
-        const Vec3 apart = lines.place[i].centre - lines.place[j].centre;
-        const Real length = apart.norm(), lambda = length / (lines.place[i].radius + lines.place[j].radius);
-        BondKinematics bond;
-        bond.normal = apart / length;
-        bond.compression = held.rest_length - length;
-        const Vec3 velocity = lines.motion[i].velocity - lines.motion[j].velocity -
-                              (lambda * (lines.motion[i].rim + lines.motion[j].rim)).cross(bond.normal);
-        bond.velocity = velocity + step.ahead * (velocity - held.before.velocity);
-        bond.travel = step.time_step * velocity;
-        if constexpr (CarriesMoments<Law>) {
-            const Vec3 spin = lines.motion[i].curvature * lines.motion[i].rim -
-                              lines.motion[j].curvature * lines.motion[j].rim;
-            bond.spin = spin + step.ahead * (spin - held.before.spin);
-            bond.turn = step.time_step * spin;
-            bond.effective_inertia = held.effective_inertia;
-            held.before.spin = spin;
+    struct PackBondSums {
+        Pack lost_bond = 0, lost_normal = 0, lost_tangential = 0, stored = 0;
+        void add(const BondLoadOf<Pack>& load) noexcept {
+            lost_bond += load.lost_bond, lost_normal += load.lost_normal;
+            lost_tangential += load.lost_tangential, stored += load.stored;
         }
-        bond.radius = held.radius, bond.length = held.rest_length;
-        bond.effective_mass = held.effective_mass;
-        bond.time_step = step.time_step;
-        held.before.velocity = velocity;
+        BondSums into(BondSums sums) const noexcept {
+            sums.lost_bond = sum(lost_bond), sums.stored = sum(stored);
+            sums.lost_normal = sum(lost_normal), sums.lost_tangential = sum(lost_tangential);
+            return sums;
+        }
+    };
 
-        const auto [answer, memory, fate] = law.respond(
-            bond, law.strength(strength_left(held.bodies.first), strength_left(held.bodies.second)),
-            held.memory);
-        held.memory = memory;
-        held.stored = answer.stored;
-        const Vec3 lever = lambda * answer.force.cross(bond.normal);
-        Real worn_off = 0;
-        sums.lost_bond += answer.lost_bond;
-        sums.lost_normal += answer.lost_normal, sums.lost_tangential += answer.lost_tangential;
-        sums.stored += answer.stored;
-        sums.broken_tension += fate == Fate::tension, sums.broken_shear += fate == Fate::shear;
-        if (const Real depth = bond.compression / bond.radius; depth > sums.deepest)
-            sums.deepest = depth, sums.deepest_bond = index;
-        if (memory.broken) {
-            const ContactKinematics<Real> contact{.normal = bond.normal,
-                                                  .overlap = bond.compression,
-                                                  .velocity = bond.velocity,
-                                                  .inverse_mass = 1 / bond.effective_mass,
-                                                  .curvature = 2 / bond.radius,
-                                                  .time_step = step.time_step,
-                                                  .travel = bond.travel};
-            const auto worn = wear.increment(
-                contact,
-                ContactLoad<Real>{answer.force, answer.stored, answer.lost_normal, answer.lost_tangential});
-            worn_off = worn.normal + worn.tangential;
-            sums.concrete_lost_normal += 2 * answer.lost_normal;
-            sums.concrete_lost_tangential += 2 * answer.lost_tangential;
+    template <class StrengthLeft>
+    Pack strengths(const Law& law, const BondPack<Law>& pack, const StrengthLeft& left) const noexcept {
+        if constexpr (std::same_as<StrengthLeft, Unworn>) return Pack(law.strength(1, 1));
+        Pack all = 1;
+        for (std::size_t k = 0; k < pack.bond.size(); ++k) {
+            if (pack.bond[k] < 0) continue;
+            const Bond& bond = bonds_[at(pack.bond[k])];
+            all.set(static_cast<int>(k), law.strength(left(bond.bodies.first), left(bond.bodies.second)));
         }
-        SphereLoad &first = lines.load[i], &second = lines.load[j];
-        first.force += answer.force, first.worn += worn_off, first.lever += lever;
-        second.force -= answer.force, second.worn += worn_off, second.lever += lever;
-        if constexpr (CarriesMoments<Law>) {
-            first.lever += lines.motion[i].curvature * answer.couple;  // a torque over the radius
-            second.lever -= lines.motion[j].curvature * answer.couple;
+        return all;
+    }
+    void look_deeper(const BondKinematicsOf<Pack>& bond, const BondPack<Law>& pack,
+                     BondSums& sums) const noexcept {
+        for (int k = 0; k < pack_lanes; ++k)
+            if (const Real depth = bond.compression[k] / bond.radius[k]; depth > sums.deepest)
+                sums.deepest = depth, sums.deepest_bond = pack.bond[static_cast<std::size_t>(k)];
+    }
+    void note_fates(const PackFate& fate, const BondPack<Law>& pack, BondSums& sums) noexcept {
+        for (int k = 0; k < pack_lanes; ++k) {
+            sums.broken_tension += fate.tension[k], sums.broken_shear += fate.shear[k];
+            if (fate.tension[k] || fate.shear[k])
+                bonds_[at(pack.bond[static_cast<std::size_t>(k)])].memory.broken = 1;
         }
+    }
+    /// What broken bonds, which are contacts, wear off either side [m3].
+    template <class Wear>
+    Pack worn_off(const Wear& wear, const BondKinematicsOf<Pack>& bond, const BondLoadOf<Pack>& load,
+                  const BondPack<Law>& pack, BondSums& sums) const noexcept {
+        Pack worn = 0;
+        if (!any(load.lost_normal + load.lost_tangential > Pack(0))) return worn;
+        for (int k = 0; k < pack_lanes; ++k) {
+            if (pack.bond[static_cast<std::size_t>(k)] < 0 ||
+                !(load.lost_normal[k] + load.lost_tangential[k] > 0))
+                continue;
+            const ContactKinematics<Real> contact{.normal = detail::lane_of(bond.normal, k),
+                                                  .overlap = bond.compression[k],
+                                                  .velocity = detail::lane_of(bond.velocity, k),
+                                                  .inverse_mass = 1 / bond.effective_mass[k],
+                                                  .curvature = 2 / bond.radius[k],
+                                                  .time_step = bond.time_step,
+                                                  .travel = detail::lane_of(bond.travel, k)};
+            const auto one =
+                wear.increment(contact, ContactLoad<Real>{detail::lane_of(load.force, k), load.stored[k],
+                                                          load.lost_normal[k], load.lost_tangential[k]});
+            worn.set(k, one.normal + one.tangential);
+            sums.concrete_lost_normal += 2 * load.lost_normal[k];
+            sums.concrete_lost_tangential += 2 * load.lost_tangential[k];
+        }
+        return worn;
     }
 
     /// Bodies at the other ends of a body's sound bonds, one after the other.
@@ -255,7 +285,31 @@ private:
         return {std::move(start), std::move(neighbour)};
     }
 
-    std::vector<Bond> bonds_;              ///< slab by slab
+    void put(Index b, Index lane, Index phantom) {
+        if (lane == 0) {
+            BondPack<Law>& fresh = packs_.emplace_back();
+            fresh.first.fill(line_offset(phantom)), fresh.second.fill(line_offset(phantom + 1));
+            fresh.bond.fill(-1);
+            typename Law::Memory none{};
+            none.broken = 1;
+            for (int k = 0; k < pack_lanes; ++k) detail::set_memory_of_lane(fresh.memory, k, none);
+        }
+        BondPack<Law>& pack = packs_.back();
+        const Bond& bond = bonds_[at(b)];
+        const auto k = static_cast<std::size_t>(lane);
+        pack.first[k] = line_offset(bond.slots.first), pack.second[k] = line_offset(bond.slots.second);
+        pack.bond[k] = b;
+        pack.rest_length.set(lane, bond.rest_length), pack.radius.set(lane, bond.radius);
+        pack.effective_mass.set(lane, bond.effective_mass);
+        pack.effective_inertia.set(lane, bond.effective_inertia);
+        pack.stored.set(lane, bond.stored);
+        detail::set_memory_of_lane(pack.before, lane, bond.before);
+        detail::set_memory_of_lane(pack.memory, lane, bond.memory);
+    }
+
+    std::vector<Bond> bonds_;  ///< slab by slab
+    std::vector<BondPack<Law>> packs_;
+    std::vector<Index> first_pack_{0, 0};  ///< [slab]
     std::vector<BondedPair> held_;         ///< spheres, sorted
     std::vector<Index> first_bond_{0, 0};  ///< [slab]
 };

@@ -53,12 +53,14 @@ public:
         }
     };
 
-    struct Memory {
-        Vec3 spring = Vec3::Zero();  ///< shear spring [m]
-        Vec3 bend = Vec3::Zero();    ///< theta_b, across the normal [rad]
-        Real twist = 0;              ///< theta_t, about the normal [rad]
-        bool broken = false;
+    template <class Number>
+    struct MemoryOf {
+        Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< shear spring [m]
+        Vec3Of<Number> bend = Vec3Of<Number>::Zero();    ///< theta_b, across the normal [rad]
+        Number twist = Number(0);                        ///< theta_t, about the normal [rad]
+        Number broken = Number(0);                       ///< 1 where it is
     };
+    using Memory = MemoryOf<Real>;
 
     explicit ParallelBond(Params params) : params_(params) {
         params_.validate();
@@ -66,45 +68,57 @@ public:
     }
     const Params& params() const noexcept { return params_; }
 
-    BondResponse<Memory> respond(const BondKinematics& bond, Real strength_left,
-                                 const Memory& memory) const noexcept {
-        const BondRigidity k = rigidity(bond.radius, bond.length);
-        const BondSprings springs(bond, k, tan_phi_, memory.spring);
-        if (memory.broken) return springs.broken<Memory>();
+    template <class Number>
+    BondResponseOf<Number, MemoryOf<Number>> respond(const BondKinematicsOf<Number>& bond,
+                                                     std::type_identity_t<Number> strength_left,
+                                                     const MemoryOf<Number>& memory) const noexcept {
+        const auto k = rigidity(bond.radius, bond.length);
+        const BondSprings<Number> springs(bond, k, tan_phi_, memory.spring);
+        const Vec3Of<Number>& n = bond.normal;
+        const Number twisted = bond.turn.dot(n), twist = memory.twist + twisted;
+        const Vec3Of<Number> bend = turn_into_plane(memory.bend, n) + (bond.turn - twisted * n);
+        const Number bend2 = bend.dot(bend), half(0.5), zero(0);
+        const Number held = half * (k.bending * bend2 + k.twisting * twist * twist);
 
-        const Vec3& n = bond.normal;
-        const Real twisted = bond.turn.dot(n), twist = memory.twist + twisted;
-        const Vec3 bend = turn_into_plane(memory.bend, n) + (bond.turn - twisted * n);
-        const Real held = 0.5 * k.bending * bend.squaredNorm() + 0.5 * k.twisting * square(twist);
-        const Real r = params_.radius_factor * bond.radius, area = pi * square(r);
-        const Real moment_share = 4 / (area * r);  // R/I; R/J is half of it
-        const Real pull = -springs.push() / area;
-        const Real tension = pull + moment_share * k.bending * bend.norm();
-        const Real shear = springs.shear_force() / area + 0.5 * moment_share * k.twisting * std::abs(twist);
-        if (tension > strength_left * params_.tensile) return springs.breaks<Memory>(Fate::tension, held);
-        if (shear > strength_left * params_.cohesion + std::max(-pull, 0.0) * tan_phi_)
-            return springs.breaks<Memory>(Fate::shear, held);
+        const Number r = Number(params_.radius_factor) * bond.radius, per_area = Number(1 / pi) / (r * r);
+        const Number moment_share = Number(4) * per_area / r;  // R/I; R/J is half of it
+        const Number pull = -springs.push() * per_area;
+        const Number pulled = pull + moment_share * k.bending * sqrt(bend2);
+        const Number sheared =
+            springs.shear_force() * per_area + half * moment_share * k.twisting * max(twist, -twist);
+        const auto sound = memory.broken == zero;
+        const auto tension = sound & (pulled > strength_left * Number(params_.tensile));
+        const auto shear =
+            sound & !tension &
+            (sheared > strength_left * Number(params_.cohesion) + max(-pull, zero) * Number(tan_phi_));
+        auto answer = springs.template answer<MemoryOf<Number>>(sound, tension, shear, held);
 
-        const Real twist_rate = bond.spin.dot(n);
-        const Vec3 bend_rate = bond.spin - twist_rate * n;
-        const Real root = 2 * k.damping_ratio * std::sqrt(bond.effective_inertia);
-        const Real bend_dashpot = root * std::sqrt(k.bending), twist_dashpot = root * std::sqrt(k.twisting);
-        BondLoad load = springs.sound();
-        load.couple = -k.bending * bend - bend_dashpot * bend_rate -
-                      (k.twisting * twist + twist_dashpot * twist_rate) * n;
-        load.stored += held;
-        load.lost_bond +=
-            (bend_dashpot * bend_rate.squaredNorm() + twist_dashpot * square(twist_rate)) * bond.time_step;
-        return {load, {springs.shear(), bend, twist, false}, Fate::intact};
+        const auto holds = answer.memory.broken == zero;
+        const Number twist_rate = bond.spin.dot(n), twice(2 * k.damping_ratio);
+        const Vec3Of<Number> bend_rate = bond.spin - twist_rate * n, none = Vec3Of<Number>::Zero();
+        const Number bend_dashpot = twice * sqrt(k.bending * bond.effective_inertia),
+                     twist_dashpot = twice * sqrt(k.twisting * bond.effective_inertia);
+        const Vec3Of<Number> couple = -k.bending * bend - bend_dashpot * bend_rate -
+                                      (k.twisting * twist + twist_dashpot * twist_rate) * n;
+        const Number damped =
+            (bend_dashpot * bend_rate.dot(bend_rate) + twist_dashpot * twist_rate * twist_rate) *
+            Number(bond.time_step);
+        answer.load.couple = select(holds, couple, none);
+        answer.load.stored = answer.load.stored + select(holds, held, zero);
+        answer.load.lost_bond = answer.load.lost_bond + select(holds, damped, zero);
+        answer.memory.bend = select(holds, bend, none), answer.memory.twist = select(holds, twist, zero);
+        return answer;
     }
 
     Real strength(Real left_i, Real left_j) const noexcept { return 0.5 * (left_i + left_j); }
 
-    BondRigidity rigidity(Real radius, Real length) const noexcept {
-        const Real r = params_.radius_factor * radius, area = pi * square(r);
-        const Real along = params_.youngs * area / length, bending = 0.25 * along * square(r);
-        return {along, params_.stiffness_ratio * along, params_.damping, bending,
-                2 * params_.stiffness_ratio * bending};
+    template <class Number>
+    BondRigidityOf<Number> rigidity(Number radius, Number length) const noexcept {
+        const Number r = Number(params_.radius_factor) * radius;
+        const Number along = Number(params_.youngs * pi) * r * r / length,
+                     bending = Number(0.25) * along * r * r;
+        const Real kappa = params_.stiffness_ratio;
+        return {along, Number(kappa) * along, params_.damping, bending, Number(2 * kappa) * bending};
     }
 
 private:

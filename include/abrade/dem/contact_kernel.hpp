@@ -197,8 +197,8 @@ void fetch_ahead(std::span<ContactPack<Law>> packs, std::size_t p, const LineRea
 }
 
 /// combine(first, second) of the lines of each lane, as columns.
-template <class Law, class Combine>
-QuadColumns gather(const ContactPack<Law>& pack, const Combine& combine) noexcept {
+template <class Lanes, class Combine>
+QuadColumns gather(const Lanes& pack, const Combine& combine) noexcept {
     QuadRows row;
 #pragma GCC unroll 8
     for (std::size_t k = 0; k < row.size(); ++k) row[k] = combine(pack.first[k], pack.second[k]);
@@ -206,8 +206,8 @@ QuadColumns gather(const ContactPack<Law>& pack, const Combine& combine) noexcep
 }
 
 /// Angular velocity of i relative to j [rad/s], and 1/(m_i r_i^2) + 1/(m_j r_j^2) [1/(kg m2)].
-template <bool on_plane, class Law>
-QuadColumns gather_spins(const ContactPack<Law>& pack, const LineReader& at) noexcept {
+template <bool on_plane, class Lanes>
+QuadColumns gather_spins(const Lanes& pack, const LineReader& at) noexcept {
     const auto turning = [&](LineOffset sphere) {
         const Quad* motion = at.motion(sphere);  // of the rim, and 1/r
         const Real curvature = motion[1].value[3];
@@ -219,8 +219,8 @@ QuadColumns gather_spins(const ContactPack<Law>& pack, const LineReader& at) noe
 }
 
 /// Levers are torques over radii: a couple counts over each sphere's own.
-template <bool on_plane, class Law>
-void add_couples(const Vec3Of<Pack>& couple, const ContactPack<Law>& pack, const LineReader& at) noexcept {
+template <bool on_plane, class Lanes>
+void add_couples(const Vec3Of<Pack>& couple, const Lanes& pack, const LineReader& at) noexcept {
     const QuadRows couples = rows({couple.x(), couple.y(), couple.z(), Pack(0)});
     const auto over_radius = [&](LineOffset sphere, Real sign) {
         const Real x = sign * at.motion(sphere)[1].value[3];

@@ -272,12 +272,12 @@ private:
                 return P::has_bonds && state.network.holds({first, second});
             });
         if constexpr (P::has_bonds)
-            state.network.each_bond([&](auto& bond, Index slab) {
+            state.network.pack(state.store.phantom(), [&](const auto& bond, Index slab) {
                 const auto slot = [&](Index sphere) {
                     const auto image = image_for(state.store, sphere, slab);
                     return image ? state.store.image_slot(*image) : state.store.slot_of(sphere);
                 };
-                bond.slots = {slot(bond.spheres.first), slot(bond.spheres.second)};
+                return SlotPair{slot(bond.spheres.first), slot(bond.spheres.second)};
             });
     }
 

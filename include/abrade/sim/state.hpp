@@ -78,7 +78,7 @@ struct State {
                 return policies.wear.strength_left(concrete.fracture(particles.site[at(body)]));
             };
         else
-            return [](Index) { return 1.0; };
+            return Unworn{};
     }
 
     bool feels_fluid(Index body) const noexcept {
