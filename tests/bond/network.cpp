@@ -74,7 +74,7 @@ struct Rig {
     }
     bool broken(const BondedPair& pair) const {
         for (const auto& bond : network.bonds())
-            if (bond.spheres == pair) return bond.memory.broken;
+            if (bond.spheres == pair) return bond.broken();
         FAIL("no such bond");
         return false;
     }

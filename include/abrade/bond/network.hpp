@@ -58,6 +58,8 @@ public:
         Real stored = 0;             ///< when last evaluated [J]; in packs until `unpack`
         SeenEnds<Law, Real> before{};
         typename Law::Memory memory{};
+
+        bool broken() const noexcept { return static_cast<bool>(memory.broken); }
     };
 
     /// Bonds the given pairs of spheres, each of them a body, as they stand: rest lengths are the present
@@ -181,7 +183,7 @@ public:
             const auto i = at(now.first), j = at(now.second);
             bond.spheres = now;
             bond.bodies = {particles.body[i], particles.body[j]};
-            if (!bond.memory.broken) return false;
+            if (!bond.broken()) return false;
             const Real apart = (centre[i] - centre[j]).norm();
             const bool open = apart >= std::max(bond.rest_length, particles.radius[i] + particles.radius[j]);
             const auto loose = [&](Index body) { return particles.kind[at(body)] == Kind::grain; };
@@ -274,7 +276,7 @@ private:
         std::vector<Index> start(at(bodies) + 1, 0);
         const auto each_end = [&](auto&& visit) {
             for (const Bond& bond : bonds_)
-                if (!bond.memory.broken)
+                if (!bond.broken())
                     visit(bond.bodies.first, bond.bodies.second),
                         visit(bond.bodies.second, bond.bodies.first);
         };
