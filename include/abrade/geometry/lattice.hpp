@@ -26,8 +26,8 @@ struct Lattice {
     Real radius = 0;  ///< of the spheres [m]
     Index count_along = 0, count_across = 0, count_layers = 0;
     std::vector<LatticeSite> sites;
-    std::vector<Real> column_area;               ///< [column] surface of its top [m2]
-    std::vector<std::pair<Index, Index>> bonds;  ///< pairs of sites that are held together, first < second
+    std::vector<Real> column_area;                 ///< [column] surface of its top [m2]
+    std::vector<std::pair<Index, Index>> bonds{};  ///< pairs of sites that are held together, first < second
 
     Index site(Index along, Index across, Index layer) const noexcept {
         return (along * count_across + across) * count_layers + layer;
