@@ -78,7 +78,7 @@ Whole hang(Lattice lattice, Real area, Real base, bool until_apart = true) {
     for (left = 1.005 * first; until_apart && !loose() && left > 0.3 * first; left *= 0.99)
         sim.run({.end_time = sim.time() + 20 * unit});
     const Real per_area = load * square(spacing) / capacity;
-    return {youngs / (stiffness / spacing), per_area / first, per_area / left,
+    return {youngs / (stiffness / spacing), per_area / first, until_apart ? per_area / left : NAN,
             sim.ledger().residual_relative()};
 }
 
