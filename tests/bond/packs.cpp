@@ -3,6 +3,7 @@
 #include <abrade/bond/elastic_brittle.hpp>
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/parallel_bond.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>
 
@@ -94,10 +95,107 @@ TEST_CASE_TEMPLATE("a pack of bonds answers as its bonds do one by one", Law, Mo
             const auto next = detail::memory_of_lane<typename Law::Memory>(all.memory, k);
             CHECK((next.spring - one.memory.spring).norm() <= 1e-10 * (one.memory.spring.norm() + 1e-12));
             CHECK(next.broken == one.memory.broken);
+            if constexpr (requires { next.bend; }) {
+                CHECK((next.bend - one.memory.bend).norm() <= 1e-10 * (one.memory.bend.norm() + 1e-12));
+                CHECK(std::abs(next.twist - one.memory.twist) <= 1e-10 * std::abs(one.memory.twist) + 1e-22);
+            }
         }
     }
     CHECK(fates[0] > 1000);
     CHECK(fates[1] > 200);
     CHECK(fates[2] > 200);
     CHECK(contacts > 1000);
+}
+
+namespace {
+
+/// A spring that never breaks and heeds nothing: what it makes of left-over lanes must not count.
+struct Unbreakable {
+    static constexpr std::string_view name = "Unbreakable";
+    using Params = NoParams;
+    template <class Number>
+    struct MemoryOf {
+        Number broken = Number(0);
+    };
+    using Memory = MemoryOf<Real>;
+    explicit Unbreakable(Params = {}) {}
+    const Params& params() const noexcept {
+        static constexpr Params none{};
+        return none;
+    }
+    template <class Number>
+    BondResponseOf<Number, MemoryOf<Number>> respond(const BondKinematicsOf<Number>& bond,
+                                                     std::type_identity_t<Number>,
+                                                     const MemoryOf<Number>& memory) const noexcept {
+        BondResponseOf<Number, MemoryOf<Number>> answer;
+        answer.load.force = Number(1e5) * bond.compression * bond.normal;
+        answer.load.stored = Number(0.5e5) * bond.compression * bond.compression;
+        answer.memory = memory;
+        return answer;
+    }
+    Real strength(Real, Real) const noexcept { return 1; }
+    template <class Number>
+    BondRigidityOf<Number> rigidity(Number, Number) const noexcept {
+        return {Number(1e5), Number(0), 0};
+    }
+};
+
+/// The same law, asked for one bond at a time.
+template <class Law>
+struct OneByOne : Law {
+    using Law::Law;
+    template <class Number>
+    using MemoryOf = void;
+    using Memory = typename Law::template MemoryOf<Real>;
+    BondResponse<Memory> respond(const BondKinematics& bond, Real left, const Memory& memory) const noexcept {
+        return Law::respond(bond, left, memory);
+    }
+};
+
+template <class Bond>
+auto hanging_row(const Bond& bond) {
+    std::vector<Vec3> centres;
+    for (int n = 0; n < 5; ++n) centres.push_back({0, 0, -0.02 * n});
+    Scene scene;
+    Lattice row = lattice_of(centres, 0.01, 1e-4);
+    row.sites.front().held = true;
+    scene.concrete = ConcreteBlock{row};
+    auto sim = simulate(std::move(scene)).contact(LinearSpring{{.stiffness = 1e5}}).bond(bond);
+    sim.run({.end_time = 0.02});
+    return sim;
+}
+
+}  // namespace
+
+TEST_CASE("lanes that are left over answer nothing, whatever their law makes of them") {
+    static_assert(AnswersBondPacks<Unbreakable>);
+    const auto sim = hanging_row(Unbreakable{});
+    const Ledger& e = sim.ledger();
+    CHECK(e.stored_bonds > 0);
+    CHECK(e.stored_bonds < 1);
+    CHECK(e.residual_relative() < 1e-12);
+    CHECK(std::abs(e.integration_residue()) < 1e-3 * e.throughput());
+}
+
+TEST_CASE("a law that is asked bond by bond moves the same") {
+    const ParallelBond::Params beam{.youngs = 1e8, .tensile = 1e9, .cohesion = 1e9};
+    const auto packs = hanging_row(ParallelBond{beam});
+    const auto single = hanging_row(OneByOne<ParallelBond>{beam});
+    static_assert(!AnswersBondPacks<OneByOne<ParallelBond>>);
+    for (std::size_t b = 0; b < 5; ++b)
+        CHECK((packs.particles().position[b] - single.particles().position[b]).norm() < 1e-15);
+    CHECK(packs.ledger().stored_bonds ==
+          doctest::Approx(single.ledger().stored_bonds).epsilon(1e-10).scale(0));
+}
+
+TEST_CASE("a sphere of a packing that nothing ties is a grain from the start, and rests on what is below") {
+    Scene scene;
+    Lattice body = lattice_of({{0, 0, 0}, {0, 0, 0.021}}, 0.01, 1.6e-5, 0.01, 0.001);
+    scene.concrete = ConcreteBlock{body};
+    auto sim = simulate(std::move(scene))
+                   .contact(LinearSpring{{.stiffness = 1e5, .restitution = 0.3}})
+                   .bond(MohrCoulomb{{.tensile = 1e6, .stiffness = 1e5}});
+    sim.run({.end_time = 0.2});
+    CHECK(sim.particles().kind[1] == Kind::grain);
+    CHECK(sim.particles().position[1].z() == doctest::Approx(0.02).epsilon(1e-3).scale(0));
 }

@@ -102,7 +102,7 @@ TEST_CASE("bent, it breaks at sigma_t I/R; twisted, at the cohesion times J/R; w
     }
 }
 
-TEST_CASE("a bond that turns as a whole keeps what it holds") {
+TEST_CASE("a bond that tilts keeps what it holds") {
     const Memory held{Vec3(1e-7, 0, 0), Vec3(0, 2e-7, 0), 1e-7, false};
     BondKinematics turned = at(0);
     turned.normal = Vec3(0.6, 0, 0.8);

@@ -195,15 +195,42 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("hexagonal lattice: one layer, one row, rows stretched by a third; sides too short") {
+    const auto volume_of = [](const Lattice& lattice) {
+        Real volume = 0;
+        for (const LatticeSite& site : lattice.sites) volume += site.cell_volume;
+        return volume;
+    };
+    const Real d = 0.02;
+    const Lattice layer = hexagonal_lattice(0.2, 0.2, {.sphere_diameter = d, .layers = 1});
+    CHECK(volume_of(layer) == doctest::Approx(0.2 * 0.2 * d).epsilon(1e-12).scale(0));
+    const Lattice row = hexagonal_lattice(0.2, 1.5 * d, {.sphere_diameter = d, .layers = 1});
+    CHECK(row.count_across == 1);
+    CHECK(row.bonds.size() == row.sites.size() - 1);
+    const Lattice wide = hexagonal_lattice(2.4 * d, 0.2, {.sphere_diameter = d, .layers = 3});
+    CHECK(wide.count_along == 1);
+    const Lattice pairs = hexagonal_lattice(2.9 * d, 0.2, {.sphere_diameter = d, .layers = 1});
+    CHECK(pairs.count_along == 2);
+    CHECK(static_cast<Real>(pairs.bonds.size()) / static_cast<Real>(pairs.sites.size()) > 1.5);
+    for (const Real side : {1.4 * d, 1.5 * d * (1 - 1e-9)})
+        CHECK_THROWS_WITH_AS(hexagonal_lattice(side, 0.2, {.sphere_diameter = d, .layers = 2}),
+                             doctest::Contains("hexagonal_lattice.side"), InputError);
+}
+
 TEST_CASE("a body from spheres that stand anywhere: bonds by brute force, shares, columns, what is held") {
     std::vector<Vec3> centres;
     const Real r = 0.01;
-    for (int n = 0; n < 400; ++n)  // a spiral of sorts, so that no axis is special
-        centres.push_back({0.06 * std::cos(1.7 * n), 0.05 * std::sin(2.3 * n), 0.0005 * n});
+    for (int n = 0; n < 400; ++n) {  // a spiral of sorts, so that no axis is special
+        const Vec3 next(0.06 * std::cos(1.7 * n), 0.05 * std::sin(2.3 * n), 0.0005 * n);
+        const auto near = [&](const Vec3& x) { return (x - next).norm() < 1.001 * r; };
+        if (std::none_of(centres.begin(), centres.end(), near)) centres.push_back(next);
+    }
+    const auto count = static_cast<Index>(centres.size());
+    REQUIRE(count > 200);
     const Lattice lattice = lattice_of(centres, r, 3e-3, 0.1, 0.01);
     std::vector<std::pair<Index, Index>> pairs;
-    for (Index i = 0; i < 400; ++i)
-        for (Index j = i + 1; j < 400; ++j)
+    for (Index i = 0; i < count; ++i)
+        for (Index j = i + 1; j < count; ++j)
             if ((centres[static_cast<std::size_t>(i)] - centres[static_cast<std::size_t>(j)]).norm() <=
                 2.2 * r)
                 pairs.emplace_back(i, j);
@@ -221,6 +248,11 @@ TEST_CASE("a body from spheres that stand anywhere: bonds by brute force, shares
     CHECK_THROWS_AS(lattice_of({}, r, 1e-3), InputError);
     CHECK_THROWS_AS(lattice_of(centres, 0, 1e-3), InputError);
     CHECK_THROWS_AS(lattice_of(centres, r, -1), InputError);
+    centres[9] = centres[4];
+    CHECK_THROWS_WITH_AS(lattice_of(centres, r, 1e-3), doctest::Contains("centres[4] and [9]"), InputError);
+    centres[9].x() = 1e12;
+    CHECK_THROWS_WITH_AS(lattice_of(centres, r, 1e-3), doctest::Contains("stands far from the others"),
+                         InputError);
     centres[7].y() = std::nan("");
     CHECK_THROWS_WITH_AS(lattice_of(centres, r, 1e-3), doctest::Contains("lattice_of.centres[7].y"),
                          InputError);

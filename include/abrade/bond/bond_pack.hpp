@@ -53,18 +53,47 @@ struct alignas(64) BondPack {
     SeenEnds<Law, Pack> before{};
     typename detail::PackBondMemory<Law>::type memory{};
     std::array<Index, pack_lanes> bond{};  ///< number in the network, -1: none
+    bool has_broken = false;               ///< some bond is a contact
 };
 
-/// The law's answer to a pack, its memory committed (none is handed back).
+/// What a law answers to a pack, but for the memory.
+struct BondAnswer {
+    BondLoadOf<Pack> load;
+    PackFate fate;
+};
+
+namespace detail {
+
+/// Left-over lanes answer nothing, whatever the law makes of them.
+inline void keep_only(PackMask used, BondAnswer& all) noexcept {
+    const Vec3Of<Pack> none = Vec3Of<Pack>::Zero();
+    all.load.force = select(used, all.load.force, none);
+    all.load.couple = select(used, all.load.couple, none);
+    for (Pack* energy :
+         {&all.load.stored, &all.load.lost_bond, &all.load.lost_normal, &all.load.lost_tangential})
+        *energy = select(used, *energy, Pack(0));
+    all.fate.tension = all.fate.tension & used, all.fate.shear = all.fate.shear & used;
+}
+
+}  // namespace detail
+
+/// The law's answer to a pack, its memory committed.
 template <class Law>
-BondResponseOf<Pack, int> answer(const Law& law, const BondKinematicsOf<Pack>& bond,
-                                 const Pack& strength_left, BondPack<Law>& pack) noexcept {
+BondAnswer answer(const Law& law, const BondKinematicsOf<Pack>& bond, const Pack& strength_left,
+                  BondPack<Law>& pack) noexcept {
     if constexpr (AnswersBondPacks<Law>) {
         const auto [load, memory, fate] = law.respond(bond, strength_left, pack.memory);
         pack.memory = memory;
-        return {load, 0, fate};
+        BondAnswer all{load, fate};
+        if (pack.bond.back() < 0) {
+            PackMask used{};
+            for (int lane = 0; lane < pack_lanes; ++lane)
+                if (pack.bond[static_cast<std::size_t>(lane)] >= 0) used.set(lane);
+            detail::keep_only(used, all);
+        }
+        return all;
     } else {
-        BondResponseOf<Pack, int> all{};
+        BondAnswer all{};
         for (int lane = 0; lane < pack_lanes; ++lane) {
             if (pack.bond[static_cast<std::size_t>(lane)] < 0) continue;
             auto& remembered = pack.memory[static_cast<std::size_t>(lane)];

@@ -15,6 +15,10 @@ inline PackFate fate_of(PackMask tension, PackMask shear) noexcept { return {ten
 /// The two springs of one bond at time t_n, f_n = k_n c (c compression) and f_s = -k_s s, with dashpots
 /// 2 zeta sqrt(k m_eff) beside them while it is sound. A broken bond is a frictional contact with the same
 /// springs, f_n >= 0 and |f_s| <= f_n tan(phi), so breaking under compression changes no normal force.
+///
+/// Springs tilt with the bond, but do not turn about it: two spheres that spin together about their bond keep
+/// the direction of s in space. Concrete that is tied to the ground does not spin; for loose clusters that
+/// are sheared or bent and spin about such an axis this is an error.
 template <class Number>
 class BondSprings {
 public:
@@ -84,7 +88,7 @@ public:
 
 private:
     const BondKinematicsOf<Number>& bond_;
-    const BondRigidityOf<Number>& k_;
+    BondRigidityOf<Number> k_;
     Real friction_;
     Number approach_;
     Vec3Of<Number> slip_, before_, shear_, remembered_;

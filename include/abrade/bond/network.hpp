@@ -137,17 +137,17 @@ public:
                      const StrengthLeft& strength_left, const ContactStep& step) noexcept {
         BondSums sums;
         PackBondSums all;
-        const LineReader at(lines);
-        for (Index p = first_pack_[this->at(slab)]; p < first_pack_[this->at(slab) + 1]; ++p) {
-            BondPack<Law>& pack = packs_[this->at(p)];
+        const LineReader reader(lines);
+        for (Index p = first_pack_[at(slab)]; p < first_pack_[at(slab) + 1]; ++p) {
+            BondPack<Law>& pack = packs_[at(p)];
             Vec3Of<Pack> arm;
-            const BondKinematicsOf<Pack> bond = bonds_between(at, pack, step, arm);
-            const auto [load, none, fate] = answer(law, bond, strengths(law, pack, strength_left), pack);
+            const BondKinematicsOf<Pack> bond = bonds_between(reader, pack, step, arm);
+            const auto [load, fate] = answer(law, bond, strengths(law, pack, strength_left), pack);
             pack.stored = load.stored;
             all.add(load);
             if (any(bond.compression > Pack(sums.deepest) * bond.radius)) look_deeper(bond, pack, sums);
             if (any(fate.tension | fate.shear)) note_fates(fate, pack, sums);
-            add_loads(at, pack, load, arm, worn_off(wear, bond, load, pack, sums));
+            add_loads(reader, pack, load, arm, worn_off(wear, bond, load, pack, sums));
         }
         return all.into(sums);
     }
@@ -222,8 +222,8 @@ private:
 
     template <class StrengthLeft>
     Pack strengths(const Law& law, const BondPack<Law>& pack, const StrengthLeft& left) const noexcept {
-        if constexpr (std::same_as<StrengthLeft, Unworn>) return Pack(law.strength(1, 1));
-        Pack all = 1;
+        Pack all(law.strength(1, 1));
+        if constexpr (std::same_as<StrengthLeft, Unworn>) return all;
         for (std::size_t k = 0; k < pack.bond.size(); ++k) {
             if (pack.bond[k] < 0) continue;
             const Bond& bond = bonds_[at(pack.bond[k])];
@@ -237,7 +237,8 @@ private:
             if (const Real depth = bond.compression[k] / bond.radius[k]; depth > sums.deepest)
                 sums.deepest = depth, sums.deepest_bond = pack.bond[static_cast<std::size_t>(k)];
     }
-    void note_fates(const PackFate& fate, const BondPack<Law>& pack, BondSums& sums) noexcept {
+    void note_fates(const PackFate& fate, BondPack<Law>& pack, BondSums& sums) noexcept {
+        pack.has_broken = true;
         for (int k = 0; k < pack_lanes; ++k) {
             sums.broken_tension += fate.tension[k], sums.broken_shear += fate.shear[k];
             if (fate.tension[k] || fate.shear[k])
@@ -249,11 +250,10 @@ private:
     Pack worn_off(const Wear& wear, const BondKinematicsOf<Pack>& bond, const BondLoadOf<Pack>& load,
                   const BondPack<Law>& pack, BondSums& sums) const noexcept {
         Pack worn = 0;
-        if (!any(load.lost_normal + load.lost_tangential > Pack(0))) return worn;
+        if (!pack.has_broken) return worn;
         for (int k = 0; k < pack_lanes; ++k) {
-            if (pack.bond[static_cast<std::size_t>(k)] < 0 ||
-                !(load.lost_normal[k] + load.lost_tangential[k] > 0))
-                continue;
+            const Index b = pack.bond[static_cast<std::size_t>(k)];
+            if (b < 0 || !bonds_[at(b)].broken() || !(bond.compression[k] > 0)) continue;
             const ContactKinematics<Real> contact{.normal = detail::lane_of(bond.normal, k),
                                                   .overlap = bond.compression[k],
                                                   .velocity = detail::lane_of(bond.velocity, k),
@@ -307,6 +307,7 @@ private:
         pack.stored.set(lane, bond.stored);
         detail::set_memory_of_lane(pack.before, lane, bond.before);
         detail::set_memory_of_lane(pack.memory, lane, bond.memory);
+        pack.has_broken |= bond.broken();
     }
 
     std::vector<Bond> bonds_;  ///< slab by slab

@@ -65,9 +65,6 @@ namespace detail {
 inline Index spheres_that_fit(Real length, Real diameter) {
     return static_cast<Index>(std::floor(length / diameter * (1 + 1e-12)));
 }
-}  // namespace detail
-
-namespace detail {
 
 /// Appends a site at the next place in the order of a regular lattice.
 inline void add_site(Lattice& lattice, const Vec3& centre, Real cell_volume, Index i, Index j, Index k) {
@@ -80,21 +77,23 @@ inline void add_site(Lattice& lattice, const Vec3& centre, Real cell_volume, Ind
                              .held = k + 1 == lattice.count_layers});
 }
 
-/// Bonds each site to those of the next places along each direction that lie within `reach` [m].
-inline void bond_neighbours(Lattice& lattice, Real reach) {
-    for (const LatticeSite& from : lattice.sites)
-        for (Index i = std::max(from.along - 1, 0); i <= std::min(from.along + 1, lattice.count_along - 1);
-             ++i)
-            for (Index j = std::max(from.across - 1, 0);
-                 j <= std::min(from.across + 1, lattice.count_across - 1); ++j)
-                for (Index k = std::max(from.layer - 1, 0);
-                     k <= std::min(from.layer + 1, lattice.count_layers - 1); ++k) {
-                    const Index first = lattice.site(from.along, from.across, from.layer),
-                                second = lattice.site(i, j, k);
-                    const Vec3 apart = lattice.sites[static_cast<std::size_t>(second)].centre - from.centre;
-                    if (first < second && apart.squaredNorm() < reach * reach)
-                        lattice.bonds.emplace_back(first, second);
-                }
+/// Bonds the twelve neighbours of a hexagonal lattice. Of two rows, or of two layers, one stands half a
+/// sphere further on; every other layer stands a third of a row further across.
+inline void bond_hexagonal(Lattice& lattice) {
+    lattice.bonds.reserve(6 * lattice.sites.size());
+    for (const LatticeSite& s : lattice.sites) {
+        const auto bond = [&](Index i, Index j, Index k) {
+            if (i < 0 || j < 0 || i >= lattice.count_along || j >= lattice.count_across ||
+                k >= lattice.count_layers)
+                return;
+            const Index here = lattice.site(s.along, s.across, s.layer), there = lattice.site(i, j, k);
+            lattice.bonds.emplace_back(std::min(here, there), std::max(here, there));
+        };
+        const Index left = s.along - 1 + (s.across + s.layer) % 2;  // of the two half a sphere off
+        bond(s.along + 1, s.across, s.layer);
+        for (const Index i : {left, left + 1}) bond(i, s.across + 1, s.layer), bond(i, s.across, s.layer + 1);
+        bond(s.along, s.across + (s.layer % 2 ? 1 : -1), s.layer + 1);
+    }
 }
 
 /// Bonds the nearest neighbours along the three directions of a cubic lattice.
@@ -164,16 +163,11 @@ inline Lattice invert_lattice(const Invert& invert, const LatticeSize& size) {
 /// A slab of hexagonal close-packed spheres (coordination 12, solid fraction pi / sqrt(18)), its surface at
 /// z = 0, its centre at x = y = 0. Rows lie along x; the next row is half a sphere further on, the next layer
 /// in the hollows. Rows and spheres in them are spaced a little wider, never closer, so that they fill
-/// `length` x `width`. Touching neighbours are bonded, and those that this spacing left at most a tenth of a
-/// diameter apart.
+/// `length` x `width`. Each sphere is bonded to its twelve neighbours. Throws InputError for sides shorter
+/// than one and a half diameters.
 inline Lattice hexagonal_lattice(Real length, Real width, const LatticeSize& size) {
     check_size(size, length, width, "hexagonal_lattice.side");
     const Real d = size.sphere_diameter, row = d * std::sqrt(0.75), layer = d * std::sqrt(2.0 / 3);
-    for (const Real side : {length, width})
-        require(side >= 1.5 * d * (1 - 1e-12),
-                {"hexagonal_lattice.side", "at least one and a half sphere diameters of " + to_text(d) + " m",
-                 "m", "take smaller spheres or a larger body"},
-                side);
     // Half a sphere more for the rows that stand half a sphere on, a third of a row for the layers that do.
     Lattice lattice{0.5 * d,
                     detail::spheres_that_fit(length - 0.5 * d, d),
@@ -182,6 +176,11 @@ inline Lattice hexagonal_lattice(Real length, Real width, const LatticeSize& siz
                     {},
                     {},
                     {}};
+    require(
+        lattice.count_along >= 1 && lattice.count_across >= 1,
+        {"hexagonal_lattice.side", "at least 1.5 sphere diameters of " + to_text(d) + " m along, 1.3 across",
+         "m", "take smaller spheres or a larger body"},
+        std::min(length, width));
     const Real dx = (length - d) / (lattice.count_along - 0.5),
                dy = (width - d) / (lattice.count_across - 2.0 / 3);
     const Real area = length * width / (lattice.count_along * lattice.count_across);
@@ -191,19 +190,22 @@ inline Lattice hexagonal_lattice(Real length, Real width, const LatticeSize& siz
             for (Index k = 0; k < size.layers; ++k) {
                 const Real x = 0.5 * d + (i + 0.5 * ((j + k) % 2)) * dx,
                            y = 0.5 * d + (j + (k % 2) / 3.0) * dy;
+                const Real beyond =
+                    0.5 * (d - layer);  // of the first and the last layer, to the slab's faces
+                const Real height = layer + beyond * ((k == 0) + (k + 1 == size.layers));
                 detail::add_site(lattice, {x - 0.5 * length, y - 0.5 * width, -0.5 * d - k * layer},
-                                 area * (k == 0 || k + 1 == size.layers ? 0.5 * (d + layer) : layer), i, j,
-                                 k);
+                                 area * height, i, j, k);
             }
         }
-    detail::bond_neighbours(lattice, 1.1 * d);
+    detail::bond_hexagonal(lattice);
     return lattice;
 }
 
 /// A body from spheres that stand somewhere already, a random packing for one: those whose gap is at most
 /// `gap` times the diameter are bonded, those that stand below `held_below` [m] are fixed, and each stands
 /// for an equal share of `volume` [m3]. Columns are squares of one diameter. Throws InputError for no
-/// spheres, a centre that is not finite, a radius or volume that is not > 0.
+/// spheres, a centre that is not finite, a radius or volume that is not > 0, a negative gap, spheres that
+/// are far too scattered, and two that stand at one place.
 inline Lattice lattice_of(const std::vector<Vec3>& centres, Real radius, Real volume, Real gap = 0.05,
                           Real held_below = -std::numeric_limits<Real>::infinity()) {
     require(!centres.empty(), {"lattice_of.centres", "at least 1", "", "a body without spheres is none"}, 0);
@@ -217,6 +219,12 @@ inline Lattice lattice_of(const std::vector<Vec3>& centres, Real radius, Real vo
         low = low.cwiseMin(centres[n]), high = high.cwiseMax(centres[n]);
     }
     const Real d = 2 * radius;
+    constexpr Real most = 1e8;  // some GB
+    const Real columns = ((high.x() - low.x()) / d + 1) * ((high.y() - low.y()) / d + 1);
+    require(columns <= most,
+            {"lattice_of: columns of one diameter over the spheres' extent", "at most " + to_text(most), "",
+             "look for a sphere that stands far from the others"},
+            columns);
     lattice.count_along = static_cast<Index>((high.x() - low.x()) / d) + 1;
     lattice.count_across = static_cast<Index>((high.y() - low.y()) / d) + 1;
     lattice.column_area.assign(
@@ -242,8 +250,14 @@ inline Lattice lattice_of(const std::vector<Vec3>& centres, Real radius, Real vo
     const Real reach = (1 + gap) * d;
     for (auto a = order.begin(); a != order.end(); ++a)
         for (auto b = a + 1; b != order.end() && at(*b)[axis] - at(*a)[axis] <= reach; ++b)
-            if ((at(*b) - at(*a)).squaredNorm() <= reach * reach)
+            if (const Real apart2 = (at(*b) - at(*a)).squaredNorm(); apart2 <= reach * reach) {
+                if (apart2 < 0.25 * d * d)
+                    fail({"lattice_of.centres[" + std::to_string(std::min(*a, *b)) + "] and [" +
+                              std::to_string(std::max(*a, *b)) + "]",
+                          "at least a radius apart", "m", "take one of them out"},
+                         to_text(std::sqrt(apart2)));
                 lattice.bonds.emplace_back(std::min(*a, *b), std::max(*a, *b));
+            }
     std::sort(lattice.bonds.begin(), lattice.bonds.end());
     return lattice;
 }

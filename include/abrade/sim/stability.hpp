@@ -73,7 +73,7 @@ void each_end(const Network<B>& network, const B& law, const Particles& particle
         const BondRigidity k = law.rigidity(bond.radius, bond.rest_length);
         LinkRigidity link =
             LinkRigidity::damped(k.normal, k.tangential, k.damping_ratio, bond.effective_mass);
-        link.turning = std::max(k.bending, k.twisting);
+        if (!bond.broken()) link.turning = std::max(k.bending, k.twisting);
         link.turning_dashpot = 2 * k.damping_ratio * std::sqrt(link.turning * bond.effective_inertia);
         const auto moves = [&](Index body) { return particles.inverse_mass[at(body)] > 0; };
         visit(bond.bodies.first, n, Vec3(-lambda * particles.radius[at(bond.spheres.first)] * n), link,

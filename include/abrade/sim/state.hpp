@@ -220,6 +220,8 @@ private:
             network.build(particles, std::move(bonded));
         }
         concrete = Concrete(std::move(block.lattice), block.fracture_volume);
+        pattern_changed = true;  // a packing may have spheres that nothing ties
+        free_loose_concrete();
     }
 };
 

@@ -6,7 +6,7 @@
 
 namespace abrade {
 
-/// Each of these looks through all bodies or contacts, so none is called while all is well.
+/// Each of these looks through all bodies or contacts, so none is called while sums tell that all is well.
 template <class P>
 class TroubleFinder {
 public:
