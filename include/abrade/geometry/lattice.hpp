@@ -163,8 +163,8 @@ inline Lattice invert_lattice(const Invert& invert, const LatticeSize& size) {
 /// A slab of hexagonal close-packed spheres (coordination 12, solid fraction pi / sqrt(18)), its surface at
 /// z = 0, its centre at x = y = 0. Rows lie along x; the next row is half a sphere further on, the next layer
 /// in the hollows. Rows and spheres in them are spaced a little wider, never closer, so that they fill
-/// `length` x `width`. Each sphere is bonded to its twelve neighbours. Throws InputError for sides shorter
-/// than one and a half diameters.
+/// `length` x `width`. Each sphere is bonded to its twelve neighbours. Throws InputError for sides too
+/// short for rows that stand half a sphere on.
 inline Lattice hexagonal_lattice(Real length, Real width, const LatticeSize& size) {
     check_size(size, length, width, "hexagonal_lattice.side");
     const Real d = size.sphere_diameter, row = d * std::sqrt(0.75), layer = d * std::sqrt(2.0 / 3);
