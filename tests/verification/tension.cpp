@@ -34,8 +34,8 @@ TEST_CASE(
     SphereStore store;
     store.arrange(p, {}, 0, {});
     network.arrange(store);
-    network.each_bond([&](auto& bond, Index) {
-        bond.slots = {store.slot_of(bond.spheres.first), store.slot_of(bond.spheres.second)};
+    network.pack(store.phantom(), [&](const auto& bond, Index) {
+        return SlotPair{store.slot_of(bond.spheres.first), store.slot_of(bond.spheres.second)};
     });
     Real last_force = 0, last_energy = 0, at = 0;
     for (Real stretch = 0;; stretch += 2e-4 * strain) {  // a fifth of the 0.1 % asked for
