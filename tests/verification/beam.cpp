@@ -102,6 +102,7 @@ TEST_CASE("bpm01: a cantilever of parallel bonds hangs as deep as the beam, and 
                       << " Hz, beam " << straw.f1 << " Hz, half a piece longer " << f1 << " Hz; residual "
                       << seen.unaccounted);
         CHECK(seen.tip == doctest::Approx(tip).epsilon(0.01).scale(0));
+        CHECK(seen.frequency == doctest::Approx(f1).epsilon(0.005).scale(0));
         if (count == 60) CHECK(seen.frequency == doctest::Approx(straw.f1).epsilon(0.02).scale(0));
         CHECK(seen.unaccounted < 1e-12);
     }

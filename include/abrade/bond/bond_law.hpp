@@ -88,9 +88,8 @@ concept CarriesMoments = B::carries_moments;
 template <class B>
 concept AnswersBondPacks = requires(const B& law, const BondKinematicsOf<Pack>& bond,
                                     const typename B::template MemoryOf<Pack>& memory) {
-    {
-        law.respond(bond, Pack{}, memory)
-        } -> std::same_as<BondResponseOf<Pack, typename B::template MemoryOf<Pack>>>;
+    { law.respond(bond, Pack{}, memory) }
+    noexcept->std::same_as<BondResponseOf<Pack, typename B::template MemoryOf<Pack>>>;
 };
 
 /// Nothing is bonded: no memory, no work, no code.

@@ -10,7 +10,22 @@ inline Fate fate_of(bool tension, bool shear) noexcept {
     return tension ? Fate::tension : shear ? Fate::shear : Fate::intact;
 }
 inline PackFate fate_of(PackMask tension, PackMask shear) noexcept { return {tension, shear}; }
+
+inline void require_friction_angle(Real degrees, std::string_view field) {
+    require(degrees >= 0 && degrees < 90, {field, "in [0, 90)", "degrees", "concrete has 30 to 40"}, degrees);
+}
+inline void require_damping(Real share, std::string_view field) {
+    require(share >= 0 && share <= 1,
+            {field, "in [0, 1]", "", "it is a share of critical damping, 0 for none"}, share);
+}
 }  // namespace detail
+
+/// What a bond remembers that has these two springs alone.
+template <class Number>
+struct SpringMemory {
+    Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< across the bond [m]
+    Number broken = Number(0);                       ///< 1 where it is
+};
 
 /// The two springs of one bond at time t_n, f_n = k_n c (c compression) and f_s = -k_s s, with dashpots
 /// 2 zeta sqrt(k m_eff) beside them while it is sound. A broken bond is a frictional contact with the same

@@ -29,8 +29,7 @@ public:
             require_positive(stiffness, "ElasticBrittle.stiffness", "N/m");
             require_positive(stiffness_ratio, "ElasticBrittle.stiffness_ratio");
             require_not_negative(friction, "ElasticBrittle.friction");
-            require(damping >= 0 && damping <= 1,
-                    {"ElasticBrittle.damping", "in [0, 1]", "", "0 takes nothing, 1 is critical"}, damping);
+            detail::require_damping(damping, "ElasticBrittle.damping");
         }
         void visit(auto&& f) const {
             f("tensile", tensile, "Pa");
@@ -43,10 +42,7 @@ public:
     };
 
     template <class Number>
-    struct MemoryOf {
-        Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< shear spring [m]
-        Number broken = Number(0);                       ///< 1 where it is
-    };
+    using MemoryOf = SpringMemory<Number>;
     using Memory = MemoryOf<Real>;
 
     explicit ElasticBrittle(Params params) : params_(params) { params_.validate(); }

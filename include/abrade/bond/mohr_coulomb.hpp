@@ -34,15 +34,11 @@ public:
 
         void validate() const {
             require_positive(tensile, "MohrCoulomb.tensile", "Pa", "concrete has 2e6 to 5e6 Pa");
-            require(friction_angle >= 0 && friction_angle < 90,
-                    {"MohrCoulomb.friction_angle", "in [0, 90)", "degrees", "the default is 35"},
-                    friction_angle);
+            detail::require_friction_angle(friction_angle, "MohrCoulomb.friction_angle");
             require_positive(stiffness, "MohrCoulomb.stiffness", "N/m",
                              "E A / d is about 4e8 N/m for concrete, softer is cheaper");
             require_positive(stiffness_ratio, "MohrCoulomb.stiffness_ratio", "", "the default is 0.2");
-            require(damping >= 0 && damping <= 1,
-                    {"MohrCoulomb.damping", "in [0, 1]", "", "it is a share of critical damping, 0 for none"},
-                    damping);
+            detail::require_damping(damping, "MohrCoulomb.damping");
         }
         void visit(auto&& f) const {
             f("tensile", tensile, "Pa");
@@ -56,10 +52,7 @@ public:
     };
 
     template <class Number>
-    struct MemoryOf {
-        Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< shear spring [m]
-        Number broken = Number(0);                       ///< 1 where it is
-    };
+    using MemoryOf = SpringMemory<Number>;
     using Memory = MemoryOf<Real>;
 
     explicit MohrCoulomb(Params params) : params_(params) {

@@ -35,12 +35,9 @@ public:
             require_positive(stiffness_ratio, "ParallelBond.stiffness_ratio");
             require_positive(tensile, "ParallelBond.tensile", "Pa", "concrete has 1e6 to 5e6");
             require_positive(cohesion, "ParallelBond.cohesion", "Pa", "a few times the tensile strength");
-            require(friction_angle >= 0 && friction_angle < 90,
-                    {"ParallelBond.friction_angle", "in [0, 90)", "degrees", "concrete has 30 to 40"},
-                    friction_angle);
+            detail::require_friction_angle(friction_angle, "ParallelBond.friction_angle");
             require_positive(radius_factor, "ParallelBond.radius_factor");
-            require(damping >= 0 && damping <= 1,
-                    {"ParallelBond.damping", "in [0, 1]", "", "0 takes nothing, 1 is critical"}, damping);
+            detail::require_damping(damping, "ParallelBond.damping");
         }
         void visit(auto&& f) const {
             f("youngs", youngs, "Pa");

@@ -185,7 +185,7 @@ Pack worn_off(const Wear& wear, const ContactKinematics<Pack>& contact,
 inline constexpr std::size_t spheres_in_cache = 30'000;
 
 /// Asks for the pack eight further on and for the lines of the next: scenes larger than the caches would
-/// wait for them, 52 ns a particle-step instead of 42 for a million. First partners come nearly in order, so
+/// wait for them (docs/benchmarks.md, size). First partners come nearly in order, so
 /// the machine sees them coming by itself.
 template <class Law>
 void fetch_ahead(std::span<ContactPack<Law>> packs, std::size_t p, const LineReader& at) noexcept {

@@ -260,7 +260,7 @@ private:
         std::vector<SphereStore::ImageRequest> requests;
         if constexpr (P::has_bonds) {
             state.network.arrange(state.store);
-            state.network.each_bond([&](auto& bond, Index slab) {
+            state.network.each_bond([&](const auto& bond, Index slab) {
                 for (const Index sphere : {bond.spheres.first, bond.spheres.second})
                     if (const auto image = image_for(state.store, sphere, slab)) requests.push_back(*image);
             });
