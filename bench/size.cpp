@@ -55,4 +55,17 @@ void crystal(benchmark::State& state) {
 
 BENCHMARK(crystal)->Arg(17)->Arg(27)->Arg(46)->Arg(100)->UseManualTime()->Unit(benchmark::kMillisecond);
 
+/// What one core moves through memory: an array larger than any cache, read and written.
+void memory(benchmark::State& state) {
+    std::vector<Real> numbers(20'000'000, 1.0);
+    for (auto _ : state) {
+        for (Real& x : numbers) x = 1.0001 * x + 1;
+        benchmark::ClobberMemory();
+    }
+    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) *
+                            static_cast<std::int64_t>(2 * sizeof(Real) * numbers.size()));
+}
+
+BENCHMARK(memory)->Unit(benchmark::kMillisecond);
+
 }  // namespace

@@ -17,12 +17,12 @@
 //   F = mu m (1 + e) v_n (v_t - 7/4 mu (1 + e) v_n)
 // The coefficients show how the laws differ in form. They are not calibrated: do not compare volumes.
 
+#include "../common/chosen_wear.hpp"
 #include "../common/textbook.hpp"
 
 #include <abrade/abrade.hpp>
 
 #include <functional>
-#include <variant>
 
 using namespace abrade;
 using namespace abrade::examples;
@@ -31,28 +31,6 @@ namespace {
 
 constexpr Real restitution = 0.6, mu = 0.3, speed = 5, radius = 0.025, density = 2650, slide_speed = 2;
 constexpr Real mass = density * 4.0 / 3 * pi * cube(radius);
-
-/// A law of one's own may be made of others: this one is chosen when the program runs.
-struct ChosenWear {
-    static constexpr std::string_view name = "ChosenWear";
-    using Params = NoParams;
-    std::variant<NoWear, SubParticleAbrasion, Archard, Finnie, SklarDietrich, Ishibashi> law;
-
-    explicit ChosenWear(Params) {}
-    explicit ChosenWear(decltype(law) chosen) : law(std::move(chosen)) {}
-    const Params& params() const noexcept {
-        static constexpr Params none{};
-        return none;
-    }
-    template <class Number>
-    WearIncrement<Number> increment(const ContactKinematics<Number>& contact,
-                                    const ContactLoad<Number>& load) const noexcept {
-        return std::visit([&](const auto& one) { return one.increment(contact, load); }, law);
-    }
-    Real strength_left(Real fracture) const noexcept {
-        return std::visit([&](const auto& one) { return one.strength_left(fracture); }, law);
-    }
-};
 
 /// Energies of one impact [J]; that of friction has a closed form only where it slides throughout.
 struct ImpactEnergy {

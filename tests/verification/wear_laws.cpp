@@ -29,7 +29,7 @@ struct Rows {
 
 /// A body that slides over flat concrete, in balance on its springs, until `end`. A foot off the middle
 /// stands a little lower, which is as much as its spring is pressed.
-auto slid(const Clump& body, Real mass, Real height, int feet, const AnyWear& wear, Real end) {
+auto slid(const Clump& body, Real mass, Real height, int feet, const ChosenWear& wear, Real end) {
     const Real stiffness = 1e6, ground = 1e4;  // falls off by 0.02 mm on the way
     const Real lower = feet > 1 ? square(0.05) / ground : 0;
     Scene scene;
@@ -230,7 +230,7 @@ TEST_CASE("how wear scales (wear04)") {
 }
 
 TEST_CASE("worn volume and fracture never fall and are never negative, in any law") {
-    const auto check = [](const AnyWear& wear) {
+    const auto check = [](const ChosenWear& wear) {
         Scene scene;
         scene.concrete = ConcreteBlock{flat_lattice(0.2, 0.2, {.layers = 1})};
         scene.add_wall({-0.1, 0, 0}, {1, 0, 0}).add_wall({0.1, 0, 0}, {-1, 0, 0});

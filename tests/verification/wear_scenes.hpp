@@ -2,17 +2,12 @@
 // Scenes of the wear tests and charts: concrete that is one great sphere, as flat as a plane where it is hit,
 // and a wear law that keeps a record of the contact instead of wearing it.
 
+#include "../../examples/common/chosen_wear.hpp"
+
 #include <abrade/dem/linear_spring.hpp>
 #include <abrade/sim/simulation.hpp>
 
-#include <abrade/wear/archard.hpp>
-#include <abrade/wear/finnie.hpp>
-#include <abrade/wear/ishibashi.hpp>
-#include <abrade/wear/sklar_dietrich.hpp>
-#include <abrade/wear/sub_particle.hpp>
-
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace abrade::verification {
@@ -24,30 +19,7 @@ inline ConcreteBlock flat_concrete(Real radius) {
     return {.lattice = ground};
 }
 
-/// One of the library's laws, chosen at run time: one engine is compiled for all of them.
-struct AnyWear {
-    static constexpr std::string_view name = "AnyWear";
-    using Params = NoParams;
-    std::variant<NoWear, SubParticleAbrasion, Archard, Finnie, SklarDietrich, Ishibashi> law;
-
-    explicit AnyWear(Params) {}
-    template <class Wear>
-    requires(!std::same_as<Wear, AnyWear> && !std::same_as<Wear, Params>) AnyWear(const Wear& one)
-        : law(one) {}
-    const Params& params() const noexcept {
-        static constexpr Params none{};
-        return none;
-    }
-    template <class Number>
-    WearIncrement<Number> increment(const ContactKinematics<Number>& contact,
-                                    const ContactLoad<Number>& load) const noexcept {
-        return std::visit([&](const auto& one) { return one.increment(contact, load); }, law);
-    }
-    Real strength_left(Real fracture) const noexcept {
-        return std::visit([&](const auto& one) { return one.strength_left(fracture); }, law);
-    }
-};
-static_assert(WearLaw<AnyWear>);
+using examples::ChosenWear;
 
 /// A sphere that is thrown at that concrete, without gravity, and touches when the share `phase` of a step is
 /// over.
@@ -86,7 +58,7 @@ auto thrown(const Throw& impact, const Wear& wear) {
         {.end_time = 2 * impact.contact_time() + 4 * impact.time_step(), .time_step = impact.time_step()});
     return sim;
 }
-inline Real worn_by(const Throw& impact, const AnyWear& wear) {
+inline Real worn_by(const Throw& impact, const ChosenWear& wear) {
     return thrown(impact, wear).concrete().worn_volume();
 }
 

@@ -1,0 +1,39 @@
+#pragma once
+// A wear law that is chosen when the program runs: one engine is compiled for all of them.
+
+#include <abrade/wear/archard.hpp>
+#include <abrade/wear/finnie.hpp>
+#include <abrade/wear/ishibashi.hpp>
+#include <abrade/wear/sklar_dietrich.hpp>
+#include <abrade/wear/sub_particle.hpp>
+
+#include <variant>
+
+namespace abrade::examples {
+
+/// A law of one's own may be made of others.
+struct ChosenWear {
+    static constexpr std::string_view name = "ChosenWear";
+    using Params = NoParams;
+    std::variant<NoWear, SubParticleAbrasion, Archard, Finnie, SklarDietrich, Ishibashi> law;
+
+    explicit ChosenWear(Params) {}
+    template <class Wear>
+    requires(!std::same_as<Wear, ChosenWear> && !std::same_as<Wear, Params>) ChosenWear(const Wear& one)
+        : law(one) {}
+    const Params& params() const noexcept {
+        static constexpr Params none{};
+        return none;
+    }
+    template <class Number>
+    WearIncrement<Number> increment(const ContactKinematics<Number>& contact,
+                                    const ContactLoad<Number>& load) const noexcept {
+        return std::visit([&](const auto& one) { return one.increment(contact, load); }, law);
+    }
+    Real strength_left(Real fracture) const noexcept {
+        return std::visit([&](const auto& one) { return one.strength_left(fracture); }, law);
+    }
+};
+static_assert(WearLaw<ChosenWear>);
+
+}  // namespace abrade::examples
