@@ -1,7 +1,8 @@
 #pragma once
-// The bonds of a body of concrete: who holds whom, what breaks, and what is still tied to the ground.
+// The bonds of a body of concrete: what they answer, what breaks, and what comes loose.
 
 #include <abrade/bond/bond_pack.hpp>
+#include <abrade/bond/ties.hpp>
 #include <abrade/dem/sphere_store.hpp>
 
 #include <span>
@@ -36,19 +37,15 @@ struct Unworn {
     Real operator()(Index /*body*/) const noexcept { return 1; }
 };
 
-/// Two bodies that are held together.
-struct BondedPair {
-    Index first = 0, second = 0;
-    auto operator<=>(const BondedPair&) const = default;
-};
-
 /// Bonds between single-sphere bodies. A broken bond stays in the network as a frictional contact for as
-/// long as both of its spheres are part of the standing concrete.
+/// long as both of its spheres are part of the standing concrete. Bonds of which neither end can move may
+/// rest: they keep what they remember, and nobody looks at them.
 template <BondLaw Law>
 class Network {
 public:
     struct Bond {
-        BondedPair spheres;  ///< lasting indices
+        BondedPair members;  ///< as built, for good
+        BondedPair spheres;  ///< lasting indices, while it does not rest
         BondedPair bodies;
         SlotPair slots;
         Real rest_length = 0;        ///< [m]
@@ -58,20 +55,26 @@ public:
         Real stored = 0;             ///< when last evaluated [J]; in packs until `unpack`
         SeenEnds<Law, Real> before{};
         typename Law::Memory memory{};
+        bool rests = false;
+        bool dropped = false;  ///< the contact law has taken over, or a body is gone
 
         bool broken() const noexcept { return static_cast<bool>(memory.broken); }
     };
 
     /// Bonds the given pairs of spheres, each of them a body, as they stand: rest lengths are the present
-    /// distances.
+    /// distances. Spheres as they are numbered now are the members of `ties`.
     void build(const Particles& particles, std::vector<BondedPair> bonded) {
         std::sort(bonded.begin(), bonded.end());
-        held_ = bonded;
-        bonds_.clear();
+        std::vector<char> held(at(particles.spheres()));
+        for (std::size_t s = 0; s < held.size(); ++s)
+            held[s] = particles.kind[at(particles.body[s])] == Kind::fixed;
+        ties_.build(bonded, std::move(held));
+        bonds_.clear(), active_.clear();
         for (const BondedPair& pair : bonded) {
             const auto i = at(pair.first), j = at(pair.second);
+            active_.push_back(static_cast<Index>(bonds_.size()));
             Bond& bond = bonds_.emplace_back();
-            bond.spheres = pair;
+            bond.members = bond.spheres = pair;
             bond.bodies = {particles.body[i], particles.body[j]};
             bond.rest_length = (particles.centre[i] - particles.centre[j]).norm();
             bond.radius = std::min(particles.radius[i], particles.radius[j]);
@@ -80,39 +83,49 @@ public:
             bond.effective_inertia =
                 1 / (particles.inverse_inertia[a].maxCoeff() + particles.inverse_inertia[b].maxCoeff());
         }
-        first_bond_.assign({0, size()});
+        resting_stored_ = 0, changed_ = true;
+        first_bond_.assign({0, size()}), breaks_.assign(1, {});
     }
 
     /// Sorts the bonds by the slab that is in charge of them.
     void arrange(const SphereStore& store) {
         unpack();
-        const auto slab_of = [&](const Bond& bond) {
+        const auto slab_of = [&](Index number) {
+            const Bond& bond = bonds_[at(number)];
             return std::min(store.slab_of_slot(store.slot_of(bond.spheres.first)),
                             store.slab_of_slot(store.slot_of(bond.spheres.second)));
         };
-        const auto in_order = [&](const Bond& a, const Bond& b) { return slab_of(a) < slab_of(b); };
-        if (!std::is_sorted(bonds_.begin(), bonds_.end(), in_order))
-            std::stable_sort(bonds_.begin(), bonds_.end(), in_order);
+        const auto in_order = [&](Index a, Index b) { return slab_of(a) < slab_of(b); };
+        if (!std::is_sorted(active_.begin(), active_.end(), in_order))
+            std::stable_sort(active_.begin(), active_.end(), in_order);
         first_bond_.assign(at(store.slabs.count()) + 1, 0);
-        for (const Bond& bond : bonds_) ++first_bond_[at(slab_of(bond)) + 1];
+        for (const Index number : active_) ++first_bond_[at(slab_of(number)) + 1];
         for (std::size_t s = 1; s < first_bond_.size(); ++s) first_bond_[s] += first_bond_[s - 1];
+        if (breaks_.size() < at(store.slabs.count())) breaks_.resize(at(store.slabs.count()));
+        if (!std::exchange(changed_, false)) return;
+        held_.clear();
+        each_bond([&](const Bond& bond) { held_.push_back(bond.spheres); });
+        std::sort(held_.begin(), held_.end());
     }
-    /// Calls `visit(bond, slab)` for each bond.
-    template <class Visit>
-    void each_bond(Visit&& visit) {
+    /// Calls `visit(bond)` for each bond that does not rest.
+    void each_bond(auto&& visit) const {
+        for (const Index number : active_) visit(bonds_[at(number)]);
+    }
+    /// Calls `visit(bond, slab)` for each of them, slab by slab.
+    void each_bond_by_slab(auto&& visit) {
         for (std::size_t slab = 0; slab + 1 < first_bond_.size(); ++slab)
-            for (Index b = first_bond_[slab]; b < first_bond_[slab + 1]; ++b)
-                visit(bonds_[at(b)], static_cast<Index>(slab));
+            for (Index n = first_bond_[slab]; n < first_bond_[slab + 1]; ++n)
+                visit(bonds_[at(active_[at(n)])], static_cast<Index>(slab));
     }
     /// Puts the bonds into packs, slab by slab; `slots_of(bond, slab)` says where their spheres are.
     template <class SlotsOf>
     void pack(Index phantom, SlotsOf&& slots_of) {
-        each_bond([&](Bond& bond, Index slab) { bond.slots = slots_of(bond, slab); });
+        each_bond_by_slab([&](Bond& bond, Index slab) { bond.slots = slots_of(bond, slab); });
         packs_.clear();
         first_pack_.assign(first_bond_.size(), 0);
         for (std::size_t slab = 0; slab + 1 < first_bond_.size(); ++slab) {
-            for (Index b = first_bond_[slab]; b < first_bond_[slab + 1]; ++b)
-                put(b, (b - first_bond_[slab]) % pack_lanes, phantom);
+            for (Index n = first_bond_[slab]; n < first_bond_[slab + 1]; ++n)
+                put(active_[at(n)], (n - first_bond_[slab]) % pack_lanes, phantom);
             first_pack_[slab + 1] = static_cast<Index>(packs_.size());
         }
     }
@@ -146,30 +159,44 @@ public:
             pack.stored = load.stored;
             all.add(load);
             if (any(bond.compression > Pack(sums.deepest) * bond.radius)) look_deeper(bond, pack, sums);
-            if (any(fate.tension | fate.shear)) note_fates(fate, pack, sums);
+            if (any(fate.tension | fate.shear)) note_fates(fate, pack, sums, breaks_[at(slab)]);
             add_loads(reader, pack, load, arm, worn_off(wear, bond, load, pack, sums));
         }
         return all.into(sums);
     }
 
-    /// Marks [body] what is tied to a fixed body through sound bonds.
-    std::vector<char> tied_to_ground(const Particles& particles) const {
-        std::vector<char> tied(at(particles.bodies()), 0);
-        std::vector<Index> front;
-        for (Index b = 0; b < particles.bodies(); ++b)
-            if (particles.kind[at(b)] == Kind::fixed) tied[at(b)] = 1, front.push_back(b);
-        const auto [start, neighbour] = sound_neighbours(particles.bodies());
-        while (!front.empty()) {
-            const Index b = front.back();
-            front.pop_back();
-            for (Index n = start[at(b)]; n < start[at(b) + 1]; ++n) {
-                const Index other = neighbour[at(n)];
-                if (std::exchange(tied[at(other)], 1)) continue;
-                front.push_back(other);
-            }
+    /// Cuts the ties that broke since the last call, in the order of slabs, and finds what that leaves
+    /// loose. Piece by piece members in ascending order.
+    std::vector<Ties::Piece> take_loose() {
+        for (std::vector<Index>& broken : breaks_) {
+            for (const Index number : broken) ties_.cut(number, bonds_[at(number)].members);
+            broken.clear();
         }
-        return tied;
+        return ties_.take_loose();
     }
+
+    /// Lets bonds rest of which no end `moves(body)`.
+    void let_rest(auto&& moves) {
+        unpack();
+        changed_ |= std::erase_if(active_, [&](Index number) {
+                        Bond& bond = bonds_[at(number)];
+                        if (moves(bond.bodies.first) || moves(bond.bodies.second)) return false;
+                        resting_stored_ += bond.stored;
+                        bond.before = {}, bond.rests = true;
+                        return true;
+                    }) > 0;
+    }
+    /// Wakes a resting bond between spheres that stand where it left them.
+    void wake(Index number, const BondedPair& spheres, const Particles& particles) {
+        Bond& bond = bonds_[at(number)];
+        bond.spheres = spheres;
+        bond.bodies = {particles.body[at(spheres.first)], particles.body[at(spheres.second)]};
+        bond.rests = false;
+        resting_stored_ -= bond.stored;
+        active_.push_back(number);
+        changed_ = true;
+    }
+    Real resting_stored() const noexcept { return resting_stored_; }  ///< elastic energy of those at rest [J]
 
     /// Drops broken bonds that are open, as contacts too, and have a loose end: the contact law takes over.
     /// Drops bonds whose body is gone. `moved` says where the spheres are now, `centre` where they stand.
@@ -177,22 +204,22 @@ public:
     Real prune(const Particles& particles, std::span<const Index> moved, std::span<const Vec3> centre) {
         unpack();
         Real gone = 0;
-        const auto dropped = [&](Bond& bond) {
+        const auto dropped = [&](Index number) {
+            Bond& bond = bonds_[at(number)];
             const BondedPair now{moved[at(bond.spheres.first)], moved[at(bond.spheres.second)]};
+            bond.dropped = true;
             if (now.first < 0 || now.second < 0) return gone += bond.stored, true;
             const auto i = at(now.first), j = at(now.second);
             bond.spheres = now;
             bond.bodies = {particles.body[i], particles.body[j]};
-            if (!bond.broken()) return false;
             const Real apart = (centre[i] - centre[j]).norm();
             const bool open = apart >= std::max(bond.rest_length, particles.radius[i] + particles.radius[j]);
             const auto loose = [&](Index body) { return particles.kind[at(body)] == Kind::grain; };
-            return open && (loose(bond.bodies.first) || loose(bond.bodies.second));
+            return bond.dropped =
+                       bond.broken() && open && (loose(bond.bodies.first) || loose(bond.bodies.second));
         };
-        std::erase_if(bonds_, dropped);
-        held_.clear();
-        for (const Bond& bond : bonds_) held_.push_back(bond.spheres);
-        std::sort(held_.begin(), held_.end());
+        std::erase_if(active_, dropped);
+        changed_ = true;
         return gone;
     }
 
@@ -201,8 +228,12 @@ public:
         return std::binary_search(held_.begin(), held_.end(), pair);
     }
 
-    Index size() const noexcept { return static_cast<Index>(bonds_.size()); }
-    std::span<const Bond> bonds() const noexcept { return bonds_; }
+    /// Of bonds that do not rest.
+    Index size() const noexcept { return static_cast<Index>(active_.size()); }
+    std::span<const Index> active() const noexcept { return active_; }  ///< their numbers
+    std::span<const Bond> bonds() const noexcept { return bonds_; }     ///< [number] all, dropped ones too
+    const Bond& bond(Index number) const noexcept { return bonds_[at(number)]; }
+    const Ties& ties() const noexcept { return ties_; }
 
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
@@ -237,12 +268,14 @@ private:
             if (const Real depth = bond.compression[k] / bond.radius[k]; depth > sums.deepest)
                 sums.deepest = depth, sums.deepest_bond = pack.bond[static_cast<std::size_t>(k)];
     }
-    void note_fates(const PackFate& fate, BondPack<Law>& pack, BondSums& sums) noexcept {
+    void note_fates(const PackFate& fate, BondPack<Law>& pack, BondSums& sums,
+                    std::vector<Index>& broken) noexcept {
         pack.has_broken = true;
         for (int k = 0; k < pack_lanes; ++k) {
             sums.broken_tension += fate.tension[k], sums.broken_shear += fate.shear[k];
-            if (fate.tension[k] || fate.shear[k])
-                bonds_[at(pack.bond[static_cast<std::size_t>(k)])].memory.broken = 1;
+            if (!fate.tension[k] && !fate.shear[k]) continue;
+            broken.push_back(pack.bond[static_cast<std::size_t>(k)]);
+            bonds_[at(broken.back())].memory.broken = 1;
         }
     }
     /// What broken bonds, which are contacts, wear off either side [m3].
@@ -271,22 +304,6 @@ private:
         return worn;
     }
 
-    /// Bodies at the other ends of a body's sound bonds, one after the other.
-    std::pair<std::vector<Index>, std::vector<Index>> sound_neighbours(Index bodies) const {
-        std::vector<Index> start(at(bodies) + 1, 0);
-        const auto each_end = [&](auto&& visit) {
-            for (const Bond& bond : bonds_)
-                if (!bond.broken())
-                    visit(bond.bodies.first, bond.bodies.second),
-                        visit(bond.bodies.second, bond.bodies.first);
-        };
-        each_end([&](Index body, Index) { ++start[at(body) + 1]; });
-        for (std::size_t b = 1; b < start.size(); ++b) start[b] += start[b - 1];
-        std::vector<Index> neighbour(at(start.back())), fill(start.begin(), start.end() - 1);
-        each_end([&](Index body, Index other) { neighbour[at(fill[at(body)]++)] = other; });
-        return {std::move(start), std::move(neighbour)};
-    }
-
     void put(Index b, Index lane, Index phantom) {
         if (lane == 0) {
             BondPack<Law>& fresh = packs_.emplace_back();
@@ -310,11 +327,16 @@ private:
         pack.has_broken |= bond.broken();
     }
 
-    std::vector<Bond> bonds_;  ///< slab by slab
+    std::vector<Bond> bonds_;    ///< [number] all, for good
+    std::vector<Index> active_;  ///< numbers of those that do not rest, slab by slab
+    Ties ties_;
+    std::vector<std::vector<Index>> breaks_;  ///< [slab] broken since `take_loose`
+    Real resting_stored_ = 0;                 ///< [J]
     std::vector<BondPack<Law>> packs_;
     std::vector<Index> first_pack_{0, 0};  ///< [slab]
     std::vector<BondedPair> held_;         ///< spheres, sorted
-    std::vector<Index> first_bond_{0, 0};  ///< [slab]
+    std::vector<Index> first_bond_{0, 0};  ///< [slab] into `active_`
+    bool changed_ = false;                 ///< `held_` is not that of the active bonds
 };
 
 }  // namespace abrade

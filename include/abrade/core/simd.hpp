@@ -125,8 +125,8 @@ inline constexpr __mmask8 all_lanes = 0xff;
 }  // namespace detail
 #endif
 
-// As std::max and std::min: the first where neither is larger, and where one is not a number. The instructions
-// return their second operand then.
+// As std::max and std::min: the first where neither is larger, and where one is not a number. The
+// instructions return their second operand then.
 inline Pack max(Pack a, Pack b) noexcept {
 #if defined(ABRADE_AVX512)
     return Pack::Native(_mm512_maskz_max_pd(detail::all_lanes, b.lanes, a.lanes));

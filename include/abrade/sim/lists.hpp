@@ -1,6 +1,7 @@
 #pragma once
 // The lists of near pairs and of candidates: how long they last, and what happens when they are renewed.
 
+#include <abrade/sim/dormant_concrete.hpp>
 #include <abrade/sim/period.hpp>
 #include <abrade/sim/sleep.hpp>
 
@@ -25,7 +26,7 @@ public:
     /// Makes the lists good for the places of now. Steps are of dt.
     void freshen(State<P>& state, Real t, Real dt) {
         const bool traffic = state.feed || state.scene.outlet;
-        if ((traffic && age_ >= longest_life) || state.loosened)
+        if ((traffic && age_ >= longest_life) || state.loosened || state.dormancy.calls())
             renew(state, t, dt);
         else if (2 * moved_ > inner_skin_ && !refine(state, dt))
             renew(state, t, dt);
@@ -38,25 +39,25 @@ public:
         const auto start = std::chrono::steady_clock::now();
         state.land();
         wrap(state);
+        Dormancy& dormancy = state.dormancy;
+        const bool dormant = dormancy.on() || dormancy.begun;
+        if (dormant && !dormancy.begun && state.store.spheres() == 0) begin_dormancy(state);
+        dormancy.begun |= dormant;
+        const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
+        if (state.feed || has_broken_bonds || dormant) state.publish_places();
         const Departure departure = departing(state, dt);
         state.accounts.left_stored +=
             state.contacts.keep(state.policies.contact, state.store, state.scene.walls, departure.moved);
-        const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
-        if (state.feed || has_broken_bonds) state.publish_places();
         if (departure.any) remove(state, departure);
-        if (has_broken_bonds)
+        if (has_broken_bonds || (P::has_bonds && departure.any))
             state.accounts.left_stored +=
                 state.network.prune(state.particles, departure.moved, state.particles.centre);
         supply(state, t, dt);
-        const Real fastest = std::sqrt(fastest2(state));
-        list_skin_ = std::max(skin_, 2 * shortest_life * dt * fastest);
-        if (const Vec3 period = state.scene.periodic().period; !period.isZero()) {
-            if (!need_ || departure.any || state.feed) need_.emplace(state.particles, state.scene.feed);
-            const Real room = need_->widest_skin(period);
-            list_skin_ = std::min(list_skin_, room);
-            outrun_ = list_skin_ < 8 * dt * fastest;  // what `refine` asks for
-        }
+        choose_skin(state, dt, departure.any);
+        if (dormant) dormancy.look_ahead(age_), wake_concrete(state, list_skin_);
+        grow_columns(state);
         state.store.arrange(state.particles, departure.moved, list_skin_, state.scene.periodic());
+        if (dormant) hold_or_free(state);
         const auto [smallest, largest] =
             std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
         if (largest != state.particles.radius.end())
@@ -78,6 +79,7 @@ public:
         state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_, state.sleep.rests);
         state.take_off();
     }
+    Real skin() const noexcept { return list_skin_; }   ///< of near pairs [m]
     Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
     /// Whether bodies are too fast for any skin that the period of space has room for.
     bool outrun() const noexcept { return outrun_; }
@@ -101,6 +103,28 @@ private:
             return way2 = std::max(way2, o.way2), speed2 = std::max(speed2, o.speed2), *this;
         }
     };
+
+    /// As wide as speeds ask for, and no wider than the period of space has room for.
+    void choose_skin(const State<P>& state, Real dt, bool departed) {
+        const Real fastest = std::sqrt(fastest2(state));
+        list_skin_ = std::max(skin_, 2 * shortest_life * dt * fastest);
+        const Vec3 period = state.scene.periodic().period;
+        if (period.isZero()) return;
+        // What is dormant may come back: it counts as it did.
+        if (!need_ || ((departed || state.feed) && !state.dormancy.begun))
+            need_.emplace(state.particles, state.scene.feed);
+        const Real room = need_->widest_skin(period);
+        list_skin_ = std::min(list_skin_, room);
+        outrun_ = list_skin_ < 8 * dt * fastest;  // what `refine` asks for
+    }
+
+    /// The lines of concrete, as `particles` say who moves.
+    static void hold_or_free(State<P>& state) {
+        for (Index b = 0; b < state.particles.bodies(); ++b)
+            if (state.particles.site[at(b)] >= 0)
+                state.store.lines.motion[at(state.first_slot_of(b))].inverse_mass =
+                    state.particles.inverse_mass[at(b)];
+    }
 
     static Real fastest2(const State<P>& state) {
         Real fastest = parallel_sum<Extremes>(state.store.spheres(), [&](Index s) {
@@ -183,11 +207,15 @@ private:
         d.gone.assign(at(p.bodies()), 0);
         d.moved.resize(at(state.store.spheres()));
         std::iota(d.moved.begin(), d.moved.end(), 0);
-        if (!state.scene.outlet) return d;
+        if (state.dormancy.due && state.dormancy.on()) {
+            retire(state, 2 * list_skin_, d.gone);
+            d.any = std::find(d.gone.begin(), d.gone.end(), 1) != d.gone.end();
+        }
+        if (!state.scene.outlet && !d.any) return d;
         Index to = 0;
         for (Index b = 0; b < p.bodies(); ++b) {
             const bool known = state.store.spheres() > p.first_sphere[at(b)];
-            if (known && p.inverse_mass[at(b)] > 0 && p.kind[at(b)] != Kind::concrete) {
+            if (state.scene.outlet && known && p.inverse_mass[at(b)] > 0 && p.kind[at(b)] != Kind::concrete) {
                 const Vec3 x = state.store.position_of(p, b);
                 if (x.x() > *state.scene.outlet) {
                     d.gone[at(b)] = 1, d.any = true;
@@ -221,7 +249,11 @@ private:
     }
 
     static void remove(State<P>& state, const Departure& departure) {
+        for (std::size_t b = 0; b < departure.gone.size(); ++b)
+            if (departure.gone[b] && state.particles.site[b] >= 0)
+                state.dormancy.body_of[at(state.particles.site[b])] = -1;
         state.particles.remove(departure.gone);
+        state.note_sites();
         const auto compact = [&](auto& column) {
             std::size_t to = 0;
             for (std::size_t from = 0; from < column.size(); ++from)
@@ -242,6 +274,10 @@ private:
                 state.accounts.fed_kinetic += state.particles.kinetic_energy(body);
                 state.accounts.fed_potential += state.potential_energy(body, before);
             });
+    }
+
+    /// Of bodies that have just come.
+    static void grow_columns(State<P>& state) {
         const Particles& p = state.particles;
         if constexpr (P::has_fluid)
             for (std::size_t b = state.velocity_in_fluid.size(); b < p.velocity.size(); ++b)
@@ -260,7 +296,8 @@ private:
         std::vector<SphereStore::ImageRequest> requests;
         if constexpr (P::has_bonds) {
             state.network.arrange(state.store);
-            state.network.each_bond([&](const auto& bond, Index slab) {
+            if (state.dormancy.begun) find_anchors(state);
+            state.network.each_bond_by_slab([&](const auto& bond, Index slab) {
                 for (const Index sphere : {bond.spheres.first, bond.spheres.second})
                     if (const auto image = image_for(state.store, sphere, slab)) requests.push_back(*image);
             });

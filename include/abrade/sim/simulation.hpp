@@ -119,6 +119,8 @@ public:
     const Particles& particles() const { return world().particles(); }
     const Concrete& concrete() const { return world().concrete(); }
     Index bonds_broken() const { return world().state().broken_tension + world().state().broken_shear; }
+    /// Of the concrete that could move, the share that did not sleep, over all steps so far [-].
+    Real awake_fraction_mean() const { return world().awake_fraction(); }
     Real sediment_passed() const { return world().gauge_volume(); }  ///< the gauge, solid [m3]
     const auto& world() const {
         if (!world_) throw std::logic_error("Simulation: run it before asking for its state");
@@ -239,6 +241,9 @@ private:
         require_not_negative(options.skin, "RunOptions.skin", "m");
         require_not_negative(options.sleep_speed, "RunOptions.sleep_speed", "m/s");
         require_not_negative(options.sleep_after, "RunOptions.sleep_after", "s");
+        require_not_negative(options.wake_force, "RunOptions.wake_force", "N");
+        require(options.wake_radius >= 0, {"RunOptions.wake_radius", ">= 0", "bonds", "the default is 2"},
+                options.wake_radius);
         require(options.sleep_speed == 0 || options.sleep_after > 0 || !scene_.gravity.isZero(),
                 {"RunOptions.sleep_after", "> 0 where bodies may sleep and there is no gravity", "s",
                  "say how long a body is slow before it sleeps"},
@@ -251,6 +256,7 @@ private:
         world_->set_skin(skin);
         world_->set_free_flight(options.free_flight);
         world_->set_sleep(options.sleep_speed, options.sleep_after);
+        world_->set_wake(options.wake_force, options.wake_radius);
         if (!opened_) open();
         stopped_ = false;
         if (options.time_step > 0) {
@@ -326,7 +332,7 @@ private:
     void remember() {
         world_->publish();
         look_for_trouble();
-        last_good_ = take_snapshot(world_->particles(), world_->concrete(), time_, step_);
+        renew_snapshot(last_good_, world_->particles(), world_->concrete(), time_, step_);
         remembered_ = step_;
     }
 

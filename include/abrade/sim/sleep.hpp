@@ -75,9 +75,10 @@ std::vector<char> may_sleep(const State<P>& state) {
     for (std::size_t b = 0; b < may.size(); ++b)
         may[b] = p.inverse_mass[b] > 0 && (p.kind[b] == Kind::stone || p.kind[b] == Kind::grain);
     if constexpr (P::has_bonds)
-        for (const auto& bond : state.network.bonds())
+        state.network.each_bond([&](const auto& bond) {
             for (const Index body : {bond.bodies.first, bond.bodies.second})
                 may[static_cast<std::size_t>(body)] = false;
+        });
     return may;
 }
 

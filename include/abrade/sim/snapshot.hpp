@@ -18,6 +18,7 @@ struct Snapshot {
     std::vector<Real> position, velocity, angular_momentum;  ///< [body x 3] [m], [m/s], [kg m2/s]
     std::vector<Real> orientation;                           ///< [body x 4] w x y z
     std::vector<Real> fracture_rate;                         ///< [site] [-]
+    std::vector<std::uint32_t> seen;                         ///< of Concrete::renew_fracture_rates
 
     std::vector<FieldView> body_fields() const {
         return {{"id", "-", 1, id},
@@ -31,11 +32,14 @@ struct Snapshot {
     std::vector<FieldView> site_fields() const { return {{"fracture_rate", "-", 1, fracture_rate}}; }
 };
 
-/// Copies the state as `particles` has it, of the last observation, and the fracture rates.
-inline Snapshot take_snapshot(const Particles& particles, const Concrete& concrete, Real time, Index step) {
-    Snapshot shot;
+/// Brings a snapshot up to the state as `particles` has it, of the last observation, and the fracture rates.
+inline void renew_snapshot(Snapshot& shot, const Particles& particles, const Concrete& concrete, Real time,
+                           Index step) {
     shot.time = time;
     shot.step = step;
+    for (auto* column : {&shot.id, &shot.kind, &shot.site, &shot.position, &shot.velocity,
+                         &shot.angular_momentum, &shot.orientation})
+        column->clear();
     const auto append = [](std::vector<Real>& column, const Vec3& v) {
         column.insert(column.end(), v.data(), v.data() + 3);
     };
@@ -49,8 +53,7 @@ inline Snapshot take_snapshot(const Particles& particles, const Concrete& concre
         const Quaternion& q = particles.orientation[b];
         shot.orientation.insert(shot.orientation.end(), {q.w(), q.x(), q.y(), q.z()});
     }
-    for (Index s = 0; s < concrete.sites(); ++s) shot.fracture_rate.push_back(concrete.fracture(s));
-    return shot;
+    concrete.renew_fracture_rates(shot.fracture_rate, shot.seen);
 }
 
 }  // namespace abrade

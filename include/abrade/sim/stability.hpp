@@ -64,7 +64,7 @@ inline Extent extent_of(const Particles& particles, Index body) {
 template <BondLaw B, class Visit>
 void each_end(const Network<B>& network, const B& law, const Particles& particles, Visit&& visit) {
     const auto at = [](Index i) { return static_cast<std::size_t>(i); };
-    for (const auto& bond : network.bonds()) {
+    network.each_bond([&](const auto& bond) {
         const Vec3 apart =
             particles.centre[at(bond.spheres.first)] - particles.centre[at(bond.spheres.second)];
         const Vec3 n = apart.normalized();
@@ -80,7 +80,7 @@ void each_end(const Network<B>& network, const B& law, const Particles& particle
               moves(bond.bodies.second));
         visit(bond.bodies.second, n, Vec3(lambda * particles.radius[at(bond.spheres.second)] * n), link,
               moves(bond.bodies.first));
-    }
+    });
 }
 
 }  // namespace detail

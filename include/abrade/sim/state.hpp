@@ -3,6 +3,7 @@
 
 #include <abrade/bond/network.hpp>
 #include <abrade/dem/contact_list.hpp>
+#include <abrade/sim/dormancy.hpp>
 #include <abrade/sim/ledger.hpp>
 #include <abrade/sim/materials.hpp>
 #include <abrade/sim/pace.hpp>
@@ -38,6 +39,7 @@ struct State {
     ContactList<PairLaw<decltype(P::contact)>> contacts;
     Network<decltype(P::bond)> network;
     Concrete concrete;
+    Dormancy dormancy;
     std::optional<Feed> feed;
     Ledger accounts;  ///< works and losses up to the velocities that the lines hold
     std::vector<Vec3>
@@ -147,7 +149,7 @@ struct State {
                 pace[at(first_slot_of(other))] = Pace::beside_sleeper;
         });
         if constexpr (P::has_bonds)
-            for (const auto& bond : network.bonds()) ground(bond.slots.first), ground(bond.slots.second);
+            network.each_bond([&](const auto& bond) { ground(bond.slots.first), ground(bond.slots.second); });
         const Box space = scene.open_bounds();
         const bool bounded = space.low.array().isFinite().any() || space.high.array().isFinite().any();
         struct Outlook {
@@ -185,14 +187,24 @@ struct State {
     void free_loose_concrete() {
         if constexpr (P::has_bonds) {
             if (!std::exchange(pattern_changed, false)) return;
-            const std::vector<char> tied = network.tied_to_ground(particles);
-            for (Index b = 0; b < particles.bodies(); ++b)
-                if (particles.kind[at(b)] == Kind::concrete && !tied[at(b)]) {
-                    particles.kind[at(b)] = Kind::grain;
-                    if (particles.site[at(b)] >= 0) concrete.set_gone(particles.site[at(b)]);
+            for (const Ties::Piece& piece : network.take_loose())
+                for (const Index site : piece) {
+                    concrete.set_gone(site);
+                    --dormancy.may_wake;
+                    const Index body = dormancy.body_of[at(site)];
+                    if (body >= 0 && particles.inverse_mass[at(body)] > 0)
+                        particles.kind[at(body)] = Kind::grain, --dormancy.awake;
+                    else
+                        dormancy.loosened.push_back(site);
                     loosened = true;
                 }
         }
+    }
+
+    /// Writes down which bodies the sites of the concrete are.
+    void note_sites() {
+        for (Index b = 0; b < particles.bodies(); ++b)
+            if (particles.site[at(b)] >= 0) dormancy.body_of[at(particles.site[at(b)])] = b;
     }
 
 private:
@@ -219,9 +231,28 @@ private:
                     bonded.push_back({i, j});
             network.build(particles, std::move(bonded));
         }
+        know_sites(block, sphere);
         concrete = Concrete(std::move(block.lattice), block.fracture_volume);
         pattern_changed = true;  // a packing may have spheres that nothing ties
         free_loose_concrete();
+    }
+
+    /// All of them are awake to begin with.
+    void know_sites(const ConcreteBlock& block, const Clump& sphere) {
+        const std::size_t sites = block.lattice.sites.size();
+        dormancy.sphere = sphere;
+        dormancy.body_of.resize(sites), dormancy.quiet.assign(sites, 0), dormancy.marks.assign(sites, 0);
+        note_sites();
+        for (Index s = 0; s < static_cast<Index>(sites); ++s) {
+            const auto body = at(dormancy.body_of[at(s)]);
+            dormancy.place.push_back(particles.position[body]);
+            dormancy.held.push_back(particles.kind[body] == Kind::fixed);
+            if (particles.kind[body] == Kind::fixed) continue;
+            dormancy.inverse_mass = particles.inverse_mass[body];
+            dormancy.inverse_inertia = particles.inverse_inertia[body];
+            ++dormancy.awake, ++dormancy.may_wake;
+        }
+        dormancy.sites = PointGrid(dormancy.place, 4 * block.lattice.radius);
     }
 };
 

@@ -51,7 +51,7 @@ public:
     }
 
     Trouble crushed_bond(const BondSums& sums) const {
-        const auto& bond = state_.network.bonds()[at(sums.deepest_bond)];
+        const auto& bond = state_.network.bond(sums.deepest_bond);
         return {Trouble::Cause::overlap, bond.bodies.first, bond.bodies.second, sums.deepest, true, {}};
     }
 

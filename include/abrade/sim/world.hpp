@@ -34,12 +34,14 @@ public:
     void step(Real t, Real dt, bool timed) {
         if (dt != time_step_) change_step(dt);
         now_ = t;
-        if (state_.sleep.speed > 0 && ++unlooked_ >= Sleep::steps_between_looks) look();
+        const bool anybody_sleeps = state_.sleep.speed > 0 || state_.dormancy.on();
+        if (anybody_sleeps && ++unlooked_ >= Sleep::steps_between_looks) look();
         if (!evaluated_) make_ready(dt);
         const Move move{whole_ ? 0.5 * dt : dt, dt, false, now_, ahead_in_fluid()};
         pass(!evaluated_, &move, timed);
         kicked_ += move.kick, last_kick_ = move.kick, led_here_ = dt, now_ = t + dt;
         evaluated_ = whole_ = false;
+        awake_ += state_.dormancy.awake, may_wake_ += state_.dormancy.may_wake;
     }
 
     /// Writes the present state into `particles()` and the ledger. What moves is left as it is.
@@ -56,7 +58,9 @@ public:
         ledger_ = state_.accounts;
         book(ledger_, sums.motion);
         ledger_.kinetic = sums.kinetic, ledger_.potential = sums.potential;
-        ledger_.stored_contacts = stored_contacts_ + at_rest(), ledger_.stored_bonds = stored_bonds_;
+        ledger_.potential += state_.dormancy.potential;
+        ledger_.stored_contacts = stored_contacts_ + at_rest();
+        ledger_.stored_bonds = stored_bonds_ + state_.network.resting_stored();
         count_passed();
         return ledger_;
     }
@@ -78,6 +82,18 @@ public:
         sleep.toppling = after > 0 || gravity == 0 ? 0 : 2 / std::sqrt(gravity);
         if (speed == 0) rouse_all(state_);
     }
+    /// As RunOptions says.
+    void set_wake(Real force, Index radius) {
+        Dormancy& dormancy = state_.dormancy;
+        dormancy.wake_force = force, dormancy.wake_radius = radius;
+        if constexpr (P::has_bonds) {
+            const Real r = state_.concrete.lattice().radius;
+            const Real stiffness = state_.policies.bond.rigidity(r, 2 * r).normal;
+            dormancy.quiet_speed = force * std::sqrt(dormancy.inverse_mass / stiffness);
+        }
+    }
+    /// Of the concrete that stands and could move, over all steps so far [-]; 1 where there is none.
+    Real awake_fraction() const noexcept { return may_wake_ > 0 ? awake_ / may_wake_ : 1; }
     Trouble take_trouble() noexcept { return std::exchange(trouble_, {}); }
 
     const State<P>& state() const noexcept { return state_; }
@@ -152,9 +168,14 @@ private:
     /// Sees who falls asleep. Forces are those of now, so nothing is lost or won in between.
     void look() {
         catch_up();
+        if (state_.dormancy.on()) {
+            MotionSums of_concrete;
+            quieten(state_, to_present(), 2 * lists_.skin(), of_concrete);
+            book(state_.accounts, of_concrete);
+        }
         MotionSums sums;
         const Real stored = at_rest();
-        if (fall_asleep(state_, to_present(), unlooked_ * time_step_, sums)) {
+        if (state_.sleep.speed > 0 && fall_asleep(state_, to_present(), unlooked_ * time_step_, sums)) {
             book(state_.accounts, sums);
             lists_.repack(state_);
             stored_contacts_ += stored - at_rest();
@@ -212,6 +233,7 @@ private:
             FreeFlight& flight = state_.flight;
             flight.note(move->kick, move->drift);
             state_.sleep.stirred |= all.motion.stirs;
+            state_.dormancy.stirred |= all.motion.stirs_concrete;
             const Real way =
                 move->drift * std::max(std::sqrt(all.motion.fastest2),
                                        flight.fastest + flight.kicks * state_.scene.gravity.norm());
@@ -325,6 +347,7 @@ private:
     Real stored_contacts_ = 0, stored_bonds_ = 0;  ///< in what is evaluated [J]
     Real stored_at_rest_ = 0;                      ///< [J]
     Index unlooked_ = 0;                           ///< steps since the last look at who falls asleep
+    Real awake_ = 0, may_wake_ = 0;                ///< spheres of concrete, summed over steps
     bool too_deep_ = false;                        ///< some contact may be, as of the last evaluation
     Trouble trouble_;
     StepSeconds timed_;

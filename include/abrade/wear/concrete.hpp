@@ -4,6 +4,8 @@
 #include <abrade/geometry/lattice.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -21,7 +23,8 @@ public:
     /// Throws InputError for a site without volume.
     explicit Concrete(Lattice lattice, FractureVolume kind = FractureVolume::cell)
         : lattice_(std::move(lattice)), kind_(kind), fractured_(lattice_.sites.size(), 0),
-          overflow_(lattice_.sites.size(), 0), gone_(lattice_.sites.size(), 0) {}
+          overflow_(lattice_.sites.size(), 0), gone_(lattice_.sites.size(), 0),
+          wears_(lattice_.sites.size() / sites_per_part + 1, 0) {}
 
     /// Takes worn volume [m3] off a site. What a fully fractured site no longer has is booked as overflow.
     void wear(Index site, Real volume) noexcept {
@@ -29,6 +32,7 @@ public:
         const Real taken = std::min(volume, capacity(site) - fractured_[s]);
         fractured_[s] += taken;
         overflow_[s] += volume - taken;
+        std::atomic_ref(wears_[s / sites_per_part]).fetch_add(1, std::memory_order_relaxed);
     }
     void set_gone(Index site) noexcept { gone_[static_cast<std::size_t>(site)] = 1; }
 
@@ -39,6 +43,17 @@ public:
     Real capacity(Index site) const noexcept {
         return kind_ == FractureVolume::cell ? lattice_.sites[static_cast<std::size_t>(site)].cell_volume
                                              : 4.0 / 3 * pi * cube(lattice_.radius);
+    }
+    /// Brings `rates` [site] up to date. `seen` is handed in as it came out last time, and empty at first:
+    /// parts of the concrete that have not worn since then are not looked at.
+    void renew_fracture_rates(std::vector<Real>& rates, std::vector<std::uint32_t>& seen) const {
+        if (seen.empty()) rates.assign(fractured_.size(), 0), seen.assign(wears_.size(), 0);
+        for (std::size_t part = 0; part < wears_.size(); ++part) {
+            if (std::exchange(seen[part], wears_[part]) == wears_[part]) continue;
+            const std::size_t last = std::min((part + 1) * sites_per_part, fractured_.size());
+            for (std::size_t s = part * sites_per_part; s < last; ++s)
+                rates[s] = fracture(static_cast<Index>(s));
+        }
     }
     bool gone(Index site) const noexcept { return gone_[static_cast<std::size_t>(site)] != 0; }
 
@@ -69,6 +84,8 @@ public:
     Index sites() const noexcept { return static_cast<Index>(lattice_.sites.size()); }
 
 private:
+    static constexpr std::size_t sites_per_part = 1024;
+
     static Real sum(const std::vector<Real>& values) noexcept {
         Real total = 0;
         for (const Real v : values) total += v;
@@ -79,6 +96,7 @@ private:
     FractureVolume kind_ = FractureVolume::cell;
     std::vector<Real> fractured_, overflow_;  ///< [site] [m3]
     std::vector<char> gone_;                  ///< [site]
+    std::vector<std::uint32_t> wears_;        ///< [part] how often something wore there
 };
 
 }  // namespace abrade

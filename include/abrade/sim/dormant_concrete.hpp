@@ -1,0 +1,309 @@
+#pragma once
+// Which concrete goes to sleep, which bodies that takes out, and which it brings back.
+
+#include <abrade/sim/advance.hpp>
+
+namespace abrade {
+
+namespace detail {
+
+inline std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+
+/// Marks on sites, taken off again when done: no look at all of them.
+class SiteMarks {
+public:
+    explicit SiteMarks(std::vector<char>& marks) : marks_(marks) {}
+    ~SiteMarks() {
+        for (const Index site : all_) marks_[at(site)] = 0;
+    }
+    SiteMarks(const SiteMarks&) = delete;
+    SiteMarks& operator=(const SiteMarks&) = delete;
+
+    bool has(Index site) const noexcept { return marks_[at(site)] != 0; }
+    void add(Index site) {
+        if (!std::exchange(marks_[at(site)], 1)) all_.push_back(site);
+    }
+    const std::vector<Index>& all() const noexcept { return all_; }
+    void sort() { std::sort(all_.begin(), all_.end()); }
+
+private:
+    std::vector<char>& marks_;
+    std::vector<Index> all_;
+};
+
+/// Whether a body can set concrete in motion: anything that moves and is no standing concrete.
+template <class P>
+bool may_load(const State<P>& state, Index body) {
+    return state.particles.inverse_mass[at(body)] > 0 && state.particles.kind[at(body)] != Kind::concrete;
+}
+
+/// Marks the sites whose spheres are nearer than `skin` [m] to one of a body; `particles` must be as of now.
+template <class P>
+void mark_near(const State<P>& state, Index body, Real skin, SiteMarks& marks) {
+    const Particles& p = state.particles;
+    const Dormancy& dormancy = state.dormancy;
+    const Lattice& lattice = state.concrete.lattice();
+    const Periodic space = state.scene.periodic();
+    for (Index s = p.first_sphere[at(body)]; s < p.first_sphere[at(body)] + p.sphere_count[at(body)]; ++s) {
+        const Real reach = p.radius[at(s)] + lattice.radius + skin;
+        const auto look = [&](const Vec3& x) {
+            dormancy.sites.each_about(x, reach + dormancy.furthest, [&](Index site) {
+                if (state.concrete.gone(site) || marks.has(site)) return;
+                const Index own = dormancy.body_of[at(site)];
+                const Vec3& centre = own < 0 ? dormancy.place[at(site)] : p.position[at(own)];
+                if ((centre - x).squaredNorm() < square(reach)) marks.add(site);
+            });
+        };
+        look(p.centre[at(s)]);
+        each_shift(
+            space.period, [](int, int) { return true; },
+            [&](const ImageShift& shift) { look(p.centre[at(s)] + shift.times(space.period)); });
+    }
+}
+
+/// Marks what can be reached from the marked sites over `radius` bonds.
+inline void spread(const Ties& ties, Index radius, SiteMarks& marks) {
+    std::size_t from = 0;
+    for (Index n = 0; n < radius; ++n) {
+        const std::size_t to = marks.all().size();
+        for (; from < to; ++from)
+            for (const Ties::End& end : ties.of(marks.all()[from])) marks.add(end.other);
+    }
+}
+
+/// Of a standing sphere that moves: from now on it does not. Its velocity must have been booked.
+template <class P>
+void hold_still(State<P>& state, Index body) {
+    Particles& p = state.particles;
+    const Index site = p.site[at(body)];
+    state.dormancy.potential += state.potential_energy(body, p.position[at(body)]);
+    p.inverse_mass[at(body)] = 0, p.inverse_inertia[at(body)].setZero();
+    p.velocity[at(body)].setZero(), p.angular_momentum[at(body)].setZero();
+    state.dormancy.quiet[at(site)] = 0;
+    state.dormancy.place[at(site)] = p.position[at(body)];
+    state.dormancy.furthest =
+        std::max(state.dormancy.furthest,
+                 (p.position[at(body)] - state.concrete.lattice().sites[at(site)].centre).norm());
+    --state.dormancy.awake;
+}
+
+/// The body of a site, made where there is none. It stands still.
+template <class P>
+Index standing_body(State<P>& state, Index site) {
+    Dormancy& dormancy = state.dormancy;
+    Index& body = dormancy.body_of[at(site)];
+    if (body >= 0) return body;
+    Particles& p = state.particles;
+    const Index next_id = p.next_id;
+    body = p.add(dormancy.sphere, state.scene.concrete->density,
+                 {.position = dormancy.place[at(site)], .material = state.scene.concrete->material},
+                 Kind::fixed);
+    p.site.back() = site, p.id.back() = site;  // as when it was built: concrete came first
+    p.next_id = next_id;
+    if (dormancy.may_move(site)) p.kind.back() = Kind::concrete;
+    return body;
+}
+
+/// Sets a standing sphere free to move, and wakes its bonds.
+template <class P>
+void wake_site(State<P>& state, Index site) {
+    Dormancy& dormancy = state.dormancy;
+    const Index body = standing_body(state, site);
+    Particles& p = state.particles;
+    if (p.inverse_mass[at(body)] > 0 || !dormancy.may_move(site)) return;
+    p.inverse_mass[at(body)] = dormancy.inverse_mass;
+    p.inverse_inertia[at(body)] = dormancy.inverse_inertia;
+    dormancy.potential -= state.potential_energy(body, p.position[at(body)]);
+    ++dormancy.awake;
+    if constexpr (P::has_bonds)
+        for (const Ties::End& end : state.network.ties().of(site)) {
+            const auto& bond = state.network.bond(end.tie);
+            if (!bond.rests || bond.dropped) continue;
+            const auto sphere = [&](Index member) {
+                return p.first_sphere[at(standing_body(state, member))];
+            };
+            const Index first = sphere(bond.members.first), second = sphere(bond.members.second);
+            state.network.wake(end.tie, {first, second}, p);
+        }
+}
+
+}  // namespace detail
+
+/// Puts all standing concrete to sleep, before anything has moved.
+template <class P>
+void begin_dormancy(State<P>& state) {
+    Particles& p = state.particles;
+    Dormancy& dormancy = state.dormancy;
+    std::vector<char> gone(p.kind.size(), 0);
+    for (Index b = 0; b < p.bodies(); ++b) {
+        const Index site = p.site[detail::at(b)];
+        if (site < 0 || state.concrete.gone(site)) continue;
+        if (p.inverse_mass[detail::at(b)] > 0) detail::hold_still(state, b);
+        gone[detail::at(b)] = 1, dormancy.body_of[detail::at(site)] = -1;
+    }
+    if constexpr (P::has_bonds)
+        state.network.let_rest([&](Index body) { return p.inverse_mass[detail::at(body)] > 0; });
+    const std::vector<Index> moved = p.remove(gone);
+    if constexpr (P::has_bonds) state.network.prune(p, moved, p.centre);
+    state.note_sites();
+    dormancy.begun = true;
+}
+
+/// Sees which spheres move no more and hold no load that changes, and puts them to sleep; loads must be those
+/// of now, which `half` of a kick is missing to. Books what that kick does to them in `sums`.
+template <class P>
+void quieten(State<P>& state, const Move& half, Real skin, MotionSums& sums) {
+    using detail::at;
+    Particles& p = state.particles;
+    Dormancy& dormancy = state.dormancy;
+    const auto moves = [&](Index body) { return body >= 0 && p.inverse_mass[at(body)] > 0; };
+    std::vector<Index> candidates;
+    for (Index b = 0; b < p.bodies(); ++b) {
+        if (p.kind[at(b)] != Kind::concrete || !moves(b)) continue;
+        const auto slot = at(state.first_slot_of(b));
+        const SphereLoad& load = state.store.lines.load[slot];
+        const Vec3 force = load.force + p.mass[at(b)] * state.scene.gravity;
+        const bool quiet = speed_squared(state.store.lines.motion[slot]) <= square(dormancy.quiet_speed) &&
+                           force.norm() <= dormancy.wake_force && load.lever.norm() <= dormancy.wake_force;
+        std::uint8_t& looks = dormancy.quiet[at(p.site[at(b)])];
+        looks = quiet ? static_cast<std::uint8_t>(std::min(looks + 1, 255)) : std::uint8_t{0};
+        if (looks >= Dormancy::quiet_looks) candidates.push_back(b);
+    }
+    if (candidates.empty()) return;
+    detail::SiteMarks near(dormancy.marks);
+    state.publish_places();
+    for (Index b = 0; b < p.bodies(); ++b)
+        if (detail::may_load(state, b) && !state.sleep.asleep(b)) detail::mark_near(state, b, skin, near);
+    if constexpr (P::has_bonds) detail::spread(state.network.ties(), dormancy.wake_radius, near);
+    std::vector<Index> sleepers;
+    for (const Index b : candidates) {
+        const Index site = p.site[at(b)];
+        bool sleeps = !near.has(site);
+        if constexpr (P::has_bonds)
+            for (const Ties::End& end : state.network.ties().of(site))
+                sleeps =
+                    sleeps && (!moves(dormancy.body_of[at(end.other)]) || dormancy.quiet[at(end.other)] > 0);
+        if (sleeps) sleepers.push_back(b);
+    }
+    for (const Index b : sleepers) {
+        publish_body(state, b, half, sums);
+        state.accounts.lost_asleep += p.kinetic_energy(b);
+        detail::hold_still(state, b);
+        SphereMotion& motion = state.store.lines.motion[at(state.first_slot_of(b))];
+        motion.velocity.setZero(), motion.rim.setZero(), motion.inverse_mass = 0;
+    }
+    if (sleepers.empty()) return;
+    state.store.refresh_images();
+    dormancy.due = true;
+}
+
+/// Marks in `gone` [body] the spheres that stand still and that nothing needs; lets bonds between them rest.
+template <class P>
+void retire(State<P>& state, Real skin, std::vector<char>& gone) {
+    using detail::at;
+    const Particles& p = state.particles;
+    Dormancy& dormancy = state.dormancy;
+    detail::SiteMarks needed(dormancy.marks);
+    for (Index b = 0; b < p.bodies(); ++b)
+        if (detail::may_load(state, b)) detail::mark_near(state, b, skin, needed);
+    if constexpr (P::has_bonds) {
+        state.network.let_rest([&](Index body) { return p.inverse_mass[at(body)] > 0; });
+        state.network.each_bond(
+            [&](const auto& bond) { needed.add(bond.members.first), needed.add(bond.members.second); });
+    }
+    for (Index b = 0; b < p.bodies(); ++b) {
+        const Index site = p.site[at(b)];
+        if (site < 0 || p.inverse_mass[at(b)] > 0 || needed.has(site)) continue;
+        gone[at(b)] = 1;
+    }
+}
+
+/// Wakes what is near a body that may load it within `skin` [m], what stirred anchors call for, and what has
+/// come loose; `particles` must be as of now.
+template <class P>
+void wake_concrete(State<P>& state, Real skin) {
+    using detail::at;
+    Particles& p = state.particles;
+    Dormancy& dormancy = state.dormancy;
+    {
+        detail::SiteMarks wanted(dormancy.marks);
+        if (dormancy.on()) {
+            if (dormancy.stirred) {
+                for (const Dormancy::Anchor& anchor : dormancy.anchors)
+                    if (anchor.stirred(0.25 * dormancy.wake_force)) wanted.add(anchor.site);
+                if constexpr (P::has_bonds) detail::spread(state.network.ties(), dormancy.ahead, wanted);
+            }
+            const Index bodies = p.bodies();
+            for (Index b = 0; b < bodies; ++b)
+                if (detail::may_load(state, b) && !state.sleep.asleep(b))
+                    detail::mark_near(state, b, skin, wanted);
+            if constexpr (P::has_bonds) detail::spread(state.network.ties(), dormancy.wake_radius, wanted);
+            wanted.sort();
+        } else {
+            for (Index site = 0; site < state.concrete.sites(); ++site)
+                if (!state.concrete.gone(site)) wanted.add(site);
+            dormancy.anchors.clear(), dormancy.anchor_at.clear();
+            dormancy.begun = false;
+        }
+        for (const Index site : wanted.all())
+            if (!state.concrete.gone(site)) detail::wake_site(state, site);
+    }
+    for (const Index site : dormancy.loosened) {
+        detail::wake_site(state, site);
+        --dormancy.awake;
+        p.kind[at(dormancy.body_of[at(site)])] = Kind::grain;
+    }
+    if (state.sleep.count > 0) {
+        detail::SiteMarks needed(dormancy.marks);
+        const Index bodies = p.bodies();
+        for (Index b = 0; b < bodies; ++b)
+            if (state.sleep.asleep(b)) detail::mark_near(state, b, skin, needed);
+        needed.sort();
+        for (const Index site : needed.all()) detail::standing_body(state, site);
+    }
+    dormancy.loosened.clear();
+    dormancy.due = dormancy.stirred = false;
+}
+
+/// Finds the slots of the spheres that stand still among those that move; the store and the network must have
+/// been arranged. What has acted on them so far is kept.
+template <class P>
+void find_anchors(State<P>& state) {
+    using detail::at;
+    Dormancy& dormancy = state.dormancy;
+    const Particles& p = state.particles;
+    const std::vector<Dormancy::Anchor> before = std::exchange(dormancy.anchors, {});
+    dormancy.anchor_at.assign(at(state.store.spheres()), -1);
+    if constexpr (P::has_bonds) {
+        const auto stands = [&](Index body) {
+            return p.kind[at(body)] == Kind::concrete && p.inverse_mass[at(body)] == 0;
+        };
+        std::vector<std::pair<Index, Index>> ends;  // site, number of the bond
+        for (const Index number : state.network.active()) {
+            const auto& bond = state.network.bond(number);
+            if (stands(bond.bodies.first)) ends.emplace_back(bond.members.first, number);
+            if (stands(bond.bodies.second)) ends.emplace_back(bond.members.second, number);
+        }
+        std::sort(ends.begin(), ends.end());
+        for (const auto& [site, number] : ends) {
+            if (dormancy.anchors.empty() || dormancy.anchors.back().site != site)
+                dormancy.anchors.push_back({.site = site});
+            ++dormancy.anchors.back().bonds, dormancy.anchors.back().which += number;
+        }
+    }
+    auto old = before.begin();
+    for (std::size_t n = 0; n < dormancy.anchors.size(); ++n) {
+        Dormancy::Anchor& anchor = dormancy.anchors[n];
+        while (old != before.end() && old->site < anchor.site) ++old;
+        if (old != before.end() && old->site == anchor.site) {
+            const bool same = old->bonds == anchor.bonds && old->which == anchor.which;
+            anchor.force = old->force, anchor.lever = old->lever;
+            anchor.change = old->change, anchor.turning = old->turning;
+            anchor.fresh = old->fresh || !same;
+        }
+        const Index sphere = p.first_sphere[at(dormancy.body_of[at(anchor.site)])];
+        dormancy.anchor_at[at(state.store.slot_of(sphere))] = static_cast<Index>(n);
+    }
+}
+
+}  // namespace abrade
