@@ -103,7 +103,9 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     r.ledger_residual_relative = ledger.residual_relative();
     r.integration_residue_J = ledger.integration_residue();
     const auto shares = sim.wall_shares();
-    r.share_forces = shares.forces, r.share_motion = shares.motion, r.share_lists = shares.renewal;
+    r.wall_contacts_s = shares.contacts * r.wall_s, r.wall_bonds_s = shares.bonds * r.wall_s;
+    r.wall_motion_s = shares.motion * r.wall_s, r.wall_lists_s = shares.renewal * r.wall_s;
+    r.awake_fraction_mean = sim.awake_fraction_mean();
     r.water_depth_m = water.depth(), r.water_speed_m_per_s = water.mean_velocity();
     r.froude = water.froude(), r.bed_shear_Pa = water.bed_shear();
     r.fluid = UniformFlow::name, r.contact = LinearSpring::name, r.bond = MohrCoulomb::name,

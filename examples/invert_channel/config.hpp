@@ -32,6 +32,8 @@ struct ChannelConfig {
     LatticeSize lattice;
     Real concrete_density = 0;  ///< [kg/m3]
     FractureVolume fracture_volume = FractureVolume::cell;
+    Real wake_force = 0;    ///< [N]
+    Index wake_radius = 0;  ///< [bonds]
     LinearSpring::Params contact;
     MohrCoulomb::Params bond;
     SubParticleAbrasion::Params wear;

@@ -55,6 +55,7 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"stones", r.stones},
         {"stones_fed", r.stones_fed},
         {"concrete_spheres", r.concrete_spheres},
+        {"awake_fraction_mean", r.awake_fraction_mean},
         {"bonds_broken", r.bonds_broken},
         {"sediment_fed_m3", r.sediment_fed_m3},
         {"sediment_passed_m3", r.sediment_passed_m3},
@@ -74,7 +75,11 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"mean_stone_speed_m_per_s", r.mean_stone_speed_m_per_s},
         {"water_depth_m", r.water_depth_m},
         {"water_speed_m_per_s", r.water_speed_m_per_s},
-        {"wall_share", {{"forces", r.share_forces}, {"motion", r.share_motion}, {"lists", r.share_lists}}},
+        {"wall_s_by_room",
+         {{"contacts_and_wear", r.wall_contacts_s},
+          {"bonds", r.wall_bonds_s},
+          {"motion_and_fluid", r.wall_motion_s},
+          {"lists", r.wall_lists_s}}},
         {"policies", {{"fluid", r.fluid}, {"contact", r.contact}, {"bond", r.bond}, {"wear", r.wear}}}};
     std::ofstream file(path);
     file << summary.dump(2) << "\n";
@@ -123,6 +128,8 @@ int run(const Options& options) {
                      .safety = config.safety,
                      .observe_every = config.output_every,
                      .skin = config.skin,
+                     .wake_force = config.wake_force,
+                     .wake_radius = config.wake_radius,
                      .stop = stop},
                     recorder);
         } catch (const RunError& error) {

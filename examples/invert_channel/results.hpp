@@ -34,7 +34,8 @@ struct ChannelResults {
     Real energy_lost_normal_J = 0, energy_lost_sliding_J = 0;  ///< in contacts with concrete
     Real ledger_residual_relative = 0, integration_residue_J = 0;
     Real mean_stone_speed_m_per_s = 0;
-    Real share_forces = 0, share_motion = 0, share_lists = 0;  ///< of wall time
+    Real awake_fraction_mean = 1;  ///< of the concrete that could move
+    Real wall_contacts_s = 0, wall_bonds_s = 0, wall_motion_s = 0, wall_lists_s = 0;
     Real water_depth_m = 0, water_speed_m_per_s = 0, froude = 0, bed_shear_Pa = 0;
     std::string fluid, contact, bond, wear;  ///< names of the policies
 

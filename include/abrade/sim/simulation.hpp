@@ -131,19 +131,20 @@ public:
     }
     const Snapshot& last_good() const noexcept { return last_good_; }
 
-    /// Shares of wall time [-]: laws of contacts and bonds; motion; renewal of lists.
+    /// Shares of wall time [-]: contacts with their wear; bonds; motion with what the fluid does; renewal of
+    /// lists.
     struct Shares {
-        Real forces = 0, motion = 0, renewal = 0;
+        Real contacts = 0, bonds = 0, motion = 0, renewal = 0;
     };
     Shares wall_shares() const noexcept {
         if (!world_) return {};
         const StepSeconds step = world_->timed();
         const Real renewal = world_->renewal_seconds();
         // Timed steps stand for all; what is left of the wall time goes by their shares.
-        const Real steps = std::max(0.0, wall_seconds_ - renewal), timed = step.forces + step.motion;
+        const Real timed = step.contacts + step.bonds + step.motion;
         if (!(timed > 0 && wall_seconds_ > 0)) return {};
-        return {steps * step.forces / timed / wall_seconds_, steps * step.motion / timed / wall_seconds_,
-                renewal / wall_seconds_};
+        const Real share = std::max(0.0, wall_seconds_ - renewal) / timed / wall_seconds_;
+        return {share * step.contacts, share * step.bonds, share * step.motion, renewal / wall_seconds_};
     }
 
     template <class X, class Y, class Z, class U, class V>
@@ -376,14 +377,15 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
         << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
         << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().census().near << "\n";
     if (sim.concrete().sites() > 0)
-        out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken()
+        out << "concrete " << sim.concrete().sites() << " spheres, "
+            << percent(sim.awake_fraction_mean()) << " awake, " << sim.bonds_broken()
             << " bonds broken, worn volume " << short_text(sim.concrete().worn_volume()) << " m3\n";
     out << "ledger   [J]\n";
     sim.ledger_.visit([&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
     });
-    return out << "wall     " << short_text(sim.wall_seconds_) << " s: forces " << percent(shares.forces)
-               << ", motion " << percent(shares.motion) << ", neighbour lists " << percent(shares.renewal)
+    return out << "wall     " << short_text(sim.wall_seconds_) << " s: contacts " << percent(shares.contacts)
+               << ", bonds " << percent(shares.bonds) << ", motion " << percent(shares.motion) << ", neighbour lists " << percent(shares.renewal)
                << "\n";
 }
 

@@ -27,9 +27,9 @@ struct Trouble {
 
 /// Wall time of parts of a step [s], summed over threads.
 struct StepSeconds {
-    Real forces = 0, motion = 0;
+    Real contacts = 0, bonds = 0, motion = 0;
     StepSeconds& operator+=(const StepSeconds& o) noexcept {
-        return forces += o.forces, motion += o.motion, *this;
+        return contacts += o.contacts, bonds += o.bonds, motion += o.motion, *this;
     }
 };
 

@@ -210,8 +210,7 @@ private:
             PassSums& sums = parts_[at(c)];
             Stopwatch watch{timed};
             for (Index slab = slabs.first_slab(c); slab < slabs.first_slab(c + 1); ++slab) {
-                if (evaluate) evaluate_slab(slab, step, sums);
-                watch.lap(sums.seconds.forces);
+                if (evaluate) evaluate_slab(slab, step, sums, watch);
                 if (slab > slabs.first_slab(c)) finish_slab(slab, move, sums.motion);
                 watch.lap(sums.seconds.motion);
             }
@@ -244,13 +243,16 @@ private:
         }
     }
 
-    void evaluate_slab(Index slab, const ContactStep& step, PassSums& sums) noexcept {
+    void evaluate_slab(Index slab, const ContactStep& step, PassSums& sums, Stopwatch& watch) noexcept {
         SphereLines& lines = state_.store.lines;
         sums.contacts += state_.contacts.section(slab).respond(state_.policies.contact, state_.policies.wear,
                                                                state_.scene.walls, lines, step);
-        if constexpr (P::has_bonds)
+        watch.lap(sums.seconds.contacts);
+        if constexpr (P::has_bonds) {
             sums.bonds += state_.network.respond(slab, state_.policies.bond, state_.policies.wear, lines,
                                                  state_.strength_left(), step);
+            watch.lap(sums.seconds.bonds);
+        }
     }
 
     /// Loads of a slab are complete: concrete takes its wear, bodies move.

@@ -1,0 +1,180 @@
+// Dormant concrete: who is a body, what the ledger says, what comes loose while it sleeps.
+#include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/bond/parallel_bond.hpp>
+#include <abrade/core/parallel.hpp>
+#include <abrade/sim/simulation.hpp>
+#include <abrade/wear/sub_particle.hpp>
+
+#include <doctest/doctest.h>
+
+#include "../message_of.hpp"
+
+using namespace abrade;
+
+namespace {
+
+constexpr Real d = 0.02;
+const LinearSpring law{{.stiffness = 1e6, .restitution = 0.6, .friction = 0.4}};
+const MohrCoulomb bond{{.tensile = 2.7e6, .stiffness = 4e6, .damping = 0.3}};
+const SubParticleAbrasion wear{{.acceleration = 100}};
+
+/// A slab, and a stone that falls on it from `height` [m] at x.
+Scene slab(Real side, Real height, Real x = 0) {
+    Scene scene;
+    scene.concrete = ConcreteBlock{flat_lattice(side, side, {.sphere_diameter = d, .layers = 3})};
+    scene.add_sphere(0.025, {.position = {x, 0, 0.025 + height}});
+    return scene;
+}
+
+template <class Sim>
+Index count(const Sim& sim, Kind kind) {
+    const auto& kinds = sim.particles().kind;
+    return static_cast<Index>(std::count(kinds.begin(), kinds.end(), kind));
+}
+
+}  // namespace
+
+TEST_CASE("untouched concrete is no body; what is hit wakes, and sleeps again") {
+    auto sim = simulate(slab(0.5, 0.05)).contact(law).bond(bond).wear(wear);
+    const auto run = [&](Real until) { sim.run({.end_time = until, .wake_force = 1}); };
+    run(0.02);
+    CHECK(sim.particles().bodies() == 1);  // the stone, on its way
+    CHECK(sim.awake_fraction_mean() == 0);
+    CHECK(sim.concrete().sites() == 25 * 25 * 3);
+    run(0.103);
+    CHECK(count(sim, Kind::concrete) > 20);
+    CHECK(sim.concrete().worn_volume() > 0);
+    const Real worn = sim.concrete().worn_volume();
+    run(0.155);  // the stone is up again
+    CHECK(count(sim, Kind::concrete) == 0);
+    CHECK(sim.concrete().worn_volume() == worn);
+    run(0.6);
+    const Ledger& e = sim.ledger();
+    CHECK(e.residual_relative() < 1e-12);
+    CHECK(e.lost_asleep > 0);
+    CHECK(e.lost_asleep < 1e-3 * e.lost());
+    CHECK(std::abs(e.integration_residue()) < 1e-3 * e.lost());
+    CHECK(sim.awake_fraction_mean() < 0.5);
+}
+
+TEST_CASE("ids and sites of what wakes again are those it had") {
+    auto sim = simulate(slab(0.3, 0.001)).contact(law).bond(bond);
+    sim.run({.end_time = 0.02, .wake_force = 1});
+    const Particles& p = sim.particles();
+    Index seen = 0;
+    for (std::size_t b = 0; b < p.site.size(); ++b) {
+        if (p.site[b] < 0) continue;
+        CHECK(p.id[b] == p.site[b]);
+        const LatticeSite& site = sim.concrete().lattice().sites[static_cast<std::size_t>(p.site[b])];
+        CHECK((p.position[b] - site.centre).norm() < 0.01 * d);
+        CHECK((p.kind[b] == Kind::fixed) == site.held);
+        ++seen;
+    }
+    CHECK(seen > 0);
+    CHECK(p.id.front() == 15 * 15 * 3);  // the stone came after the concrete
+}
+
+TEST_CASE("a run may begin asleep, go on awake, and sleep again") {
+    auto sim = simulate(slab(0.3, 0.002)).contact(law).bond(bond).wear(wear);
+    sim.run({.end_time = 0.03, .wake_force = 1});
+    sim.run({.end_time = 0.031});
+    CHECK(count(sim, Kind::concrete) == 15 * 15 * 2);
+    CHECK(count(sim, Kind::fixed) == 15 * 15);
+    CHECK(sim.ledger().residual_relative() < 1e-12);
+    sim.run({.end_time = 0.2, .wake_force = 5});
+    CHECK(count(sim, Kind::concrete) < 15 * 15);
+    CHECK(sim.ledger().residual_relative() < 1e-12);
+    CHECK(std::abs(sim.ledger().integration_residue()) < 1e-2 * sim.ledger().lost());
+}
+
+TEST_CASE("bits do not depend on threads") {
+    const auto positions = [](int threads) {
+        const int before = thread_count();
+        set_thread_count(threads);
+        auto sim = simulate(slab(0.6, 0.001, 0.1)).contact(law).bond(bond).wear(wear);
+        sim.run({.end_time = 0.02, .wake_force = 0.5});
+        set_thread_count(before);
+        return std::pair(sim.particles().position, sim.concrete().worn_volume());
+    };
+    CHECK(positions(1) == positions(2));
+}
+
+TEST_CASE("what hangs on a broken bridge falls, though it slept") {
+    // A beam that stands out over nothing: its tip is far from where the stone cuts it off.
+    std::vector<Vec3> centres;
+    for (int n = 0; n < 30; ++n) centres.push_back({n * d, 0, -0.5 * d});
+    Lattice beam = lattice_of(centres, 0.5 * d, 30 * cube(d));
+    beam.sites.front().held = true;
+    Scene scene;
+    scene.concrete = ConcreteBlock{beam};
+    scene.add_sphere(0.025, {.position = {5 * d, 0, 0.026}, .velocity = {0, 0, -8}});
+    auto sim = simulate(scene).contact(law).bond(MohrCoulomb{{.tensile = 1e5, .stiffness = 4e6}});
+    Index awake_before = 0;
+    sim.run({.end_time = 1,
+             .observe_every = 1e-5,
+
+             .wake_force = 30,
+             .stop = [&] { return sim.bonds_broken() > 0; }},
+            [&](const auto& now) {
+                if (now.bonds_broken() == 0) awake_before = count(now, Kind::concrete);
+            });
+    MESSAGE(awake_before << " awake when the bridge broke");
+    CHECK(awake_before < 25);
+    sim.run({.end_time = sim.time() + 0.05, .wake_force = 30});
+    Index gone = 0;
+    for (Index s = 0; s < 30; ++s) gone += sim.concrete().gone(s);
+    CHECK(gone > 20);
+    CHECK(sim.concrete().gone(29));
+    CHECK(count(sim, Kind::grain) == gone);
+    CHECK(sim.ledger().residual_relative() < 1e-12);
+}
+
+TEST_CASE("other variants: rigid concrete, bonds with moments, a periodic channel") {
+    SUBCASE("rigid concrete") {
+        const auto worn = [](Real wake_force, Index* bodies) {
+            auto sim = simulate(slab(0.5, 0.01)).contact(law).wear(wear);
+            sim.run({.end_time = 0.06, .wake_force = wake_force});
+            *bodies = sim.particles().bodies();
+            return sim.concrete().worn_volume();
+        };
+        Index all = 0, near = 0;
+        const Real expected = worn(0, &all);
+        CHECK(expected > 0);
+        CHECK(worn(1, &near) == doctest::Approx(expected).epsilon(1e-12));
+        CHECK(all == 25 * 25 * 3 + 1);
+        CHECK(near < 60);
+    }
+    SUBCASE("bonds with moments") {
+        const auto worn = [](Real wake_force) {
+            auto sim = simulate(slab(0.4, 0.01))
+                           .contact(law)
+                           .bond(ParallelBond{{.youngs = 2e8, .tensile = 2.7e6, .cohesion = 5e6}})
+                           .wear(wear);
+            sim.run({.end_time = 0.05, .wake_force = wake_force, .wake_radius = 4});
+            CHECK(sim.ledger().residual_relative() < 1e-12);
+            return sim.concrete().worn_volume();
+        };
+        CHECK(worn(1) == doctest::Approx(worn(0)).epsilon(0.01));
+    }
+    SUBCASE("a periodic channel") {
+        const auto after = [](Real wake_force) {
+            Scene scene = slab(0.4, 0.002, 0.195);
+            scene.periodic_along = {true, false, false};
+            scene.bounds = {{-0.2, -1, -1}, {0.2, 1, 1}};
+            auto sim = simulate(scene).contact(law).bond(bond).wear(wear);
+            sim.run({.end_time = 0.03, .wake_force = wake_force, .wake_radius = 6});
+            return sim.concrete().worn_volume();
+        };
+        CHECK(after(0.5) == doctest::Approx(after(0)).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("bad options are named") {
+    auto sim = simulate(slab(0.1, 0.1)).contact(law).bond(bond);
+    CHECK(message_of([&] {
+              sim.run({.end_time = 1, .wake_force = -1});
+          }).find("RunOptions.wake_force must be >= 0, got -1 N") != std::string::npos);
+    CHECK(message_of([&] {
+              sim.run({.end_time = 1, .wake_force = 1, .wake_radius = -1});
+          }).find("RunOptions.wake_radius must be >= 0, got -1 bonds") != std::string::npos);
+}

@@ -1,0 +1,59 @@
+// Concrete that no load reaches sleeps: what that changes, against everything awake, and that the untouched
+// costs nothing.
+#include "struck_concrete.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace abrade;
+
+namespace {
+
+/// Hit once, in the middle, without and with friction, so hard that bonds break, or not.
+StruckConcrete impact(Real along, Real down) {
+    return {.side = 0.7, .patch = 0.01, .stones = 1, .interval = 8e-3, .along = along, .down = down};
+}
+
+}  // namespace
+
+TEST_CASE("a single impact breaks the same bonds and wears the same to 1e-6") {
+    for (const auto& [along, down] : {std::pair(0.0, 1.0), std::pair(2.0, 1.0), std::pair(3.0, 6.0)}) {
+        StruckConcrete scene = impact(along, down);
+        const Outcome all = run(scene);
+        // A wave comes to the end of 20 bonds and back in the time of the impact.
+        scene.wake_force = 1, scene.wake_radius = 20;
+        const Outcome near = run(scene);
+        CAPTURE(along);
+        CAPTURE(down);
+        MESSAGE("worn off by " << near.worn / all.worn - 1 << ", " << all.broken << " bonds broken, "
+                               << 100 * near.awake << " % awake");
+        CHECK(near.worn == doctest::Approx(all.worn).epsilon(1e-6));
+        CHECK(near.which == all.which);
+        CHECK((all.broken > 0) == (down > 2));
+        CHECK(near.awake < 0.5);
+        CHECK(near.residual < 1e-13);
+    }
+}
+
+TEST_CASE("stones one after the other wear the same within half a per cent") {
+    // Two hundred of them, with three seeds: long_dormant_concrete.
+    StruckConcrete scene{.stones = 10};
+    const Outcome all = run(scene);
+    scene.wake_force = 10;
+    const Outcome near = run(scene);
+    MESSAGE("worn " << all.worn * 1e6 << " and " << near.worn * 1e6 << " cm3, broken " << all.broken
+                    << " and " << near.broken << ", awake " << near.awake);
+    CHECK(near.worn == doctest::Approx(all.worn).epsilon(0.005));
+    CHECK(near.residual < 1e-12);
+}
+
+TEST_CASE("what is never touched is no body, and changes nothing") {
+    StruckConcrete scene = impact(1, 1);
+    scene.wake_force = 3;
+    const Outcome small = run(scene);
+    scene.side = 3;
+    const Outcome large = run(scene);
+    CHECK(large.worn == doctest::Approx(small.worn).epsilon(1e-13));
+    CHECK(large.bodies == small.bodies);
+    CHECK(large.steps == small.steps);
+    CHECK(large.awake < 0.2 * small.awake);
+}
