@@ -62,7 +62,9 @@ Whole hang(Lattice lattice, Real area, Real base, bool until_apart = true) {
 
     // The strength that each bond needs, at rest.
     Real needed = 0;
-    for (const auto& bond : sim.world().state().network.bonds()) {
+    auto network = sim.world().network();  // a copy, for what bonds remember is in packs
+    network.unpack();
+    for (const auto& bond : network.bonds()) {
         const auto i = static_cast<std::size_t>(bond.bodies.first),
                    j = static_cast<std::size_t>(bond.bodies.second);
         const Real pull = stiffness * ((now.position[i] - now.position[j]).norm() - bond.rest_length);
