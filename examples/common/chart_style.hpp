@@ -72,7 +72,7 @@ inline std::string limits(const Axis& axis) {
 struct Layout {
     int width = 1200;
     int height = 700;
-    int left = 125;
+    int left = 135;
     int right = 30;
     int top = 60;
     int bottom = 92;

@@ -36,10 +36,11 @@ inline std::vector<MeasuredPoint> read_measured_points(const std::filesystem::pa
                                  : text.substr(from, text.find_last_not_of(" \t\r") - from + 1);
     };
     const auto parse = [](std::string_view text, Real& value) {
-        if (text.starts_with('+')) text.remove_prefix(1);
+        if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
         return error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
     };
+    constexpr std::string_view leave_out = "a # in front leaves the row out";
     std::vector<MeasuredPoint> points;
     bool header = false;
     int row = 0;
@@ -57,7 +58,10 @@ inline std::vector<MeasuredPoint> read_measured_points(const std::filesystem::pa
         }
         const std::string place = path.string() + ", row " + std::to_string(row);
         if (cells.size() != 2)
-            fail({place, "two columns, x [m] and depth [mm/m3], separated by a comma"},
+            fail({place,
+                  "two columns, x [m] and depth [mm/m3], separated by a comma",
+                  {},
+                  "decimals take a point; a # in front leaves a row out"},
                  "'" + std::string{line} + "'");
         MeasuredPoint point;
         if (!header) {
@@ -69,12 +73,19 @@ inline std::vector<MeasuredPoint> read_measured_points(const std::filesystem::pa
             continue;
         }
         if (!parse(cells[0], point.x))
-            fail({place + ", column 1 (x)", "a number in m"}, "'" + std::string{cells[0]} + "'");
+            fail({place + ", column 1 (x)", "a number in m", {}, leave_out},
+                 "'" + std::string{cells[0]} + "'");
         if (!parse(cells[1], point.depth))
-            fail({place + ", column 2 (depth)", "a number in mm/m3"}, "'" + std::string{cells[1]} + "'");
+            fail({place + ", column 2 (depth)", "a number in mm/m3", {}, leave_out},
+                 "'" + std::string{cells[1]} + "'");
         points.push_back(point);
     }
-    if (points.empty()) fail({path.string(), "given with at least one point below its header line"}, "none");
+    if (points.empty())
+        fail({path.string(),
+              "given with at least one point below its header line",
+              {},
+              "write rows of x [m], depth [mm/m3] under \"x_m,depth_mm_per_m3\""},
+             "none");
     return points;
 }
 

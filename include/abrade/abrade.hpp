@@ -12,6 +12,7 @@
 #include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/geometry/gravel.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
+#include <abrade/geometry/surface_lattice.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/archard.hpp>
 #include <abrade/wear/finnie.hpp>

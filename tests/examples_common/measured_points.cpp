@@ -34,23 +34,26 @@ TEST_CASE("points are read past comments, spaces and a spreadsheet's marks") {
 }
 
 TEST_CASE("what is wrong is said with file, row and column") {
-    CHECK(message_of("x,depth\n1,2\n1;2\n") ==
-          "points.csv, row 3 must be two columns, x [m] and depth [mm/m3], separated by a comma, got '1;2'");
-    CHECK(
-        message_of("x,depth\n1,2,3\n") ==
-        "points.csv, row 2 must be two columns, x [m] and depth [mm/m3], separated by a comma, got '1,2,3'");
-    CHECK(message_of("x,depth\n\n# c\none,2\n") ==
-          "points.csv, row 4, column 1 (x) must be a number in m, got 'one'");
-    CHECK(message_of("x,depth\n1,\n") ==
-          "points.csv, row 2, column 2 (depth) must be a number in mm/m3, got ''");
-    CHECK(message_of("x,depth\n1,2 mm\n") ==
-          "points.csv, row 2, column 2 (depth) must be a number in mm/m3, got '2 mm'");
-    CHECK(message_of("x,depth\n1,nan\n") ==
-          "points.csv, row 2, column 2 (depth) must be a number in mm/m3, got 'nan'");
+    const std::string leave_out = "; a # in front leaves the row out";
+    // Another number of columns; a comma in a decimal is one.
+    for (const std::string row : {"1;2", "1,2,3", "1", "1,5,0,2", "1,2,", "1 2"})
+        CHECK(message_of("x,depth\n1,2\n" + row + "\n") ==
+              "points.csv, row 3 must be two columns, x [m] and depth [mm/m3], separated by a comma, got '" +
+                  row + "'; decimals take a point; a # in front leaves a row out");
+    // What is no number: text, nothing, a unit, NaN, infinity, beyond what a number holds.
+    for (const std::string bad :
+         {"one", "", "2 mm", "nan", "NaN", "inf", "-inf", "1e999", "0x1p3", "1.2.3", "--1", "+-1"}) {
+        CHECK(message_of("x,depth\n\n# c\n" + bad + ",2\n") ==
+              "points.csv, row 4, column 1 (x) must be a number in m, got '" + bad + "'" + leave_out);
+        CHECK(message_of("x,depth\n1," + bad + "\n") ==
+              "points.csv, row 2, column 2 (depth) must be a number in mm/m3, got '" + bad + "'" + leave_out);
+    }
     CHECK(message_of("1,2\n") ==
           "points.csv, row 1 must be a header line, got '1,2'; put \"x_m,depth_mm_per_m3\" first");
-    CHECK(message_of("x,depth\n") ==
-          "points.csv must be given with at least one point below its header line, got none");
+    for (const std::string empty : {"", "\n\n", "# nothing\n", "x,depth\n", "x,depth\n# 1,2\n"})
+        CHECK(message_of(empty) ==
+              "points.csv must be given with at least one point below its header line, got none; write rows "
+              "of x [m], depth [mm/m3] under \"x_m,depth_mm_per_m3\"");
     CHECK_THROWS_WITH_AS(
         read_measured_points("missing.csv"),
         "measured points must be a CSV file that can be read, got 'missing.csv'; check its path", InputError);

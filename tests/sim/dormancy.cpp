@@ -173,7 +173,7 @@ TEST_CASE("bad options are named") {
     auto sim = simulate(slab(0.1, 0.1)).contact(law).bond(bond);
     CHECK(message_of([&] {
               sim.run({.end_time = 1, .wake_force = -1});
-          }).find("RunOptions.wake_force must be >= 0, got -1 N") != std::string::npos);
+          }).find("RunOptions.wake_force must be finite and >= 0, got -1 N") != std::string::npos);
     CHECK(message_of([&] {
               sim.run({.end_time = 1, .wake_force = 1, .wake_radius = -1});
           }).find("RunOptions.wake_radius must be >= 0, got -1 bonds") != std::string::npos);

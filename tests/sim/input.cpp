@@ -154,6 +154,66 @@ TEST_CASE("walls, gravity, concrete") {
     CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.concrete.lattice must be of at least one sphere"));
 }
 
+TEST_CASE("concrete that is put together by hand: sites, cells, columns, bonds") {
+    const auto said = [](auto change) {
+        Scene scene = one_stone();
+        scene.stones[0].state.position.z() = 1;
+        scene.concrete = ConcreteBlock{flat_lattice(0.06, 0.06, {.layers = 2})};
+        change(scene.concrete->lattice);
+        return message_of([&] {
+            simulate(scene)
+                .contact(law)
+                .bond(MohrCoulomb{{.tensile = 2.7e6, .stiffness = 4e6}})
+                .run({.end_time = 1e-4});
+        });
+    };
+    const std::string lattice = "Scene.concrete.lattice.";
+    CHECK(said([](Lattice&) {}) == "nothing was thrown");
+    for (const Real bad : {0.0, -1e-6, nan_}) {
+        const std::string got = " must be finite and > 0, got " + to_text(bad);
+        CHECK(said([&](Lattice& l) { l.sites[3].cell_volume = bad; }) ==
+              lattice + "sites[3].cell_volume" + got +
+                  " m3; give it the volume of concrete that the sphere stands for");
+        CHECK(said([&](Lattice& l) { l.column_area[2] = bad; }) ==
+              lattice + "column_area[2]" + got +
+                  " m2; give it the area of the body's surface above the column");
+        CHECK(said([&](Lattice& l) { l.radius = bad; }).starts_with(lattice + "radius" + got + " m; "));
+    }
+    CHECK(said([](Lattice& l) { l.sites[5].centre.y() = nan_; }) ==
+          lattice + "sites[5].centre.y must be finite, got nan m" + look);
+    CHECK(said([](Lattice& l) { l.sites[4].column = 9; }) ==
+          lattice +
+              "sites[4].column must be below the number of columns, 9, got 9; give each column its area");
+    CHECK(said([](Lattice& l) { l.sites[7].centre = l.sites[2].centre; }) ==
+          lattice + "sites[2] and [7]: distance must be > 0, got 0 m; take one of them out");
+    // Sites 0 and 17 stand at opposite corners, 0.06 m apart.
+    CHECK(said([](Lattice& l) {
+              l.bonds[4] = {0, 17};
+          }) == lattice +
+                    "bonds[4]: length, of 0 and 17 must be below two diameters (0.04 m), got 0.06 m; bond "
+                    "neighbours only: between these two another sphere has room");
+    CHECK(said([](Lattice& l) { l.bonds.push_back(l.bonds[4]); }) ==
+          lattice + "bonds[33] must be another pair than " + lattice +
+              "bonds[4], got 1 and 7; leave one of "
+              "them out");
+    for (const auto& bad : {std::pair<Index, Index>{3, 3}, {5, 3}, {-1, 3}, {3, 18}})
+        CHECK(said([&](Lattice& l) { l.bonds[4] = bad; }) ==
+              lattice + "bonds[4] must be a pair of two sites below 18, the smaller first, got " +
+                  std::to_string(bad.first) + " and " + std::to_string(bad.second) +
+                  "; make it by flat_lattice() or lattice_of()");
+}
+
+TEST_CASE("no bond of a lattice that the library makes is too long: flat, invert, hexagonal, with a gap") {
+    // Stretched as far as they can be: two spheres where nearly three would fit.
+    for (const Lattice& lattice :
+         {flat_lattice(0.0599, 0.0599, {.layers = 2}), hexagonal_lattice(0.0599, 0.0599, {.layers = 3}),
+          invert_lattice({.length = 0.0599, .width = 0.3, .arc_radius = 0.15}, {.layers = 4}),
+          lattice_of({{0, 0, 0}, {0.036, 0, 0}}, 0.01, 1e-5, 0.9)}) {
+        CHECK(!lattice.bonds.empty());
+        CHECK_NOTHROW(lattice.validate());
+    }
+}
+
 TEST_CASE("the feed") {
     const FeedParams good{.volume_rate = 1e-3,
                           .classes = {{0.04, 0.5, StoneShape::sphere}, {0.05, 0.5, StoneShape::angular}},

@@ -1,7 +1,10 @@
 // The record of wear: capped, overflow apart, depth sums up to volume.
+#include <abrade/geometry/surface_lattice.hpp>
 #include <abrade/wear/concrete.hpp>
 
 #include <doctest/doctest.h>
+
+#include <random>
 
 using namespace abrade;
 
@@ -11,6 +14,19 @@ Real lost_by_depth(const Concrete& c) {
     const auto depth = c.depth();
     for (std::size_t k = 0; k < depth.size(); ++k) volume += depth[k] * c.lattice().column_area[k];
     return volume;
+}
+/// Spheres of 0.02 m where chance has them, none nearer to another than a diameter.
+std::vector<Vec3> thrown_spheres() {
+    std::mt19937_64 random(3);
+    const auto uniform = [&] { return std::generate_canonical<Real, 53>(random); };
+    std::vector<Vec3> all;
+    for (int thrown = 0; thrown < 5000; ++thrown) {
+        const Real x = 0.1 * uniform(), y = 0.1 * uniform(), z = 0.06 * uniform();
+        const Vec3 next(x, y, z);
+        if (std::none_of(all.begin(), all.end(), [&](const Vec3& a) { return (a - next).norm() < 0.02; }))
+            all.push_back(next);
+    }
+    return all;
 }
 }  // namespace
 
@@ -45,25 +61,54 @@ TEST_CASE("nothing is lost between worn volume and overflow, however small the p
     CHECK(c.overflow_volume() > 0);
 }
 
-TEST_CASE("depth times area is the volume lost: worn off those that stand, whole cells of those gone") {
-    for (const Lattice& lattice :
-         {flat_lattice(0.1, 0.06, {.layers = 3}),
-          invert_lattice({.length = 0.1, .width = 0.5, .arc_radius = 0.4}, {.layers = 3})}) {
-        Concrete c(lattice);
-        for (Index s = 0; s < c.sites(); s += 4) c.wear(s, 1e-7 * (s % 11));
-        CHECK(lost_by_depth(c) == doctest::Approx(c.worn_volume()).epsilon(1e-13).scale(0));
-        CHECK(c.detached_volume() == 0);
-        c.set_gone(4);
-        c.set_gone(5);
-        CHECK(c.gone(4));
-        CHECK(!c.gone(6));
-        CHECK(c.detached_volume() > 0);
-        CHECK(lost_by_depth(c) ==
-              doctest::Approx(c.worn_volume() + c.detached_volume()).epsilon(1e-13).scale(0));
-        c.wear(4, 1e-7);  // a grain on its way still wears: what is lost in all stays the same
-        const Real before = lost_by_depth(c);
-        CHECK(before == doctest::Approx(c.worn_volume() + c.detached_volume()).epsilon(1e-13).scale(0));
-    }
+TEST_CASE("depth times area is the volume lost, for every kind of lattice") {
+    const auto wave = [](Real x, Real y) { return 0.008 * std::sin(40 * x) * std::cos(30 * y); };
+    const auto plane = [](Real x, Real y) { return -0.02 + 0.2 * x - 0.1 * y; };
+    const std::pair<const char*, Lattice> kinds[] = {
+        {"flat", flat_lattice(0.1, 0.06, {.layers = 3})},
+        {"invert", invert_lattice({.length = 0.1, .width = 0.5, .arc_radius = 0.4}, {.layers = 3})},
+        {"hexagonal", hexagonal_lattice(0.13, 0.11, {.layers = 3})},
+        {"random", lattice_of(thrown_spheres(), 0.01, 6e-4, 0.2)},
+        {"under a surface", lattice_under(wave, 0.11, 0.1, {.layers = 3})},
+        {"cut by a surface", cut_below(hexagonal_lattice(0.13, 0.11, {.layers = 5}), plane)}};
+    for (const auto& kind : kinds)
+        for (const FractureVolume volume : {FractureVolume::cell, FractureVolume::sphere}) {
+            CAPTURE(kind.first);
+            Concrete c(kind.second, volume);
+            REQUIRE(c.sites() > 40);
+            const auto conserves = [&] {
+                return lost_by_depth(c) ==
+                       doctest::Approx(c.worn_volume() + c.detached_volume()).epsilon(1e-13).scale(0);
+            };
+            for (Index s = 0; s < c.sites(); s += 4) c.wear(s, 1e-7 * (1 + s % 11));
+            CHECK(c.detached_volume() == 0);
+            CHECK(conserves());
+            for (Index s = 0; s < c.sites(); s += 3) c.set_gone(s);  // some of them worn, some not
+            CHECK(c.gone(3));
+            CHECK(!c.gone(4));
+            CHECK(c.detached_volume() > 0);
+            CHECK(conserves());
+            const Real before = lost_by_depth(c);
+            c.wear(0, 1e-7);  // a grain on its way still wears: what is lost in all stays the same
+            CHECK(lost_by_depth(c) == before);
+            CHECK(conserves());
+            for (Index s = 0; s < c.sites(); ++s) c.wear(s, 1), c.set_gone(s);  // nothing is left
+            Real cells = 0;
+            for (const LatticeSite& site : kind.second.sites) cells += site.cell_volume;
+            CHECK(lost_by_depth(c) == doctest::Approx(cells).epsilon(1e-13).scale(0));
+            CHECK(conserves());
+        }
+}
+
+TEST_CASE("a packing's column without a sphere at the surface: its depth begins with a deeper one") {
+    // Two columns of one diameter; the second sphere of the first column reaches over the second column.
+    Concrete c(lattice_of({{0, 0, 0}, {0.019, 0, 0.018}, {0.024, 0, -0.01}}, 0.01, 3e-5, 0.5));
+    REQUIRE(c.lattice().column_area.size() == 2);
+    c.set_gone(1);
+    CHECK(c.depth()[0] == doctest::Approx(1e-5 / 4e-4));
+    CHECK(c.depth()[1] == 0);
+    c.set_gone(2);
+    CHECK(c.depth()[1] == doctest::Approx(1e-5 / 4e-4));
 }
 
 TEST_CASE("depth of a column whose top sphere is gone is one layer") {

@@ -32,8 +32,11 @@ struct SpringMemory {
 /// springs, f_n >= 0 and |f_s| <= f_n tan(phi), so breaking under compression changes no normal force.
 ///
 /// Springs tilt with the bond, but do not turn about it: two spheres that spin together about their bond keep
-/// the direction of s in space. Concrete that is tied to the ground does not spin; for loose clusters that
-/// are sheared or bent and spin about such an axis this is an error.
+/// the direction of s in space. For loose clusters that are sheared or bent and spin about such an axis this
+/// is an error. Nor do springs resist that one end twists against the other: in a cubic lattice, where all
+/// neighbours of a layer may turn against each other as gears do, nothing stops that, and the load's own
+/// shear drives it slowly (tests/verification/deposit.cpp). Beams (ParallelBond) resist it; a hexagonal
+/// lattice has no such motion.
 template <class Number>
 class BondSprings {
 public:

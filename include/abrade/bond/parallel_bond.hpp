@@ -32,11 +32,12 @@ public:
 
         void validate() const {
             require_positive(youngs, "ParallelBond.youngs", "Pa", "concrete has 2e10 to 4e10");
-            require_positive(stiffness_ratio, "ParallelBond.stiffness_ratio");
+            require_positive(stiffness_ratio, "ParallelBond.stiffness_ratio", "", "the default is 0.4");
             require_positive(tensile, "ParallelBond.tensile", "Pa", "concrete has 1e6 to 5e6");
             require_positive(cohesion, "ParallelBond.cohesion", "Pa", "a few times the tensile strength");
             detail::require_friction_angle(friction_angle, "ParallelBond.friction_angle");
-            require_positive(radius_factor, "ParallelBond.radius_factor");
+            require_positive(radius_factor, "ParallelBond.radius_factor", "",
+                             "1 is a beam as thick as the spheres, its area goes with the square");
             detail::require_damping(damping, "ParallelBond.damping");
         }
         void visit(auto&& f) const {

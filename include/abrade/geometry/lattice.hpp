@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -32,7 +35,87 @@ struct Lattice {
     Index site(Index along, Index across, Index layer) const noexcept {
         return (along * count_across + across) * count_layers + layer;
     }
+
+    /// Throws InputError that begins with `name` for a radius, volume or area that is not > 0, a centre that
+    /// is not finite, a site in no column, two sites at one place; a bond that is no pair of sites, is given
+    /// twice or is as long as two diameters: then another sphere has room between the two.
+    void validate(const std::string& name = "Lattice") const;
 };
+
+namespace detail {
+
+inline void check_sites(const Lattice& lattice, const std::string& name) {
+    const auto& sites = lattice.sites;
+    const auto site = [&](std::size_t n) { return name + ".sites[" + std::to_string(n) + "]"; };
+    const auto positive = [](Real value) { return value > 0 && std::isfinite(value); };
+    for (std::size_t c = 0; c < lattice.column_area.size(); ++c)
+        if (const Real area = lattice.column_area[c]; !positive(area))
+            require_positive(area, name + ".column_area[" + std::to_string(c) + "]", "m2",
+                             "give it the area of the body's surface above the column");
+    for (std::size_t n = 0; n < sites.size(); ++n) {
+        if (!sites[n].centre.allFinite()) require_finite(sites[n].centre, site(n) + ".centre", "m");
+        if (!positive(sites[n].cell_volume))
+            require_positive(sites[n].cell_volume, site(n) + ".cell_volume", "m3",
+                             "give it the volume of concrete that the sphere stands for");
+        if (const Index c = sites[n].column;
+            c < 0 || static_cast<std::size_t>(c) >= lattice.column_area.size())
+            fail({site(n) + ".column",
+                  "below the number of columns, " + std::to_string(lattice.column_area.size()), "",
+                  "give each column its area"},
+                 std::to_string(c));
+    }
+    std::vector<std::size_t> order(sites.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const Vec3 &x = sites[a].centre, &y = sites[b].centre;
+        return std::tuple(x.x(), x.y(), x.z()) < std::tuple(y.x(), y.y(), y.z());
+    });
+    for (std::size_t n = 1; n < order.size(); ++n)
+        if (sites[order[n - 1]].centre == sites[order[n]].centre)
+            fail({site(order[n - 1]) + " and [" + std::to_string(order[n]) + "]: distance", "> 0", "m",
+                  "take one of them out"},
+                 "0");
+}
+
+inline void check_bonds(const Lattice& lattice, const std::string& name) {
+    const auto& bonds = lattice.bonds;
+    const auto bond = [&](std::size_t n) { return name + ".bonds[" + std::to_string(n) + "]"; };
+    const auto ends = [&](std::size_t n) {
+        return std::to_string(bonds[n].first) + " and " + std::to_string(bonds[n].second);
+    };
+    const auto sites = static_cast<Index>(lattice.sites.size());
+    const auto centre = [&](Index n) -> const Vec3& {
+        return lattice.sites[static_cast<std::size_t>(n)].centre;
+    };
+    const Real too_long = 4 * lattice.radius;
+    for (std::size_t n = 0; n < bonds.size(); ++n) {
+        const auto& [i, j] = bonds[n];
+        if (!(i >= 0 && i < j && j < sites))
+            fail({bond(n), "a pair of two sites below " + std::to_string(sites) + ", the smaller first", "",
+                  "make it by flat_lattice() or lattice_of()"},
+                 ends(n));
+        if (const Real length = (centre(j) - centre(i)).norm(); !(length < too_long))
+            fail({bond(n) + ": length, of " + ends(n), "below two diameters (" + to_text(too_long) + " m)",
+                  "m", "bond neighbours only: between these two another sphere has room"},
+                 to_text(length));
+    }
+    std::vector<std::size_t> order(bonds.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return bonds[a] < bonds[b]; });
+    for (std::size_t n = 1; n < order.size(); ++n)
+        if (bonds[order[n - 1]] == bonds[order[n]])
+            fail({bond(order[n]), "another pair than " + bond(order[n - 1]), "", "leave one of them out"},
+                 ends(order[n]));
+}
+
+}  // namespace detail
+
+inline void Lattice::validate(const std::string& name) const {
+    require_positive(radius, name + ".radius", "m");
+    detail::check_sites(*this, name);
+    detail::check_bonds(*this, name);
+}
 
 struct LatticeSize {
     Real sphere_diameter = 0.02;  ///< [m]

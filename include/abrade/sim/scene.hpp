@@ -110,7 +110,7 @@ struct Scene {
                 !concrete->lattice.sites.empty(),
                 {"Scene.concrete.lattice", "of at least one sphere", "spheres", "make it by flat_lattice()"},
                 0);
-            validate(concrete->lattice);
+            concrete->lattice.validate("Scene.concrete.lattice");
         }
         if (feed) feed->validate();
         for (int a = 0; a < 3; ++a) {
@@ -135,22 +135,6 @@ struct Scene {
 private:
     bool periodic(int axis) const noexcept { return periodic_along[static_cast<std::size_t>(axis)]; }
 
-    static void validate(const Lattice& lattice) {
-        const auto sites = static_cast<Index>(lattice.sites.size());
-        for (std::size_t n = 0; n < lattice.bonds.size(); ++n)
-            if (const auto& [i, j] = lattice.bonds[n]; !(i >= 0 && i < j && j < sites))
-                fail({"Scene.concrete.lattice.bonds[" + std::to_string(n) + "]",
-                      "a pair of two sites below " + std::to_string(sites) + ", the smaller first", "",
-                      "make it by flat_lattice() or lattice_of()"},
-                     std::to_string(i) + " and " + std::to_string(j));
-        for (std::size_t n = 0; n < lattice.sites.size(); ++n)
-            if (const Index c = lattice.sites[n].column;
-                c < 0 || static_cast<std::size_t>(c) >= lattice.column_area.size())
-                fail({"Scene.concrete.lattice.sites[" + std::to_string(n) + "].column",
-                      "below the number of columns, " + std::to_string(lattice.column_area.size()), "",
-                      "give each column its area"},
-                     std::to_string(c));
-    }
     void validate(const Plane& wall, const std::string& name) const {
         wall.validate(name);
         for (int a = 0; a < 3; ++a)

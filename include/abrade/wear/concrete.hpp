@@ -20,11 +20,13 @@ enum class FractureVolume { cell, sphere };
 class Concrete {
 public:
     Concrete() = default;
-    /// Throws InputError for a site without volume.
+    /// Throws InputError for what `Lattice::validate` refuses.
     explicit Concrete(Lattice lattice, FractureVolume kind = FractureVolume::cell)
         : lattice_(std::move(lattice)), kind_(kind), fractured_(lattice_.sites.size(), 0),
           overflow_(lattice_.sites.size(), 0), gone_(lattice_.sites.size(), 0),
-          wears_(lattice_.sites.size() / sites_per_part + 1, 0) {}
+          wears_(lattice_.sites.size() / sites_per_part + 1, 0) {
+        lattice_.validate();
+    }
 
     /// Takes worn volume [m3] off a site. What a fully fractured site no longer has is booked as overflow.
     void wear(Index site, Real volume) noexcept {
@@ -69,8 +71,12 @@ public:
         return volume;
     }
 
-    /// Abrasion depth of each column of the lattice, [along x across] [m]: fractured volume of standing
-    /// spheres and whole cells of those gone, over the column's surface. Sums up to the volume lost.
+    /// Abrasion depth of each column of the lattice [m], in the order of `column_area` ([along x across] of
+    /// regular ones): fractured volume of standing spheres and whole cells of those gone, over the column's
+    /// surface. Depth times area sums up to the volume lost. A sphere counts in the column that its centre
+    /// stands in, whatever it reaches over: where a packing's columns are as narrow as its spheres, one may
+    /// hold none at the surface, and its depth then begins with a deeper sphere. Take means over several
+    /// columns.
     std::vector<Real> depth() const {
         std::vector<Real> depth(lattice_.column_area.size(), 0);
         for (std::size_t s = 0; s < lattice_.sites.size(); ++s)
