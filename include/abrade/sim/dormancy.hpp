@@ -17,7 +17,7 @@ namespace abrade {
 /// on which nothing acts by more than that, goes to sleep.
 struct Dormancy {
     /// Looks at which a sphere must have been quiet before it sleeps.
-    static constexpr std::uint8_t quiet_looks = 2;
+    static constexpr std::uint8_t quiet_looks = 3;
 
     /// A sphere that stands still, and what its bonds have come to since it does.
     struct Anchor {

@@ -163,8 +163,10 @@ void quieten(State<P>& state, const Move& half, Real skin, MotionSums& sums) {
         const auto slot = at(state.first_slot_of(b));
         const SphereLoad& load = state.store.lines.load[slot];
         const Vec3 force = load.force + p.mass[at(b)] * state.scene.gravity;
-        const bool quiet = speed_squared(state.store.lines.motion[slot]) <= square(dormancy.quiet_speed) &&
-                           force.norm() <= dormancy.wake_force && load.lever.norm() <= dormancy.wake_force;
+        // Turning alone is no load: layers of a cubic lattice turn like gears, and nothing stops them.
+        const bool quiet =
+            state.store.lines.motion[slot].velocity.squaredNorm() <= square(dormancy.quiet_speed) &&
+            force.norm() <= dormancy.wake_force && load.lever.norm() <= dormancy.wake_force;
         std::uint8_t& looks = dormancy.quiet[at(p.site[at(b)])];
         looks = quiet ? static_cast<std::uint8_t>(std::min(looks + 1, 255)) : std::uint8_t{0};
         if (looks >= Dormancy::quiet_looks) candidates.push_back(b);

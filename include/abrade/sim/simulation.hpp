@@ -377,16 +377,16 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
         << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
         << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().census().near << "\n";
     if (sim.concrete().sites() > 0)
-        out << "concrete " << sim.concrete().sites() << " spheres, "
-            << percent(sim.awake_fraction_mean()) << " awake, " << sim.bonds_broken()
-            << " bonds broken, worn volume " << short_text(sim.concrete().worn_volume()) << " m3\n";
+        out << "concrete " << sim.concrete().sites() << " spheres, " << percent(sim.awake_fraction_mean())
+            << " awake, " << sim.bonds_broken() << " bonds broken, worn volume "
+            << short_text(sim.concrete().worn_volume()) << " m3\n";
     out << "ledger   [J]\n";
     sim.ledger_.visit([&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
     });
     return out << "wall     " << short_text(sim.wall_seconds_) << " s: contacts " << percent(shares.contacts)
-               << ", bonds " << percent(shares.bonds) << ", motion " << percent(shares.motion) << ", neighbour lists " << percent(shares.renewal)
-               << "\n";
+               << ", bonds " << percent(shares.bonds) << ", motion " << percent(shares.motion)
+               << ", neighbour lists " << percent(shares.renewal) << "\n";
 }
 
 }  // namespace abrade
