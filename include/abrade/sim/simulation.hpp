@@ -119,6 +119,11 @@ public:
     const Particles& particles() const { return world().particles(); }
     const Concrete& concrete() const { return world().concrete(); }
     Index bonds_broken() const { return world().state().broken_tension + world().state().broken_shear; }
+    /// The time acceleration at which the largest collision so far would have worn just its sphere's cell
+    /// [-]; infinite where nothing wore. More stones may bring a larger collision.
+    Real largest_safe_acceleration() const requires AcceleratedWear<W> {
+        return wear_.params().acceleration / concrete().largest_collision_share();
+    }
     Real sediment_passed() const { return world().gauge_volume(); }  ///< the gauge, solid [m3]
     const auto& world() const {
         if (!world_) throw std::logic_error("Simulation: run it before asking for its state");
@@ -372,6 +377,13 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
     if (sim.concrete().sites() > 0)
         out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken()
             << " bonds broken, worn volume " << short_text(sim.concrete().worn_volume()) << " m3\n";
+    if (const Real share = sim.concrete().largest_collision_share(); share > 1) {
+        out << "warning  one collision wore " << short_text(share)
+            << " times its sphere's cell: the result depends on the time acceleration";
+        if constexpr (AcceleratedWear<W>)
+            out << ", and does not at " << short_text(sim.largest_safe_acceleration()) << " or less";
+        out << "\n";
+    }
     out << "ledger   [J]\n";
     sim.ledger_.visit([&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
