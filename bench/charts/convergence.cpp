@@ -96,7 +96,7 @@ void print_tables(const std::vector<Case>& cases, PatchRuns& runs) {
             std::cout
                 << "\n| " << group
                 << " | worn, cm3 a stone | change | largest depth, mm | lost in impacts, J | in sliding, "
-                   "J | bonds broken | overflow | largest share | wall, s |\n"
+                   "J | bonds broken | overflow | largest share | core, s |\n"
                 << "|---|---|---|---|---|---|---|---|---|---|\n";
         }
         const Statistics s = runs.of(c.label), b = runs.of(c.base);
@@ -120,8 +120,87 @@ void print_tables(const std::vector<Case>& cases, PatchRuns& runs) {
                   << s.mean.lost_sliding << " | " << s.mean.bonds_broken << " +- "
                   << s.standard_error(&PatchAnswers::bonds_broken) << " | "
                   << 100 * s.mean.overflow / (s.mean.overflow + s.mean.worn) << " % | " << s.mean.share
-                  << " | " << s.mean.wall << " |\n";
+                  << " | " << runs.fastest(c.label) << " |\n";
     }
+}
+
+constexpr std::string_view as_it_is = "as it is";
+
+/// Of a group of cases: what each answer is over that of the base, against the factor.
+Panel panel_of(const std::string& group, const std::vector<Case>& cases, const PatchRuns& runs) {
+    static constexpr Real PatchAnswers::*answers[] = {&PatchAnswers::worn, &PatchAnswers::lost_normal,
+                                                      &PatchAnswers::lost_sliding};
+    Panel panel{group, std::vector<Curve>(std::size(answers))};
+    std::map<Real, const Case*> in_order;
+    for (const Case& c : cases)
+        if (c.group == group) in_order[c.factor] = &c;
+    if (!in_order.contains(1)) in_order[1] = &cases.front();
+    for (const auto& [factor, c] : in_order)
+        for (std::size_t n = 0; n < std::size(answers); ++n) {
+            panel.curves[n].x.push_back(factor);
+            panel.curves[n].y.push_back(runs.of(c->label).mean.*answers[n] /
+                                        runs.of(c->base).mean.*answers[n]);
+        }
+    return panel;
+}
+
+void draw_numbers(const std::vector<Case>& cases, const PatchRuns& runs,
+                  const std::filesystem::path& picture) {
+    const Statistics base = runs.of(std::string(as_it_is));
+    const Real scatter = base.deviation.worn / base.mean.worn;
+    PanelChart chart{
+        .title =
+            "Wear and losses in concrete contacts over those of the base, against what is varied over "
+            "its base",
+        .x = {.label = "setting over the base's", .min = 0.1, .max = 300, .logarithmic = true},
+        .y = {.label = "answer over the base's", .min = 0, .max = 4},
+        .names = {"worn volume", "energy lost in impacts", "energy lost in sliding"},
+        .slopes = {{0.1, 1 + scatter, 0, 1000, "a seed's"}, {0.1, 1 - scatter, 0, 1000, "scatter"}},
+        .columns = 3,
+        .panel_width = 400,
+        .panel_height = 330};
+    for (const char* group :
+         {"contact stiffness", "bond stiffness", "both stiffnesses", "sphere size", "time step"})
+        chart.panels.push_back(panel_of(group, cases, runs));
+    draw(chart, picture);
+}
+
+/// Time of one core, of the fastest of all seeds.
+void draw_costs(const std::vector<Case>& cases, const PatchRuns& runs, const std::filesystem::path& folder) {
+    const std::pair<std::string, std::string> groups[] = {
+        {"bonded, softer and stiffer bonds", "bond stiffness"},
+        {"bonded, both springs softer and stiffer", "both stiffnesses"},
+        {"bonded, other time steps", "time step"},
+        {"rigid concrete", "choice"}};
+    const auto points = [&](auto&& answer) {
+        std::vector<Curve> curves;
+        for (const auto& [title, group] : groups) {
+            Curve curve{.title = title, .style = examples::CurveStyle::points};
+            for (const Case& c : cases)
+                if (c.group == group && (group != "choice" || c.label == "rigid concrete")) {
+                    curve.x.push_back(runs.fastest(c.label));
+                    curve.y.push_back(answer(runs.of(c.label).mean));
+                }
+            curves.push_back(curve);
+        }
+        curves.push_back({.title = "bonded, as it is",
+                          .x = {runs.fastest(std::string(as_it_is))},
+                          .y = {answer(runs.of(std::string(as_it_is)).mean)},
+                          .style = examples::CurveStyle::points});
+        return curves;
+    };
+    const examples::Axis cost{
+        .label = "time of one core for a run", .unit = "s", .min = 0.2, .max = 20, .logarithmic = true};
+    draw(examples::LineChart{.title = "Wear of rigid and of bonded concrete against what a run costs",
+                             .x = cost,
+                             .y = {.label = "worn volume a stone", .unit = "cm3", .min = 0, .max = 4},
+                             .curves = points([](const PatchAnswers& a) { return 1e6 * a.worn; })},
+         folder / "convergence_cost_wear.png");
+    draw(examples::LineChart{.title = "Broken bonds against what a run costs",
+                             .x = cost,
+                             .y = {.label = "bonds broken", .min = 0},
+                             .curves = points([](const PatchAnswers& a) { return a.bonds_broken; })},
+         folder / "convergence_cost_bonds.png");
 }
 
 }  // namespace
@@ -135,6 +214,8 @@ int main(int argc, char** argv) {
         PatchRuns runs(folder / "convergence.csv");
         for (const Case& c : cases) runs.make(c.label, c.patch, c.seeds);
         print_tables(cases, runs);
+        draw_numbers(cases, runs, folder / "convergence_numbers.png");
+        draw_costs(cases, runs, folder);
         std::cout << "pictures in " << folder.string() << '\n';
     } catch (const std::exception& problem) {
         std::cerr << problem.what() << '\n';

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <string>
@@ -61,11 +62,18 @@ public:
             PatchAnswers::visit(
                 [&](const char*, auto member) { file << ';' << to_text(done.back().*member); });
             file << '\n';
-            std::cerr << label << ", seed " << patch.seed << ": " << done.back().wall << " s\n";
+            std::cerr << label << ", seed " << patch.seed << ": " << done.back().processor << " s\n";
         }
     }
 
     const std::vector<PatchAnswers>& all(const std::string& label) const { return runs_.at(label); }
+
+    Real fastest(const std::string& label) const {  ///< time of one core [s]
+        Real least = std::numeric_limits<Real>::infinity();
+        for (const PatchAnswers& a : all(label))
+            if (a.fed > 0) least = std::min(least, a.processor);
+        return least;
+    }
 
     Statistics of(const std::string& label) const {
         Statistics s;

@@ -126,9 +126,10 @@ TEST_CASE("a run without acceleration tells at which one a collision wears more 
     const auto slow = strike(1);
     const Real lost = 0.5 * slow.particles().mass[1] * square(2.0) * 0.75;
     const Real safe = slow.largest_safe_acceleration();
-    CHECK(safe == doctest::Approx(8e-6 / (coefficient * 0.5 * lost)).epsilon(1e-3).scale(0));
-    CHECK(strike(0.999 * safe).concrete().overflow_volume() == 0);
-    const auto fast = strike(1.5 * safe);
+    const Real whole = safe / Concrete::safe_collision_share;  // where a collision wears one cell
+    CHECK(whole == doctest::Approx(8e-6 / (coefficient * 0.5 * lost)).epsilon(1e-3).scale(0));
+    CHECK(strike(0.999 * whole).concrete().overflow_volume() == 0);
+    const auto fast = strike(1.5 * whole);
     CHECK(fast.concrete().overflow_volume() == doctest::Approx(4e-6).epsilon(1e-9).scale(0));
     CHECK(fast.largest_safe_acceleration() == doctest::Approx(safe).epsilon(1e-9).scale(0));
     const auto warns = [](const auto& sim) {
@@ -136,13 +137,14 @@ TEST_CASE("a run without acceleration tells at which one a collision wears more 
         text << sim;
         return text.str().find("warning  one collision wore") != std::string::npos;
     };
-    CHECK(!warns(strike(0.999 * safe)));
+    CHECK(!warns(strike(0.999 * whole)));
     CHECK(warns(fast));
 
     // A stone that lands on several bonded spheres.
-    const Real of_drop = drop(0.5, 1, bonds, StoneShape::angular, 0.02).largest_safe_acceleration();
-    CHECK(drop(0.5, 0.999 * of_drop, bonds, StoneShape::angular, 0.02).concrete().overflow_volume() == 0);
-    CHECK(drop(0.5, 1.01 * of_drop, bonds, StoneShape::angular, 0.02).concrete().overflow_volume() > 0);
+    const auto land = [](Real beta) { return drop(0.5, beta, bonds, StoneShape::angular, 0.02); };
+    const Real once = land(1).largest_safe_acceleration() / Concrete::safe_collision_share;
+    CHECK(land(0.999 * once).concrete().overflow_volume() == 0);
+    CHECK(land(1.01 * once).concrete().overflow_volume() > 0);
 }
 
 TEST_CASE("a heap at rest on concrete does not wear") {

@@ -119,10 +119,12 @@ public:
     const Particles& particles() const { return world().particles(); }
     const Concrete& concrete() const { return world().concrete(); }
     Index bonds_broken() const { return world().state().broken_tension + world().state().broken_shear; }
-    /// The time acceleration at which the largest collision so far would have worn just its sphere's cell
-    /// [-]; infinite where nothing wore. More stones may bring a larger collision.
+    /// The time acceleration at which the largest collision so far would have worn half of its sphere's cell
+    /// [-], from where on the map of docs/convergence.md loses wear to overflow; infinite where nothing wore.
+    /// More stones may bring a larger collision.
     Real largest_safe_acceleration() const requires AcceleratedWear<W> {
-        return wear_.params().acceleration / concrete().largest_collision_share();
+        return Concrete::safe_collision_share * wear_.params().acceleration /
+               concrete().largest_collision_share();
     }
     Real sediment_passed() const { return world().gauge_volume(); }  ///< the gauge, solid [m3]
     const auto& world() const {

@@ -18,6 +18,10 @@ enum class FractureVolume { cell, sphere };
 /// Fracture rate gamma_f = fractured / V_omega, in [0, 1].
 class Concrete {
 public:
+    /// What one collision may wear of its site's V_omega while the result does not depend on the time
+    /// acceleration [-]: less than 1 % goes to overflow in the scenes of docs/convergence.md.
+    static constexpr Real safe_collision_share = 0.5;
+
     Concrete() = default;
     /// Throws InputError for a site without volume.
     explicit Concrete(Lattice lattice, FractureVolume kind = FractureVolume::cell)
