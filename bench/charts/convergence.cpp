@@ -48,15 +48,19 @@ std::vector<Case> all_cases(int seeds) {
             [&](Patch& p) { p.safety = safety; });
     // The same block: thickness, modulus E = k / d and density stay.
     const std::string medium = "spheres of 0.02 m, 6 layers";
-    for (const auto& [d, layers] : {std::pair(0.04, 3), std::pair(0.02, 6), std::pair(0.01, 12)})
+    for (const LatticeSize& size : {LatticeSize{0.04, 3}, LatticeSize{0.02, 6}, LatticeSize{0.01, 12}}) {
+        const Real factor = size.sphere_diameter / 0.02;
         add(
-            "sphere size", "spheres of " + to_text(d) + " m, " + std::to_string(layers) + " layers", d / 0.02,
+            "sphere size",
+            "spheres of " + to_text(size.sphere_diameter) + " m, " + std::to_string(size.layers) + " layers",
+            factor,
             [&](Patch& p) {
-                p.lattice = {.sphere_diameter = d, .layers = layers};
-                p.bond.stiffness *= d / 0.02;
+                p.lattice = size;
+                p.bond.stiffness *= factor;
                 p.wear.acceleration = 50, p.stones = 80;
             },
             medium);
+    }
     for (const Real beta : {Patch{}.wear.acceleration, worn_out}) {
         const bool out = beta == worn_out;
         const std::string at = out ? ", worn out" : "", base = "as it is" + at;
