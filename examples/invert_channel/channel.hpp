@@ -93,6 +93,8 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     r.worn_volume_m3 = concrete.worn_volume();
     r.overflow_volume_m3 = concrete.overflow_volume();
     r.detached_volume_m3 = concrete.detached_volume();
+    r.largest_collision_share = concrete.largest_collision_share();
+    r.largest_safe_beta = sim.largest_safe_acceleration();
     // Equation [1] for the whole run: half of what each contact with concrete lost, times Cw and beta.
     r.worn_volume_from_energy_m3 = 0.5 * c.wear.coefficient * c.wear.acceleration *
                                        (c.wear.normal_weight * ledger.concrete_lost_normal +

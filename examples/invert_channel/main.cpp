@@ -64,6 +64,8 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"worn_volume_from_energy_m3", r.worn_volume_from_energy_m3},
         {"overflow_volume_m3", r.overflow_volume_m3},
         {"detached_volume_m3", r.detached_volume_m3},
+        {"largest_collision_share", r.largest_collision_share},
+        {"largest_safe_beta", r.largest_safe_beta},
         {"centre_depth_mm_per_m3", r.centre_depth_mm_per_m3},
         {"max_depth_mm", r.max_depth_mm},
         {"mean_depth_mm", r.mean_depth_mm},

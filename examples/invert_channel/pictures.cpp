@@ -141,8 +141,9 @@ void draw_ledger(const ChannelResults& r, const fs::path& picture) {
 }
 
 std::vector<ReportRow> summary_rows(const ChannelResults& r) {
-    const auto row = [](const char* name, Real value, const char* unit) {
-        return ReportRow{name, std::isfinite(value) ? short_number(value) : "no sediment has passed yet",
+    const auto row = [](const char* name, Real value, const char* unit,
+                        const char* otherwise = "no sediment has passed yet") {
+        return ReportRow{name, std::isfinite(value) ? short_number(value) : otherwise,
                          std::isfinite(value) ? unit : ""};
     };
     return {row("simulated time", r.simulated_s, "s"),
@@ -161,6 +162,8 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
             row("worn volume from the energy lost", 1e6 * r.worn_volume_from_energy_m3, "cm3"),
             row("overflow: hit spheres already fully fractured", 1e6 * r.overflow_volume_m3, "cm3"),
             row("sound concrete that went with loosened spheres", 1e6 * r.detached_volume_m3, "cm3"),
+            row("largest share of a cell that one collision wore", r.largest_collision_share, ""),
+            row("largest safe beta", r.largest_safe_beta, "", "nothing was worn"),
             row("depth at the centre per converted sediment", r.centre_depth_mm_per_m3, "mm/m3"),
             row("greatest depth", r.max_depth_mm, "mm"),
             row("mean depth", r.mean_depth_mm, "mm"),
@@ -198,6 +201,11 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
     if (r.stopped)
         report.explanation +=
             " The run was stopped by the user before its end: figures are of the part that was computed.";
+    if (r.largest_collision_share > 1)
+        report.explanation +=
+            " Warning: one collision wore " + short_number(r.largest_collision_share, 2) +
+            " times its sphere's cell, so the result depends on beta = " + short_number(c.wear.acceleration) +
+            "; take at most " + short_number(r.largest_safe_beta, 2) + ".";
     report.summary = summary_rows(r);
     report.figures = {
         {side,

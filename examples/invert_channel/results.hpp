@@ -29,7 +29,9 @@ struct ChannelResults {
     int threads = 1;
     Real sediment_fed_m3 = 0, sediment_passed_m3 = 0, converted_sediment_m3 = 0;
     Real worn_volume_m3 = 0, worn_volume_from_energy_m3 = 0, overflow_volume_m3 = 0, detached_volume_m3 = 0;
-    Real centre_depth_mm_per_m3 = 0;  ///< not a number until sediment has passed the gauge
+    Real largest_collision_share = 0;  ///< of a cell's volume that one collision wore
+    Real largest_safe_beta = 0;        ///< at which that would have been 1; infinite where nothing wore
+    Real centre_depth_mm_per_m3 = 0;   ///< not a number until sediment has passed the gauge
     Real max_depth_mm = 0, mean_depth_mm = 0, worn_band_width_m = 0;
     Real energy_lost_normal_J = 0, energy_lost_sliding_J = 0;  ///< in contacts with concrete
     Real ledger_residual_relative = 0, integration_residue_J = 0;

@@ -17,7 +17,7 @@ for file in report.html summary.json series.h5 series_stones.xdmf series_concret
     [ -s "short/$file" ] || fail "short/$file is missing or empty"
 done
 for key in wall_s simulated_s represented_h stones concrete_spheres sediment_passed_m3 converted_sediment_m3 worn_volume_m3 \
-    worn_volume_from_energy_m3 overflow_volume_m3 centre_depth_mm_per_m3 max_depth_mm mean_depth_mm energy_lost_normal_J \
+    worn_volume_from_energy_m3 overflow_volume_m3 largest_collision_share largest_safe_beta centre_depth_mm_per_m3 max_depth_mm mean_depth_mm energy_lost_normal_J \
     energy_lost_sliding_J ledger_residual_relative bonds_broken time_step_s fluid contact bond wear; do
     grep -q "\"$key\":" short/summary.json || fail "summary.json has no $key"
 done
@@ -28,6 +28,14 @@ holds "worn volume is the energy lost" "($worn - $energy)^2 <= (1e-9 * $worn)^2"
 holds "the run is as long as asked" "($(value short/summary.json simulated_s) - 0.06)^2 < 1e-18"
 grep -q "assum" short/report.html || fail "the report marks no assumptions"
 grep -qE 'src="http|href="http' short/report.html && fail "the report loads something from outside"
+
+share=$(value short/summary.json largest_collision_share) safe=$(value short/summary.json largest_safe_beta)
+holds "at the safe beta a collision wears half a cell" "($safe * $share - 0.5 * 200)^2 < 1e-12"
+holds "no collision wore a whole cell" "$share > 0 && $share < 1"
+grep -q "Warning" short/report.html && fail "a warning although no collision wore a whole cell"
+"$program" "${short[@]}" --set wear.acceleration=200000 --out fast > fast.log || fail "a run with much acceleration"
+grep -q "Warning: one collision wore" fast/report.html || fail "the report does not warn of beta"
+grep -q "^warning  one collision wore" fast.log || fail "the run does not warn of beta"
 
 # --- measured points are drawn; a bad row is named
 printf 'x,depth\n0.3,0.1\n' > points.csv

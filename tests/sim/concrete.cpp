@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include <sstream>
+
 using namespace abrade;
 
 namespace {
@@ -109,6 +111,40 @@ TEST_CASE("beta speeds up wear, never the motion") {
         REQUIRE(slow.particles().position[b] == fast.particles().position[b]);
     CHECK(fast.concrete().worn_volume() / slow.concrete().worn_volume() ==
           doctest::Approx(50).epsilon(1e-10));
+}
+
+TEST_CASE("a run without acceleration tells at which one a collision wears more than a cell") {
+    // Head-on on one rigid sphere, where what is lost is known.
+    const auto strike = [](Real beta) {
+        Scene scene = slab(1, 0.02);
+        scene.gravity.setZero();
+        scene.add_sphere(0.02, {.position = {0, 0, 0.0201}, .velocity = {0, 0, -2}});
+        auto sim = simulate(std::move(scene)).contact(stones).wear(abrasion(beta));
+        sim.run({.end_time = 0.02, .time_step = 2e-6});
+        return sim;
+    };
+    const auto slow = strike(1);
+    const Real lost = 0.5 * slow.particles().mass[1] * square(2.0) * 0.75;
+    const Real safe = slow.largest_safe_acceleration();
+    const Real whole = safe / Concrete::safe_collision_share;  // where a collision wears one cell
+    CHECK(whole == doctest::Approx(8e-6 / (coefficient * 0.5 * lost)).epsilon(1e-3).scale(0));
+    CHECK(strike(0.999 * whole).concrete().overflow_volume() == 0);
+    const auto fast = strike(1.5 * whole);
+    CHECK(fast.concrete().overflow_volume() == doctest::Approx(4e-6).epsilon(1e-9).scale(0));
+    CHECK(fast.largest_safe_acceleration() == doctest::Approx(safe).epsilon(1e-9).scale(0));
+    const auto warns = [](const auto& sim) {
+        std::ostringstream text;
+        text << sim;
+        return text.str().find("warning  one collision wore") != std::string::npos;
+    };
+    CHECK(!warns(strike(0.999 * whole)));
+    CHECK(warns(fast));
+
+    // A stone that lands on several bonded spheres.
+    const auto land = [](Real beta) { return drop(0.5, beta, bonds, StoneShape::angular, 0.02); };
+    const Real once = land(1).largest_safe_acceleration() / Concrete::safe_collision_share;
+    CHECK(land(0.999 * once).concrete().overflow_volume() == 0);
+    CHECK(land(1.01 * once).concrete().overflow_volume() > 0);
 }
 
 TEST_CASE("a heap at rest on concrete does not wear") {

@@ -130,9 +130,39 @@ TEST_CASE("V_omega as the sphere: it is full sooner") {
     CHECK(c.overflow_volume() == doctest::Approx(8e-6 - sphere).scale(0));
 }
 
+TEST_CASE("what one collision wears: wear in consecutive steps, and the largest sum counts") {
+    Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}));
+    const Real cell = c.capacity(0), dt = 1e-5;
+    CHECK(c.largest_collision_share() == 0);
+    Real t = 0.3;
+    const auto collide = [&](Index site, int steps, Real share) {
+        for (int n = 0; n < steps; ++n) c.wear(site, share / steps * cell, t, dt), t += dt;
+    };
+    collide(3, 50, 0.2);
+    CHECK(c.largest_collision_share() == doctest::Approx(0.2).epsilon(1e-12));
+    t += dt;  // one step without wear ends it
+    collide(3, 80, 0.3);
+    CHECK(c.largest_collision_share() == doctest::Approx(0.3).epsilon(1e-12));
+    collide(4, 20, 0.25);  // of another sphere
+    CHECK(c.largest_collision_share() == doctest::Approx(0.3).epsilon(1e-12));
+    collide(3, 1, 0.1);  // a while later on the first again
+    CHECK(c.largest_collision_share() == doctest::Approx(0.3).epsilon(1e-12));
+    t += 1;
+    collide(3, 1000, 2.5);  // more than there is left
+    CHECK(c.fracture(3) == 1);
+    CHECK(c.largest_collision_share() == doctest::Approx(2.5).epsilon(1e-12));
+}
+
+TEST_CASE("a collision that wears without a step is one of its own; V_omega is the yardstick") {
+    Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}), FractureVolume::sphere);
+    for (int n = 0; n < 3; ++n) c.wear(1, 0.25 * c.capacity(1));
+    CHECK(c.largest_collision_share() == doctest::Approx(0.25).epsilon(1e-12));
+}
+
 TEST_CASE("no concrete at all is no special case") {
     const Concrete none;
     CHECK(none.sites() == 0);
     CHECK(none.worn_volume() == 0);
     CHECK(none.depth().empty());
+    CHECK(none.largest_collision_share() == 0);
 }

@@ -37,6 +37,14 @@ bool may_load(const State<P>& state, Index body) {
     return state.particles.inverse_mass[at(body)] > 0 && state.particles.kind[at(body)] != Kind::concrete;
 }
 
+/// Whether a body may touch concrete that stands still and be held by it: one that sleeps on it, or standing
+/// concrete that has lost bonds.
+template <class P>
+bool may_lean(const State<P>& state, Index body) {
+    return state.particles.inverse_mass[at(body)] > 0 &&
+           (state.sleep.asleep(body) || !state.keeps_its_place(body));
+}
+
 /// Marks the sites whose spheres are nearer than `skin` [m] to one of a body; `particles` must be as of now.
 template <class P>
 void mark_near(const State<P>& state, Index body, Real skin, SiteMarks& marks) {
@@ -207,7 +215,8 @@ void retire(State<P>& state, Real skin, std::vector<char>& gone) {
     Dormancy& dormancy = state.dormancy;
     detail::SiteMarks needed(dormancy.marks);
     for (Index b = 0; b < p.bodies(); ++b)
-        if (detail::may_load(state, b)) detail::mark_near(state, b, skin, needed);
+        if (detail::may_load(state, b) || detail::may_lean(state, b))
+            detail::mark_near(state, b, skin, needed);
     if constexpr (P::has_bonds) {
         state.network.let_rest([&](Index body) { return p.inverse_mass[at(body)] > 0; });
         state.network.each_bond(
@@ -255,14 +264,12 @@ void wake_concrete(State<P>& state, Real skin) {
         --dormancy.awake;
         p.kind[at(dormancy.body_of[at(site)])] = Kind::grain;
     }
-    if (state.sleep.count > 0) {
-        detail::SiteMarks needed(dormancy.marks);
-        const Index bodies = p.bodies();
-        for (Index b = 0; b < bodies; ++b)
-            if (state.sleep.asleep(b)) detail::mark_near(state, b, skin, needed);
-        needed.sort();
-        for (const Index site : needed.all()) detail::standing_body(state, site);
-    }
+    detail::SiteMarks leant_on(dormancy.marks);
+    const Index bodies = p.bodies();
+    for (Index b = 0; b < bodies; ++b)
+        if (detail::may_lean(state, b)) detail::mark_near(state, b, skin, leant_on);
+    leant_on.sort();
+    for (const Index site : leant_on.all()) detail::standing_body(state, site);
     dormancy.loosened.clear();
     dormancy.due = dormancy.stirred = false;
 }

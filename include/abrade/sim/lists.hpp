@@ -289,10 +289,7 @@ private:
     void find_pairs(State<P>& state) {
         const Particles& p = state.particles;
         std::vector<char> passive(at(p.spheres()));
-        parallel_for(p.spheres(), [&](Index s) {
-            const Kind kind = p.kind[at(p.body[at(s)])];
-            passive[at(s)] = kind == Kind::concrete || kind == Kind::fixed;
-        });
+        parallel_for(p.spheres(), [&](Index s) { passive[at(s)] = state.keeps_its_place(p.body[at(s)]); });
         std::vector<SphereStore::ImageRequest> requests;
         if constexpr (P::has_bonds) {
             state.network.arrange(state.store);

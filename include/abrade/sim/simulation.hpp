@@ -7,7 +7,7 @@
 #include <abrade/sim/trouble_text.hpp>
 
 #include <chrono>
-#include <ostream>
+#include <iosfwd>
 
 #if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
 #error "Abrade's guards look for NaN and infinity: compile without -ffast-math and -ffinite-math-only"
@@ -121,6 +121,13 @@ public:
     Index bonds_broken() const { return world().state().broken_tension + world().state().broken_shear; }
     /// Of the concrete that could move, the share that did not sleep, over all steps so far [-].
     Real awake_fraction_mean() const { return world().awake_fraction(); }
+    /// The time acceleration at which the largest collision so far would have worn half of its sphere's cell
+    /// [-], from where on the map of docs/convergence.md loses wear to overflow; infinite where nothing wore.
+    /// More stones may bring a larger collision.
+    Real largest_safe_acceleration() const requires AcceleratedWear<W> {
+        return Concrete::safe_collision_share * wear_.params().acceleration /
+               concrete().largest_collision_share();
+    }
     Real sediment_passed() const { return world().gauge_volume(); }  ///< the gauge, solid [m3]
     const auto& world() const {
         if (!world_) throw std::logic_error("Simulation: run it before asking for its state");
@@ -361,32 +368,6 @@ inline Simulation<> simulate(Scene scene) {
     return {std::move(scene), {}, NoBond{}, NoWear{}, NoFluid{}, NoDrag{}};
 }
 
-/// Laws with their parameters, the step and why, the ledger, the wear, the wall time and where it went.
-template <class C, class B, class W, class F, class D>
-std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim) {
-    out << "contact  " << describe(sim.contact_) << "\nbond     " << describe(sim.bond_) << "\nwear     "
-        << describe(sim.wear_) << "\nfluid    " << describe(sim.fluid_);
-    if constexpr (!std::same_as<F, NoFluid>) out << " with " << describe(sim.drag_);
-    if (!sim.world_) return out << "\nnot run yet\n";
-    const auto shares = sim.wall_shares();
-    const auto percent = [](Real share) {
-        return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
-    };
-    out << "\ntime     " << short_text(sim.time_) << " s in " << sim.step_ << " steps of "
-        << short_text(sim.time_step_) << " s (stable: " << short_text(sim.stable_.seconds) << " s, set by "
-        << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
-        << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().census().near << "\n";
-    if (sim.concrete().sites() > 0)
-        out << "concrete " << sim.concrete().sites() << " spheres, " << percent(sim.awake_fraction_mean())
-            << " awake, " << sim.bonds_broken() << " bonds broken, worn volume "
-            << short_text(sim.concrete().worn_volume()) << " m3\n";
-    out << "ledger   [J]\n";
-    sim.ledger_.visit([&](std::string_view name, Real value) {
-        if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
-    });
-    return out << "wall     " << short_text(sim.wall_seconds_) << " s: contacts " << percent(shares.contacts)
-               << ", bonds " << percent(shares.bonds) << ", motion " << percent(shares.motion)
-               << ", neighbour lists " << percent(shares.renewal) << "\n";
-}
-
 }  // namespace abrade
+
+#include <abrade/sim/print.hpp>  // what a simulation says of itself

@@ -46,7 +46,7 @@ struct State {
         velocity_in_fluid;  ///< [body] that drag was last reckoned with [m/s]; empty without a fluid
     Index broken_tension = 0, broken_shear = 0;
     bool pattern_changed = false;  ///< a bond broke
-    bool loosened = false;         ///< concrete came loose
+    bool loosened = false;         ///< concrete came loose, or may meet others than those it is bonded to
     Real smallest_radius = 0;      ///< of a sphere [m]
     Real size_ratio = 1;           ///< smallest radius over largest [-]
     Real gauge_volume = 0;         ///< solid, net downstream [m3]
@@ -187,6 +187,7 @@ struct State {
     void free_loose_concrete() {
         if constexpr (P::has_bonds) {
             if (!std::exchange(pattern_changed, false)) return;
+            loosened = store.spheres() > 0;  // what has lost a bond looks for others now
             for (const Ties::Piece& piece : network.take_loose())
                 for (const Index site : piece) {
                     concrete.set_gone(site);
@@ -199,6 +200,15 @@ struct State {
                     loosened = true;
                 }
         }
+    }
+
+    /// Bonded concrete that is sound cannot come to touch its like: its neighbours look after that.
+    bool keeps_its_place(Index body) const noexcept {
+        const Kind kind = particles.kind[at(body)];
+        if (kind == Kind::fixed) return true;
+        if constexpr (P::has_bonds)
+            return kind == Kind::concrete && !network.ties().damaged(particles.site[at(body)]);
+        return kind == Kind::concrete;
     }
 
     /// Writes down which bodies the sites of the concrete are.

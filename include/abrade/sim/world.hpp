@@ -279,7 +279,7 @@ private:
         SphereLoad& load = state_.store.lines.load[at(slot)];
         if (!(load.worn > 0)) return;
         const Index site = state_.particles.site[at(body_in(slot))];
-        if (site >= 0) state_.concrete.wear(site, load.worn);
+        if (site >= 0) state_.concrete.wear(site, load.worn, now_, led_here_);
         load.worn = 0;
     }
 

@@ -54,6 +54,6 @@ private:
     Params params_;
 };
 
-static_assert(WearLaw<Archard>);
+static_assert(AcceleratedWear<Archard>);
 
 }  // namespace abrade

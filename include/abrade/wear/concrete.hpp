@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -19,27 +20,36 @@ enum class FractureVolume { cell, sphere };
 /// Fracture rate gamma_f = fractured / V_omega, in [0, 1].
 class Concrete {
 public:
+    /// What one collision may wear of its site's V_omega while the result does not depend on the time
+    /// acceleration [-]: less than 1 % goes to overflow in the scenes of docs/convergence.md.
+    static constexpr Real safe_collision_share = 0.5;
+
     Concrete() = default;
     /// Throws InputError for what `Lattice::validate` refuses.
     explicit Concrete(Lattice lattice, FractureVolume kind = FractureVolume::cell)
-        : lattice_(std::move(lattice)), kind_(kind), fractured_(lattice_.sites.size(), 0),
-          overflow_(lattice_.sites.size(), 0), gone_(lattice_.sites.size(), 0),
-          wears_(lattice_.sites.size() / sites_per_part + 1, 0) {
+        : lattice_(std::move(lattice)), kind_(kind), worn_(lattice_.sites.size()),
+          gone_(lattice_.sites.size(), 0), wears_(lattice_.sites.size() / sites_per_part + 1, 0) {
         lattice_.validate();
     }
 
     /// Takes worn volume [m3] off a site. What a fully fractured site no longer has is booked as overflow.
-    void wear(Index site, Real volume) noexcept {
-        const auto s = static_cast<std::size_t>(site);
-        const Real taken = std::min(volume, capacity(site) - fractured_[s]);
-        fractured_[s] += taken;
-        overflow_[s] += volume - taken;
-        std::atomic_ref(wears_[s / sites_per_part]).fetch_add(1, std::memory_order_relaxed);
+    /// Wear in consecutive steps, of length `step` and up to `time` [s], is one collision's; without them
+    /// each call is one. Calls for different sites may run at the same time.
+    void wear(Index site, Real volume, Real time = 0, Real step = 0) noexcept {
+        Worn& worn = worn_[static_cast<std::size_t>(site)];
+        const Real taken = std::min(volume, capacity(site) - worn.fractured);
+        worn.fractured += taken;
+        worn.overflow += volume - taken;
+        worn.collision = volume + (time - worn.last < 1.5 * step ? worn.collision : 0);
+        worn.largest = std::max(worn.largest, worn.collision);
+        worn.last = time;
+        std::atomic_ref(wears_[static_cast<std::size_t>(site) / sites_per_part])
+            .fetch_add(1, std::memory_order_relaxed);
     }
     void set_gone(Index site) noexcept { gone_[static_cast<std::size_t>(site)] = 1; }
 
     Real fracture(Index site) const noexcept {
-        return fractured_[static_cast<std::size_t>(site)] / capacity(site);
+        return worn_[static_cast<std::size_t>(site)].fractured / capacity(site);
     }
     /// V_omega [m3].
     Real capacity(Index site) const noexcept {
@@ -49,10 +59,10 @@ public:
     /// Brings `rates` [site] up to date. `seen` is handed in as it came out last time, and empty at first:
     /// parts of the concrete that have not worn since then are not looked at.
     void renew_fracture_rates(std::vector<Real>& rates, std::vector<std::uint32_t>& seen) const {
-        if (seen.empty()) rates.assign(fractured_.size(), 0), seen.assign(wears_.size(), 0);
+        if (seen.empty()) rates.assign(worn_.size(), 0), seen.assign(wears_.size(), 0);
         for (std::size_t part = 0; part < wears_.size(); ++part) {
             if (std::exchange(seen[part], wears_[part]) == wears_[part]) continue;
-            const std::size_t last = std::min((part + 1) * sites_per_part, fractured_.size());
+            const std::size_t last = std::min((part + 1) * sites_per_part, worn_.size());
             for (std::size_t s = part * sites_per_part; s < last; ++s)
                 rates[s] = fracture(static_cast<Index>(s));
         }
@@ -60,14 +70,22 @@ public:
     bool gone(Index site) const noexcept { return gone_[static_cast<std::size_t>(site)] != 0; }
 
     /// Volume fractured inside all spheres, standing or gone [m3].
-    Real worn_volume() const noexcept { return sum(fractured_); }
+    Real worn_volume() const noexcept { return sum(&Worn::fractured); }
     /// Worn volume that hit spheres already fully fractured [m3].
-    Real overflow_volume() const noexcept { return sum(overflow_); }
+    Real overflow_volume() const noexcept { return sum(&Worn::overflow); }
+    /// The largest share of its site's V_omega that one collision wore, overflow included [-]. It is
+    /// proportional to the time acceleration beta: above 1 one collision wears more than there is.
+    Real largest_collision_share() const noexcept {
+        Real largest = 0;
+        for (Index s = 0; s < sites(); ++s)
+            largest = std::max(largest, worn_[static_cast<std::size_t>(s)].largest / capacity(s));
+        return largest;
+    }
     /// Sound concrete that went with spheres that left their place [m3].
     Real detached_volume() const noexcept {
         Real volume = 0;
         for (std::size_t s = 0; s < gone_.size(); ++s)
-            if (gone_[s]) volume += lattice_.sites[s].cell_volume - fractured_[s];
+            if (gone_[s]) volume += lattice_.sites[s].cell_volume - worn_[s].fractured;
         return volume;
     }
 
@@ -81,7 +99,7 @@ public:
         std::vector<Real> depth(lattice_.column_area.size(), 0);
         for (std::size_t s = 0; s < lattice_.sites.size(); ++s)
             depth[static_cast<std::size_t>(lattice_.sites[s].column)] +=
-                gone_[s] ? lattice_.sites[s].cell_volume : fractured_[s];
+                gone_[s] ? lattice_.sites[s].cell_volume : worn_[s].fractured;
         for (std::size_t c = 0; c < depth.size(); ++c) depth[c] /= lattice_.column_area[c];
         return depth;
     }
@@ -92,17 +110,23 @@ public:
 private:
     static constexpr std::size_t sites_per_part = 1024;
 
-    static Real sum(const std::vector<Real>& values) noexcept {
+    struct Worn {
+        Real fractured = 0, overflow = 0;                    ///< [m3]
+        Real collision = 0, largest = 0;                     ///< by the last collision, by any one [m3]
+        Real last = -std::numeric_limits<Real>::infinity();  ///< when something was worn [s]
+    };
+
+    Real sum(Real Worn::*part) const noexcept {
         Real total = 0;
-        for (const Real v : values) total += v;
+        for (const Worn& worn : worn_) total += worn.*part;
         return total;
     }
 
     Lattice lattice_;
     FractureVolume kind_ = FractureVolume::cell;
-    std::vector<Real> fractured_, overflow_;  ///< [site] [m3]
-    std::vector<char> gone_;                  ///< [site]
-    std::vector<std::uint32_t> wears_;        ///< [part] how often something wore there
+    std::vector<Worn> worn_;            ///< [site]
+    std::vector<char> gone_;            ///< [site]
+    std::vector<std::uint32_t> wears_;  ///< [part] how often something wore there
 };
 
 }  // namespace abrade

@@ -82,6 +82,6 @@ private:
     Params params_;
 };
 
-static_assert(WearLaw<Finnie>);
+static_assert(AcceleratedWear<Finnie>);
 
 }  // namespace abrade

@@ -54,6 +54,6 @@ private:
     Params params_;
 };
 
-static_assert(WearLaw<Ishibashi>);
+static_assert(AcceleratedWear<Ishibashi>);
 
 }  // namespace abrade

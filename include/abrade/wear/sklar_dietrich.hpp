@@ -64,6 +64,6 @@ private:
     Params params_;
 };
 
-static_assert(WearLaw<SklarDietrich>);
+static_assert(AcceleratedWear<SklarDietrich>);
 
 }  // namespace abrade

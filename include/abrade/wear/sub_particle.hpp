@@ -63,6 +63,6 @@ private:
     Params params_;
 };
 
-static_assert(WearLaw<SubParticleAbrasion>);
+static_assert(AcceleratedWear<SubParticleAbrasion>);
 
 }  // namespace abrade

@@ -25,6 +25,14 @@ concept WearLaw = Law<W> &&
 };
 // clang-format on
 
+/// A wear law with a time acceleration beta [-]: what it wears is proportional to it.
+// clang-format off
+template <class W>
+concept AcceleratedWear = WearLaw<W> && requires(const W& law) {
+    { law.params().acceleration } -> std::convertible_to<Real>;
+};
+// clang-format on
+
 /// Work of the normal force in one step while the two approach [J], never negative. Over an impact it is the
 /// kinetic energy along the normal, 1/2 m_eff w^2, to O(dt^2), whatever the restitution: until the approach
 /// ends, that is what the normal force takes. Bodies that touch at several points share it among them.
@@ -54,7 +62,7 @@ struct NoWear {
     Real strength_left(Real) const noexcept { return 1; }
 };
 
-static_assert(WearLaw<NoWear>);
+static_assert(WearLaw<NoWear> && !AcceleratedWear<NoWear>);
 static_assert(!WearLaw<NoParams>);
 
 }  // namespace abrade

@@ -1,0 +1,45 @@
+#pragma once
+// What a simulation says of itself when it is streamed.
+
+#include <abrade/sim/simulation.hpp>
+
+#include <ostream>
+
+namespace abrade {
+
+/// Laws with their parameters, the step and why, the ledger, the wear, the wall time and where it went.
+template <class C, class B, class W, class F, class D>
+std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim) {
+    out << "contact  " << describe(sim.contact_) << "\nbond     " << describe(sim.bond_) << "\nwear     "
+        << describe(sim.wear_) << "\nfluid    " << describe(sim.fluid_);
+    if constexpr (!std::same_as<F, NoFluid>) out << " with " << describe(sim.drag_);
+    if (!sim.world_) return out << "\nnot run yet\n";
+    const auto shares = sim.wall_shares();
+    const auto percent = [](Real share) {
+        return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
+    };
+    out << "\ntime     " << short_text(sim.time_) << " s in " << sim.step_ << " steps of "
+        << short_text(sim.time_step_) << " s (stable: " << short_text(sim.stable_.seconds) << " s, set by "
+        << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
+        << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().census().near << "\n";
+    if (sim.concrete().sites() > 0)
+        out << "concrete " << sim.concrete().sites() << " spheres, " << percent(sim.awake_fraction_mean())
+            << " awake, " << sim.bonds_broken() << " bonds broken, worn volume "
+            << short_text(sim.concrete().worn_volume()) << " m3\n";
+    if (const Real share = sim.concrete().largest_collision_share(); share > 1) {
+        out << "warning  one collision wore " << short_text(share)
+            << " times its sphere's cell: the result depends on the time acceleration";
+        if constexpr (AcceleratedWear<W>)
+            out << ", and does not at " << short_text(sim.largest_safe_acceleration()) << " or less";
+        out << "\n";
+    }
+    out << "ledger   [J]\n";
+    sim.ledger_.visit([&](std::string_view name, Real value) {
+        if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
+    });
+    return out << "wall     " << short_text(sim.wall_seconds_) << " s: contacts " << percent(shares.contacts)
+               << ", bonds " << percent(shares.bonds) << ", motion " << percent(shares.motion)
+               << ", neighbour lists " << percent(shares.renewal) << "\n";
+}
+
+}  // namespace abrade
