@@ -15,7 +15,8 @@ template <ContactLaw C, BondLaw B>
 struct Free {
     using P = Policies<C, B, NoWear, NoFluid, NoDrag>;
 
-    Free(C contact, B bond, Real step) : state(weightless(), P{contact, bond, {}, {}, {}}), dt(step) {}
+    Free(C contact, B bond, Real step, Scene scene = weightless())
+        : state(std::move(scene), P{contact, bond, {}, {}, {}}), dt(step) {}
 
     State<P> state;
     std::optional<World<P>> world{};
@@ -98,19 +99,12 @@ auto pressed_pair(Real friction) {
 /// A lattice of spheres of diameter d whose deepest layer is held, and k_n as the model's table has it.
 auto bonded(const Lattice& lattice, Real damping, Real ratio) {
     return [=](Real dt) {
+        Scene scene = weightless();
+        scene.concrete = ConcreteBlock{lattice};
         Free<LinearSpring, MohrCoulomb> free(
             LinearSpring{{.stiffness = 1e5}},
             MohrCoulomb{{.tensile = 1e30, .stiffness = 4.2e8, .stiffness_ratio = ratio, .damping = damping}},
-            dt);
-        const Clump ball = make_clump("ball", {{Vec3::Zero(), 0.5 * d}});
-        for (const LatticeSite& site : lattice.sites)
-            free.p().add(ball, 2400, {.position = site.centre}, site.held ? Kind::fixed : Kind::concrete);
-        std::vector<BondedPair> bonded;
-        for (const auto& [i, j] : lattice.bonds)
-            if (!lattice.sites[static_cast<std::size_t>(i)].held ||
-                !lattice.sites[static_cast<std::size_t>(j)].held)
-                bonded.push_back({i, j});
-        free.state.network.build(free.p(), bonded);
+            dt, scene);
         shake(free.p());
         return free;
     };
