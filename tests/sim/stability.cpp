@@ -99,7 +99,7 @@ auto pressed_pair(Real friction) {
 /// A lattice of spheres of diameter d whose deepest layer is held, and k_n as the model's table has it.
 auto bonded(const Lattice& lattice, Real damping, Real ratio) {
     return [=](Real dt) {
-        Scene scene = weightless();
+        Scene scene = Free<LinearSpring, MohrCoulomb>::weightless();
         scene.concrete = ConcreteBlock{lattice};
         Free<LinearSpring, MohrCoulomb> free(
             LinearSpring{{.stiffness = 1e5}},
