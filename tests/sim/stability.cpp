@@ -10,6 +10,12 @@ using namespace abrade::charts;
 
 namespace {
 
+Scene weightless() {
+    Scene scene;
+    scene.gravity.setZero();
+    return scene;
+}
+
 /// A system of bodies stepped without the guard on the step.
 template <ContactLaw C, BondLaw B>
 struct Free {
@@ -42,13 +48,6 @@ struct Free {
             if (n % 10 == 9 && !(kinetic() < 100 * start)) return true;
         }
         return !(kinetic() < 100 * start);
-    }
-
-private:
-    static Scene weightless() {
-        Scene scene;
-        scene.gravity.setZero();
-        return scene;
     }
 };
 
@@ -99,7 +98,7 @@ auto pressed_pair(Real friction) {
 /// A lattice of spheres of diameter d whose deepest layer is held, and k_n as the model's table has it.
 auto bonded(const Lattice& lattice, Real damping, Real ratio) {
     return [=](Real dt) {
-        Scene scene = Free<LinearSpring, MohrCoulomb>::weightless();
+        Scene scene = weightless();
         scene.concrete = ConcreteBlock{lattice};
         Free<LinearSpring, MohrCoulomb> free(
             LinearSpring{{.stiffness = 1e5}},
