@@ -223,6 +223,19 @@ public:
         return gone;
     }
 
+    /// Drops the bonds whose two bodies are `joined`. Returns the elastic energy that they held [J].
+    Real drop(auto&& joined) {
+        unpack();
+        Real held = 0;
+        changed_ |= std::erase_if(active_, [&](Index number) {
+                        Bond& bond = bonds_[at(number)];
+                        if (!joined(bond.bodies.first) || !joined(bond.bodies.second)) return false;
+                        bond.dropped = true, held += bond.stored;
+                        return true;
+                    }) > 0;
+        return held;
+    }
+
     /// Whether two spheres are looked after here and must not be contacts as well.
     bool holds(const BondedPair& pair) const noexcept {
         return std::binary_search(held_.begin(), held_.end(), pair);

@@ -93,6 +93,27 @@ public:
         return pieces;
     }
 
+    /// What of a piece still holds together, for it may have broken on.
+    std::vector<Piece> parts(const Piece& piece) const {
+        std::vector<Piece> all;
+        std::vector<char> met(piece.size(), 0);
+        const auto place = [&](Index member) {
+            return static_cast<std::size_t>(std::lower_bound(piece.begin(), piece.end(), member) -
+                                            piece.begin());
+        };
+        for (std::size_t from = 0; from < piece.size(); ++from) {
+            if (std::exchange(met[from], 1)) continue;
+            Piece part{piece[from]};
+            for (std::size_t n = 0; n < part.size(); ++n)
+                for (const End& end : of(part[n]))
+                    if (!cut_[at(end.tie)] && !std::exchange(met[place(end.other)], 1))
+                        part.push_back(end.other);
+            std::sort(part.begin(), part.end());
+            all.push_back(std::move(part));
+        }
+        return all;
+    }
+
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
 

@@ -25,7 +25,8 @@ struct Ledger {
     Real lost_sliding = 0;  ///< by friction and tangential dashpots, in contacts and broken bonds
     Real lost_rolling = 0;  ///< by resistance to rolling, in contacts
     Real lost_bond = 0;     ///< by damping in bonds and by breaking them
-    Real lost_asleep = 0;   ///< kinetic energy that bodies still had as they were put to sleep
+    Real lost_asleep = 0;   ///< kinetic energy that bodies still had as they were put to sleep, or against
+                            ///< each other as they became one fragment
     Real drag_input = 0;    ///< drag force times fluid velocity: put in by the flow
     Real drag_work = 0;     ///< drag force times body velocity: what reached the bodies
     Real buoyancy_work = 0;

@@ -2,6 +2,7 @@
 // The lists of near pairs and of candidates: how long they last, and what happens when they are renewed.
 
 #include <abrade/sim/dormant_concrete.hpp>
+#include <abrade/sim/fragments.hpp>
 #include <abrade/sim/period.hpp>
 #include <abrade/sim/sleep.hpp>
 
@@ -53,6 +54,7 @@ public:
             state.accounts.left_stored +=
                 state.network.prune(state.particles, departure.moved, state.particles.centre);
         supply(state, t, dt);
+        for (const Fragment& fragment : departure.fragments) add_fragment(state, fragment);
         choose_skin(state, dt, departure.any);
         if (dormant) dormancy.look_ahead(age_), wake_concrete(state, list_skin_);
         grow_columns(state);
@@ -92,6 +94,7 @@ private:
         std::vector<char> gone;    ///< [body]
         std::vector<Index> moved;  ///< [sphere] where each will be
         bool any = false;
+        std::vector<Fragment> fragments;  ///< what comes instead of some of those gone
     };
 
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
@@ -209,13 +212,20 @@ private:
         std::iota(d.moved.begin(), d.moved.end(), 0);
         if (state.dormancy.due && state.dormancy.on()) {
             retire(state, 2 * list_skin_, d.gone);
-            d.any = std::find(d.gone.begin(), d.gone.end(), 1) != d.gone.end();
         }
+        if constexpr (P::has_bonds)
+            if (!state.pieces.empty()) {
+                d.fragments = join_pieces(state, d.gone);
+                state.accounts.lost_bond +=
+                    state.network.drop([&](Index body) { return d.gone[at(body)] != 0; });
+            }
+        d.any = std::find(d.gone.begin(), d.gone.end(), 1) != d.gone.end();
         if (!state.scene.outlet && !d.any) return d;
         Index to = 0;
         for (Index b = 0; b < p.bodies(); ++b) {
             const bool known = state.store.spheres() > p.first_sphere[at(b)];
-            if (state.scene.outlet && known && p.inverse_mass[at(b)] > 0 && p.kind[at(b)] != Kind::concrete) {
+            if (state.scene.outlet && known && !d.gone[at(b)] && p.inverse_mass[at(b)] > 0 &&
+                p.kind[at(b)] != Kind::concrete) {
                 const Vec3 x = state.store.position_of(p, b);
                 if (x.x() > *state.scene.outlet) {
                     d.gone[at(b)] = 1, d.any = true;

@@ -11,12 +11,17 @@
 
 namespace abrade {
 
+/// What becomes of a piece of several spheres that comes loose: they go on one by one, held together by the
+/// bonds that they still have, or as one rigid clump. A clump no longer breaks and is no concrete.
+enum class Fragments { bonded, clumps };
+
 /// A body of bonded spheres. Its deepest layer is held fixed, as if cast on rock.
 struct ConcreteBlock {
     Lattice lattice{};
     Real density = 2400;  ///< of the spheres [kg/m3]
     FractureVolume fracture_volume = FractureVolume::cell;
     Index material = 0;  ///< number in a table of laws (MaterialPairs)
+    Fragments fragments = Fragments::bonded;
 };
 
 /// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.

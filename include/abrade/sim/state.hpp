@@ -40,6 +40,7 @@ struct State {
     Network<decltype(P::bond)> network;
     Concrete concrete;
     Dormancy dormancy;
+    std::vector<Ties::Piece> pieces;  ///< that came loose and are to go on as clumps
     std::optional<Feed> feed;
     Ledger accounts;  ///< works and losses up to the velocities that the lines hold
     std::vector<Vec3>
@@ -188,7 +189,9 @@ struct State {
         if constexpr (P::has_bonds) {
             if (!std::exchange(pattern_changed, false)) return;
             loosened = store.spheres() > 0;  // what has lost a bond looks for others now
-            for (const Ties::Piece& piece : network.take_loose())
+            for (const Ties::Piece& piece : network.take_loose()) {
+                if (piece.size() > 1 && scene.concrete->fragments == Fragments::clumps)
+                    pieces.push_back(piece);
                 for (const Index site : piece) {
                     concrete.set_gone(site);
                     --dormancy.may_wake;
@@ -199,6 +202,7 @@ struct State {
                         dormancy.loosened.push_back(site);
                     loosened = true;
                 }
+            }
         }
     }
 
