@@ -13,6 +13,7 @@
 #include <abrade/geometry/gravel.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
 #include <abrade/geometry/surface_lattice.hpp>
+#include <abrade/sim/print.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/archard.hpp>
 #include <abrade/wear/finnie.hpp>

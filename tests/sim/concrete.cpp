@@ -1,5 +1,6 @@
 // Concrete that wears: what contacts lose is what is worn, and what lies still wears nothing.
 #include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/sim/print.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 

@@ -1,6 +1,7 @@
 // Running on, stopping, observing; threads and skins that change nothing; policies that cost nothing.
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
+#include <abrade/sim/print.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 

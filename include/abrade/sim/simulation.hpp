@@ -155,7 +155,8 @@ public:
     }
 
     template <class X, class Y, class Z, class U, class V>
-    friend std::ostream& operator<<(std::ostream& out, const Simulation<X, Y, Z, U, V>& sim);
+    friend std::ostream& operator<<(std::ostream& out,
+                                    const Simulation<X, Y, Z, U, V>& sim);  // sim/print.hpp
 
     const C& contact_law() const noexcept { return contact_; }
     const B& bond_law() const noexcept { return bond_; }
@@ -369,5 +370,3 @@ inline Simulation<> simulate(Scene scene) {
 }
 
 }  // namespace abrade
-
-#include <abrade/sim/print.hpp>  // what a simulation says of itself
