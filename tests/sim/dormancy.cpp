@@ -169,6 +169,90 @@ TEST_CASE("other variants: rigid concrete, bonds with moments, a periodic channe
     }
 }
 
+TEST_CASE("a crater that has come to rest wears no more, and every account is a number") {
+    // Spheres that have lost bonds and stand still must not be taken for contacts of each other.
+    const auto run = [](Real wake_force, Index radius) {
+        Scene scene = slab(0.2, 1);
+        scene.stones.front().state = {.position = {0, 0, 0.026}, .velocity = {3, 0, -6}};
+        auto sim =
+            simulate(scene).contact(law).bond(MohrCoulomb{{.tensile = 3e5, .stiffness = 4e6}}).wear(wear);
+        sim.run({.end_time = 0.1, .sleep_speed = 0.02, .wake_force = wake_force, .wake_radius = radius});
+        sim.ledger().visit([](std::string_view name, Real value) {
+            CAPTURE(name);
+            CHECK(std::isfinite(value));
+        });
+        sim.world().each_contact([&](Index body, Index other, const auto&, const auto&) {
+            const auto still = [&](Index b) {
+                return b < 0 || sim.particles().inverse_mass[static_cast<std::size_t>(b)] == 0;
+            };
+            CHECK(!(still(body) && still(other)));
+        });
+        CHECK(sim.bonds_broken() > 10);
+        return sim.concrete().worn_volume();
+    };
+    const Real awake = run(0, 2);
+    CHECK(run(1, 2) == doctest::Approx(awake).epsilon(0.05));
+    CHECK(run(10, 0) == doctest::Approx(awake).epsilon(0.05));
+}
+
+TEST_CASE("feed keeps clear of concrete that sleeps") {
+    Scene scene = slab(0.5, 1);
+    scene.feed = FeedParams{.volume_rate = 1e-3,
+                            .classes = {{.size = 0.03, .fraction = 1, .shape = StoneShape::sphere}},
+                            .region = {{-0.2, -0.2, -0.05}, {0.2, 0.2, 0.02}},
+                            .velocity = {0, 0, 0}};
+    const auto lowest = [&](Real wake_force) {
+        auto sim = simulate(scene).contact(law).bond(bond);
+        Real z = 1;
+        sim.run({.end_time = 0.1, .observe_every = 1e-3, .wake_force = wake_force}, [&](const auto& now) {
+            for (std::size_t b = 0; b < now.particles().kind.size(); ++b)
+                if (now.particles().kind[b] == Kind::stone) z = std::min(z, now.particles().position[b].z());
+        });
+        CHECK(sim.feed()->supplied_stones() > 3);
+        return z;
+    };
+    CHECK(lowest(1) > 0.005);
+    CHECK(lowest(1) == doctest::Approx(lowest(0)).epsilon(0.2));
+}
+
+TEST_CASE("the stable step is that of all concrete, asleep or not") {
+    auto stiff =
+        simulate(slab(0.2, 0.05)).contact(law).bond(MohrCoulomb{{.tensile = 2.7e6, .stiffness = 4e8}});
+    CHECK(message_of([&] {
+              stiff.run({.end_time = 1e-3, .time_step = 1e-5, .wake_force = 1});
+          }).find("at most the stable step") != std::string::npos);
+    auto sim = simulate(slab(0.2, 0.05)).contact(law).bond(MohrCoulomb{{.tensile = 2.7e6, .stiffness = 4e8}});
+    sim.run({.end_time = 1e-4, .wake_force = 1});
+    const Real asleep = sim.stable_step_now().seconds;
+    sim.run({.end_time = 2e-4});
+    CHECK(sim.stable_step_now().seconds == doctest::Approx(asleep).epsilon(1e-3));
+    CHECK(asleep < 3e-6);
+}
+
+TEST_CASE("what rests on sleeping concrete is stored once") {
+    Scene scene = slab(0.3, 0);
+    auto sim = simulate(scene).contact(law).bond(bond);
+    sim.run({.end_time = 1, .observe_every = 0.02, .sleep_speed = 0.01, .wake_force = 0.5},
+            [&](const auto& now) {
+                Real stored = 0;
+                now.world().each_contact(
+                    [&](Index, Index, const auto&, const auto& load) { stored += load.stored; });
+                CHECK(now.ledger().stored_contacts == doctest::Approx(stored).epsilon(1e-6));
+            });
+}
+
+TEST_CASE("rigid concrete that a stone has passed by is no body any more") {
+    Scene scene = slab(2, 1);
+    scene.gravity.setZero();
+    scene.stones.front().state = {.position = {-0.9, 0, 0.0252}, .velocity = {5, 0, 0}};
+    auto sim = simulate(scene).contact(law).wear(wear);
+    Index most = 0;
+    sim.run({.end_time = 0.3, .observe_every = 1e-3, .wake_force = 1},
+            [&](const auto& now) { most = std::max(most, now.particles().bodies()); });
+    CHECK(most > 3);
+    CHECK(most < 60);
+}
+
 TEST_CASE("bad options are named") {
     auto sim = simulate(slab(0.1, 0.1)).contact(law).bond(bond);
     CHECK(message_of([&] {

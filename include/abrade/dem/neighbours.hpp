@@ -32,7 +32,7 @@ struct NearPair {
     auto operator<=>(const NearPair&) const = default;
 };
 
-/// The spheres to search. `passive` spheres do not look for each other (bonded concrete, a fixed bed).
+/// The spheres to search. `passive` spheres do not look for each other (sound concrete, a fixed bed).
 struct NeighbourQuery {
     std::span<const Vec3> centre;  ///< [m], within one period
     std::span<const Real> radius;  ///< [m]

@@ -4,6 +4,7 @@
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -45,13 +46,18 @@ public:
     /// those near x, and some others.
     template <class Visit>
     void each_about(const Vec3& x, Real reach, Visit&& visit) const {
+        each_about(x, Vec3(Vec3::Constant(reach)), visit);
+    }
+    /// The same with a reach of its own along each axis, which may be infinite.
+    template <class Visit>
+    void each_about(const Vec3& x, const Vec3& reach, Visit&& visit) const {
         if (points_.empty()) return;
         std::array<Index, 3> from{}, to{};
         for (int a = 0; a < 3; ++a) {
-            const Real first = (x[a] - reach - low_[a]) * per_cell_,
-                       last = (x[a] + reach - low_[a]) * per_cell_;
+            const Real first = (x[a] - reach[a] - low_[a]) * per_cell_,
+                       last = (x[a] + reach[a] - low_[a]) * per_cell_;
             if (last < 0 || first >= static_cast<Real>(count_[a])) return;
-            from[at(a)] = cell_along(x[a] - reach, a), to[at(a)] = cell_along(x[a] + reach, a);
+            from[at(a)] = cell_along(x[a] - reach[a], a), to[at(a)] = cell_along(x[a] + reach[a], a);
         }
         for (Index i = from[0]; i <= to[0]; ++i)
             for (Index j = from[1]; j <= to[1]; ++j)

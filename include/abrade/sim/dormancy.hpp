@@ -22,7 +22,8 @@ struct Dormancy {
     /// A sphere that stands still, and what its bonds have come to since it does.
     struct Anchor {
         Index site = 0;
-        Vec3 force = Vec3::Zero(), lever = Vec3::Zero();     ///< as it fell asleep [N], of its active bonds
+        Vec3 force = Vec3::Zero(),
+             lever = Vec3::Zero();  ///< as it fell asleep [N], of its active bonds and contacts
         Vec3 change = Vec3::Zero(), turning = Vec3::Zero();  ///< since then [N]
         Index bonds = 0;                                     ///< active ones
         std::int64_t which = 0;                              ///< the sum of their numbers

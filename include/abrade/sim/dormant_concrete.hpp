@@ -89,9 +89,12 @@ void hold_still(State<P>& state, Index body) {
     p.velocity[at(body)].setZero(), p.angular_momentum[at(body)].setZero();
     state.dormancy.quiet[at(site)] = 0;
     state.dormancy.place[at(site)] = p.position[at(body)];
-    state.dormancy.furthest =
-        std::max(state.dormancy.furthest,
-                 (p.position[at(body)] - state.concrete.lattice().sites[at(site)].centre).norm());
+    Vec3 way = p.position[at(body)] - state.concrete.lattice().sites[at(site)].centre;
+    for (int a = 0; a < 3; ++a)  // it may have been taken back over a periodic edge
+        if (const Real period = state.scene.periodic().period[a]; period > 0)
+            way[a] -= period * std::round(way[a] / period);
+    state.dormancy.furthest = std::max(state.dormancy.furthest, way.norm());
+    state.sleep.changed = true;  // what rests on it
     --state.dormancy.awake;
 }
 
@@ -122,6 +125,7 @@ void wake_site(State<P>& state, Index site) {
     p.inverse_mass[at(body)] = dormancy.inverse_mass;
     p.inverse_inertia[at(body)] = dormancy.inverse_inertia;
     dormancy.potential -= state.potential_energy(body, p.position[at(body)]);
+    state.sleep.changed = true;  // what rests on it
     ++dormancy.awake;
     if constexpr (P::has_bonds)
         for (const Ties::End& end : state.network.ties().of(site)) {
@@ -136,6 +140,24 @@ void wake_site(State<P>& state, Index site) {
 }
 
 }  // namespace detail
+
+/// The lowest z at which a sphere of radius `reach` [m] over x touches no sphere that is dormant.
+template <class P>
+Real height_above_dormant(const State<P>& state, const Vec3& x, Real reach) {
+    const Dormancy& dormancy = state.dormancy;
+    const Real both = state.concrete.lattice().radius + reach;
+    Real lowest = -std::numeric_limits<Real>::infinity();
+    if (!dormancy.begun) return lowest;
+    const Vec3 column(both + dormancy.furthest, both + dormancy.furthest,
+                      std::numeric_limits<Real>::infinity());
+    dormancy.sites.each_about(x, column, [&](Index site) {
+        if (dormancy.body_of[detail::at(site)] >= 0 || state.concrete.gone(site)) return;
+        const Vec3& centre = dormancy.place[detail::at(site)];
+        const Real room2 = square(both) - (centre - x).template head<2>().squaredNorm();
+        if (room2 > 0) lowest = std::max(lowest, centre.z() + std::sqrt(room2));
+    });
+    return lowest;
+}
 
 /// Puts all standing concrete to sleep, before anything has moved.
 template <class P>
@@ -165,6 +187,7 @@ void quieten(State<P>& state, const Move& half, Real skin, MotionSums& sums) {
     Particles& p = state.particles;
     Dormancy& dormancy = state.dormancy;
     const auto moves = [&](Index body) { return body >= 0 && p.inverse_mass[at(body)] > 0; };
+    if constexpr (!P::has_bonds) dormancy.due = true;  // nothing falls asleep, yet much is passed by
     std::vector<Index> candidates;
     for (Index b = 0; b < p.bodies(); ++b) {
         if (p.kind[at(b)] != Kind::concrete || !moves(b)) continue;

@@ -85,12 +85,17 @@ public:
     Real supplied_volume() const noexcept { return supplied_; }  ///< solid [m3]
     Index supplied_stones() const noexcept { return count_; }
 
-    /// Adds the stones that are due at time t and find a place. Calls `added(body)` for each.
+    /// Adds the stones that are due at time t and find a place. Calls `added(body)` for each. Concrete that
+    /// is no body is asked for by `above(x, reach)`: the lowest z at which a sphere over x touches none.
     template <class Added>
     void supply(Particles& particles, std::span<const Plane> walls, Real t, Added&& added) {
+        supply(particles, walls, t, added, [](const Vec3&, Real) { return nowhere; });
+    }
+    template <class Added, class Above>
+    void supply(Particles& particles, std::span<const Plane> walls, Real t, Added&& added, Above&& above) {
         const Real due = params_.volume_rate * std::max(0.0, t - params_.start);
         while (supplied_ + templates_[next_].volume <= due) {
-            const auto state = free_place(particles, walls);
+            const auto state = free_place(particles, walls, above);
             if (!state) return;
             added(particles.add(templates_[next_], params_.density, *state, Kind::stone));
             supplied_ += templates_[next_].volume;
@@ -100,6 +105,8 @@ public:
     }
 
 private:
+    static constexpr Real nowhere = -std::numeric_limits<Real>::infinity();
+
     Real uniform() { return std::generate_canonical<Real, 53>(random_); }
 
     void draw() {
@@ -109,7 +116,9 @@ private:
     }
 
     /// A random place whose bounding sphere touches neither a stone nor a wall; nothing after some tries.
-    std::optional<BodyState> free_place(const Particles& particles, std::span<const Plane> walls) {
+    template <class Above>
+    std::optional<BodyState> free_place(const Particles& particles, std::span<const Plane> walls,
+                                        Above&& above) {
         constexpr int tries = 20;
         const Real reach = templates_[next_].bounding_radius;
         for (int attempt = 0; attempt < tries; ++attempt) {
@@ -124,7 +133,8 @@ private:
             state.material = params_.classes[next_].material;
             state.orientation = random_orientation();
             state.position.z() =
-                std::max(state.position.z(), height_above_concrete(particles, state.position, reach));
+                std::max({state.position.z(), height_above_concrete(particles, state.position, reach),
+                          above(state.position, reach)});
             const bool clear = std::all_of(walls.begin(), walls.end(), [&](const Plane& wall) {
                 return wall.distance(state.position) >= reach;
             });
@@ -135,7 +145,7 @@ private:
 
     /// The lowest z at which a sphere of radius `reach` over x touches no concrete.
     static Real height_above_concrete(const Particles& particles, const Vec3& x, Real reach) {
-        Real lowest = -std::numeric_limits<Real>::infinity();
+        Real lowest = nowhere;
         for (std::size_t s = 0; s < particles.centre.size(); ++s) {
             const Kind kind = particles.kind[static_cast<std::size_t>(particles.body[s])];
             if (kind != Kind::concrete && kind != Kind::fixed) continue;

@@ -42,6 +42,8 @@ public:
         wrap(state);
         Dormancy& dormancy = state.dormancy;
         const bool dormant = dormancy.on() || dormancy.begun;
+        const bool periodic = !state.scene.periodic().period.isZero();
+        if (periodic && !need_) need_.emplace(state.particles, state.scene.feed);  // with all that may wake
         if (dormant && !dormancy.begun && state.store.spheres() == 0) begin_dormancy(state);
         dormancy.begun |= dormant;
         const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
@@ -114,7 +116,7 @@ private:
         const Vec3 period = state.scene.periodic().period;
         if (period.isZero()) return;
         // What is dormant may come back: it counts as it did.
-        if (!need_ || ((departed || state.feed) && !state.dormancy.begun))
+        if ((departed || state.feed) && !state.dormancy.begun)
             need_.emplace(state.particles, state.scene.feed);
         const Real room = need_->widest_skin(period);
         list_skin_ = std::min(list_skin_, room);
@@ -278,12 +280,15 @@ private:
     /// Fed bodies have their velocity half a step ago, as all others.
     static void supply(State<P>& state, Real t, Real dt) {
         if (state.feed)
-            state.feed->supply(state.particles, state.scene.walls, t, [&](Index body) {
-                const Vec3 before =
-                    state.particles.position[at(body)] - 0.5 * dt * state.particles.velocity[at(body)];
-                state.accounts.fed_kinetic += state.particles.kinetic_energy(body);
-                state.accounts.fed_potential += state.potential_energy(body, before);
-            });
+            state.feed->supply(
+                state.particles, state.scene.walls, t,
+                [&](Index body) {
+                    const Vec3 before =
+                        state.particles.position[at(body)] - 0.5 * dt * state.particles.velocity[at(body)];
+                    state.accounts.fed_kinetic += state.particles.kinetic_energy(body);
+                    state.accounts.fed_potential += state.potential_energy(body, before);
+                },
+                [&](const Vec3& x, Real reach) { return height_above_dormant(state, x, reach); });
     }
 
     /// Of bodies that have just come.

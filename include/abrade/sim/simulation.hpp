@@ -109,8 +109,9 @@ public:
     Index steps() const noexcept { return step_; }
     Real time_step() const noexcept { return time_step_; }                   ///< [s]
     const StableStep& stable_time_step() const noexcept { return stable_; }  ///< of dense surroundings
-    /// What contacts and bonds allow as they stand, and a first touch of each body.
-    StableStep stable_step_now() const { return StableStepNow(world().state()).of_all(); }
+    /// What contacts and bonds allow as they stand, and a first touch of each body; concrete that sleeps
+    /// counts as if it were awake.
+    StableStep stable_step_now() const { return stable_now(std::numeric_limits<Real>::infinity()); }
     Index times_shortened() const noexcept { return shortened_; }  ///< the step, for contacts as they stood
     bool stopped() const noexcept { return stopped_; }             ///< by RunOptions::stop
     Real wall_seconds() const noexcept { return wall_seconds_; }
@@ -220,11 +221,13 @@ private:
         return true;
     }
 
-    std::string who_limits() const {
-        const std::string limit(stable_.limit);
-        return stable_.body < 0 ? limit
-                                : limit + ", " + TroubleText(*world_, time_step_).name_of(stable_.body);
+    StableStep stable_now(Real most) const {
+        StableStep step = StableStepNow(world().state()).of_all(most);
+        const Dormancy& dormancy = world_->state().dormancy;
+        if (dormancy.on() || dormancy.begun) step.lower(stable_concrete_.seconds, stable_concrete_.limit);
+        return step;
     }
+
     Index steps_to(Real end_time) const {
         constexpr Real most = std::numeric_limits<Index>::max();
         const Real steps =
@@ -232,7 +235,7 @@ private:
         require(static_cast<Real>(step_) + steps < most,
                 {"RunOptions.end_time over the time step: steps", "fewer than " + to_text(most), "",
                  "run for a shorter time, or with a larger step than " + short_text(time_step_) +
-                     " s; stable: " + short_text(stable_.seconds) + " s, set by " + who_limits()},
+                     " s; stable: " + short_text(stable_.seconds) + " s, set by " + who_limits_},
                 steps);
         return static_cast<Index>(steps);
     }
@@ -258,10 +261,8 @@ private:
                  "say how long a body is slow before it sleeps"},
                 options.sleep_after);
         if (!world_) build_world();
-        const auto& radius = world_->particles().radius;
-        const Real smallest = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
-        const Real skin = options.skin > 0 ? options.skin : 0.25 * smallest;
-        PeriodNeed(world_->particles(), world_->scene().feed).check(world_->scene(), skin);
+        const Real skin = options.skin > 0 ? options.skin : 0.25 * smallest_radius_;
+        period_need_->check(world_->scene(), skin);
         world_->set_skin(skin);
         world_->set_free_flight(options.free_flight);
         world_->set_sleep(options.sleep_speed, options.sleep_after);
@@ -269,7 +270,7 @@ private:
         if (!opened_) open();
         stopped_ = false;
         if (options.time_step > 0) {
-            if (StableStepNow(world_->state()).of_all(options.time_step).seconds < options.time_step) {
+            if (stable_now(options.time_step).seconds < options.time_step) {
                 const StableStep now = stable_step_now();
                 require(false,
                         {"RunOptions.time_step",
@@ -293,7 +294,14 @@ private:
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
         world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_}));
-        stable_ = stable_step(contact_, bond_, world_->particles(), world_->network(), world_->scene().feed);
+        const Particles& all = world_->particles();  // before any of the concrete sleeps
+        stable_ = stable_step(contact_, bond_, all, world_->network(), world_->scene().feed);
+        stable_concrete_ = stable_step(contact_, bond_, all, world_->network(), std::nullopt, true);
+        who_limits_ = stable_.limit;
+        if (stable_.body >= 0) who_limits_ += ", " + TroubleText(*world_, 0).name_of(stable_.body);
+        period_need_.emplace(all, world_->scene().feed);
+        smallest_radius_ =
+            all.radius.empty() ? 0.01 : *std::min_element(all.radius.begin(), all.radius.end());
     }
 
     /// Finds the forces at the start, and what is wrong with it.
@@ -356,7 +364,10 @@ private:
     [[no_unique_address]] D drag_;
     std::optional<World> world_;
     Ledger ledger_;
-    StableStep stable_;
+    StableStep stable_, stable_concrete_;  ///< of the scene as it began
+    std::string who_limits_;
+    std::optional<PeriodNeed> period_need_;
+    Real smallest_radius_ = 0;  ///< of a sphere of the scene [m]
     Snapshot last_good_;
     Real time_ = 0, time_step_ = 0;
     Index step_ = 0, remembered_ = 0, shortened_ = 0;
