@@ -154,7 +154,7 @@ TEST_CASE("other variants: rigid concrete, bonds with moments, a periodic channe
             CHECK(sim.ledger().residual_relative() < 1e-12);
             return sim.concrete().worn_volume();
         };
-        CHECK(worn(1) == doctest::Approx(worn(0)).epsilon(0.01));
+        CHECK(std::abs(worn(1) / worn(0) - 1) < 0.01);
     }
     SUBCASE("a periodic channel") {
         const auto after = [](Real wake_force) {
@@ -165,7 +165,7 @@ TEST_CASE("other variants: rigid concrete, bonds with moments, a periodic channe
             sim.run({.end_time = 0.03, .wake_force = wake_force, .wake_radius = 6});
             return sim.concrete().worn_volume();
         };
-        CHECK(after(0.5) == doctest::Approx(after(0)).epsilon(1e-3));
+        CHECK(std::abs(after(0.5) / after(0) - 1) < 1e-3);
     }
 }
 
