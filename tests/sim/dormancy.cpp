@@ -150,11 +150,13 @@ TEST_CASE("other variants: rigid concrete, bonds with moments, a periodic channe
                            .contact(law)
                            .bond(ParallelBond{{.youngs = 2e8, .tensile = 2.7e6, .cohesion = 5e6}})
                            .wear(wear);
-            sim.run({.end_time = 0.05, .wake_force = wake_force, .wake_radius = 4});
+            sim.run({.end_time = 0.06, .wake_force = wake_force, .wake_radius = 4});
             CHECK(sim.ledger().residual_relative() < 1e-12);
             return sim.concrete().worn_volume();
         };
-        CHECK(worn(1) == doctest::Approx(worn(0)).epsilon(0.01));
+        const Real expected = worn(0);
+        CHECK(expected > 0);
+        CHECK(std::abs(worn(1) / expected - 1) < 0.01);
     }
     SUBCASE("a periodic channel") {
         const auto after = [](Real wake_force) {
@@ -165,7 +167,9 @@ TEST_CASE("other variants: rigid concrete, bonds with moments, a periodic channe
             sim.run({.end_time = 0.03, .wake_force = wake_force, .wake_radius = 6});
             return sim.concrete().worn_volume();
         };
-        CHECK(after(0.5) == doctest::Approx(after(0)).epsilon(1e-3));
+        const Real expected = after(0);
+        CHECK(expected > 0);
+        CHECK(std::abs(after(0.5) / expected - 1) < 1e-3);
     }
 }
 

@@ -104,7 +104,7 @@ public:
         if (breaks_.size() < at(store.slabs.count())) breaks_.resize(at(store.slabs.count()));
         if (!std::exchange(changed_, false)) return;
         held_.clear();
-        each_bond([&](const Bond& bond) { held_.push_back(bond.spheres); });
+        each_bond([&](const Bond& bond) { held_.push_back(in_order_of(bond.spheres)); });
         std::sort(held_.begin(), held_.end());
     }
     /// Calls `visit(bond)` for each bond that does not rest.
@@ -238,7 +238,7 @@ public:
 
     /// Whether two spheres are looked after here and must not be contacts as well.
     bool holds(const BondedPair& pair) const noexcept {
-        return std::binary_search(held_.begin(), held_.end(), pair);
+        return std::binary_search(held_.begin(), held_.end(), in_order_of(pair));
     }
 
     /// Of bonds that do not rest.
@@ -250,6 +250,10 @@ public:
 
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+    /// What woke late may have the smaller member's number behind the larger one's.
+    static BondedPair in_order_of(const BondedPair& pair) noexcept {
+        return {std::min(pair.first, pair.second), std::max(pair.first, pair.second)};
+    }
 
     struct PackBondSums {
         Pack lost_bond = 0, lost_normal = 0, lost_tangential = 0, stored = 0;
@@ -347,7 +351,7 @@ private:
     Real resting_stored_ = 0;                 ///< [J]
     std::vector<BondPack<Law>> packs_;
     std::vector<Index> first_pack_{0, 0};  ///< [slab]
-    std::vector<BondedPair> held_;         ///< spheres, sorted
+    std::vector<BondedPair> held_;         ///< spheres, the smaller first, sorted
     std::vector<Index> first_bond_{0, 0};  ///< [slab] into `active_`
     bool changed_ = false;                 ///< `held_` is not that of the active bonds
 };

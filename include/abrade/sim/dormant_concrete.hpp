@@ -245,6 +245,17 @@ void retire(State<P>& state, Real skin, std::vector<char>& gone) {
         state.network.each_bond(
             [&](const auto& bond) { needed.add(bond.members.first), needed.add(bond.members.second); });
     }
+    // Damaged concrete that touches its like would forget the contact.
+    const auto stands = [&](Index slot) {
+        const auto body = slot < 0 ? std::size_t{0} : at(state.body_in(slot));
+        return slot >= 0 && p.site[body] >= 0 && p.inverse_mass[body] == 0;
+    };
+    state.contacts.each_touching(
+        [&](const auto& touching) {
+            needed.add(p.site[at(state.body_in(touching.pair.first))]);
+            needed.add(p.site[at(state.body_in(touching.pair.second))]);
+        },
+        [&](const SlotPair& pair) { return stands(pair.first) && stands(pair.second); });
     for (Index b = 0; b < p.bodies(); ++b) {
         const Index site = p.site[at(b)];
         if (site < 0 || p.inverse_mass[at(b)] > 0 || needed.has(site)) continue;
@@ -295,6 +306,7 @@ void wake_concrete(State<P>& state, Real skin) {
     for (const Index site : leant_on.all()) detail::standing_body(state, site);
     dormancy.loosened.clear();
     dormancy.due = dormancy.stirred = false;
+    state.sleep.changed = true;  // contacts between those that stand still rest
 }
 
 /// Finds the slots of the spheres that stand still among those that move; the store and the network must have

@@ -97,11 +97,12 @@ void put_to_sleep(State<P>& state, Index body) {
 
 }  // namespace detail
 
-/// Marks the slots of those who rest, where anybody is asleep.
+/// Marks the slots of those who rest, where anybody is asleep or concrete may stand still: two that do have
+/// no mass that a dashpot could be set from.
 template <class P>
 void mark_resting(State<P>& state) {
     state.sleep.rests.clear();
-    if (state.sleep.count == 0) return;
+    if (state.sleep.count == 0 && !state.dormancy.begun) return;
     for (Index slot = 0; slot < state.store.phantom(); ++slot) {
         const Index body = state.body_in(slot);
         state.sleep.rests.push_back(state.sleep.asleep(body) ||
