@@ -140,7 +140,7 @@ TEST_CASE("other variants: rigid concrete, bonds with moments, a periodic channe
         Index all = 0, near = 0;
         const Real expected = worn(0, &all);
         CHECK(expected > 0);
-        CHECK(worn(1, &near) == doctest::Approx(expected).epsilon(1e-12));
+        CHECK(worn(1, &near) == doctest::Approx(expected).scale(0).epsilon(1e-12));
         CHECK(all == 25 * 25 * 3 + 1);
         CHECK(near < 60);
     }
@@ -195,8 +195,8 @@ TEST_CASE("a crater that has come to rest wears no more, and every account is a 
         return sim.concrete().worn_volume();
     };
     const Real awake = run(0, 2);
-    CHECK(run(1, 2) == doctest::Approx(awake).epsilon(0.05));
-    CHECK(run(10, 0) == doctest::Approx(awake).epsilon(0.05));
+    CHECK(run(1, 2) == doctest::Approx(awake).scale(0).epsilon(0.05));
+    CHECK(run(10, 0) == doctest::Approx(awake).scale(0).epsilon(0.05));
 }
 
 TEST_CASE("feed keeps clear of concrete that sleeps") {
@@ -216,7 +216,7 @@ TEST_CASE("feed keeps clear of concrete that sleeps") {
         return z;
     };
     CHECK(lowest(1) > 0.005);
-    CHECK(lowest(1) == doctest::Approx(lowest(0)).epsilon(0.2));
+    CHECK(lowest(1) == doctest::Approx(lowest(0)).scale(0).epsilon(0.2));
 }
 
 TEST_CASE("the stable step is that of all concrete, asleep or not") {
@@ -229,7 +229,7 @@ TEST_CASE("the stable step is that of all concrete, asleep or not") {
     sim.run({.end_time = 1e-4, .wake_force = 1});
     const Real asleep = sim.stable_step_now().seconds;
     sim.run({.end_time = 2e-4});
-    CHECK(sim.stable_step_now().seconds == doctest::Approx(asleep).epsilon(1e-3));
+    CHECK(sim.stable_step_now().seconds == doctest::Approx(asleep).scale(0).epsilon(1e-3));
     CHECK(asleep < 3e-6);
 }
 
@@ -241,7 +241,7 @@ TEST_CASE("what rests on sleeping concrete is stored once") {
                 Real stored = 0;
                 now.world().each_contact(
                     [&](Index, Index, const auto&, const auto& load) { stored += load.stored; });
-                CHECK(now.ledger().stored_contacts == doctest::Approx(stored).epsilon(1e-6));
+                CHECK(std::abs(now.ledger().stored_contacts - stored) <= 1e-6 * stored);
             });
 }
 

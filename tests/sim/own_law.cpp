@@ -143,7 +143,7 @@ TEST_CASE("with a wear law and a fluid of one's own") {
     sim.run({.end_time = 0.1});
     const Ledger& ledger = sim.ledger();
     CHECK(ledger.concrete_lost_normal > 0);
-    CHECK(sim.concrete().worn_volume() == doctest::Approx(0.5e-6 * ledger.concrete_lost_normal));
+    CHECK(sim.concrete().worn_volume() == doctest::Approx(0.5e-6 * ledger.concrete_lost_normal).scale(0));
     Vec3 moving = Vec3::Zero();
     for (const Vec3& velocity : sim.particles().velocity) moving += velocity;
     CHECK(moving.x() > 1e-4);  // the flow drags the sphere along; concrete is fixed

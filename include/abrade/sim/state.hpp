@@ -209,7 +209,7 @@ struct State {
     /// Bonded concrete that is sound cannot come to touch its like: its neighbours look after that.
     bool keeps_its_place(Index body) const noexcept {
         const Kind kind = particles.kind[at(body)];
-        if (kind == Kind::fixed || particles.inverse_mass[at(body)] == 0) return true;
+        if (kind == Kind::fixed) return true;
         if constexpr (P::has_bonds)
             return kind == Kind::concrete && !network.ties().damaged(particles.site[at(body)]);
         return kind == Kind::concrete;
