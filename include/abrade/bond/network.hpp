@@ -103,9 +103,9 @@ public:
         for (std::size_t s = 1; s < first_bond_.size(); ++s) first_bond_[s] += first_bond_[s - 1];
         if (breaks_.size() < at(store.slabs.count())) breaks_.resize(at(store.slabs.count()));
         if (!std::exchange(changed_, false)) return;
-        held_.clear();
-        each_bond([&](const Bond& bond) { held_.push_back(in_order_of(bond.spheres)); });
-        std::sort(held_.begin(), held_.end());
+        looked_after_.clear();
+        each_bond([&](const Bond& bond) { looked_after_.push_back(in_order_of(bond.spheres)); });
+        std::sort(looked_after_.begin(), looked_after_.end());
     }
     /// Calls `visit(bond)` for each bond that does not rest.
     void each_bond(auto&& visit) const {
@@ -238,7 +238,7 @@ public:
 
     /// Whether two spheres are looked after here and must not be contacts as well.
     bool holds(const BondedPair& pair) const noexcept {
-        return std::binary_search(held_.begin(), held_.end(), in_order_of(pair));
+        return std::binary_search(looked_after_.begin(), looked_after_.end(), in_order_of(pair));
     }
 
     /// Of bonds that do not rest.
@@ -350,10 +350,10 @@ private:
     std::vector<std::vector<Index>> breaks_;  ///< [slab] broken since `take_loose`
     Real resting_stored_ = 0;                 ///< [J]
     std::vector<BondPack<Law>> packs_;
-    std::vector<Index> first_pack_{0, 0};  ///< [slab]
-    std::vector<BondedPair> held_;         ///< spheres, the smaller first, sorted
-    std::vector<Index> first_bond_{0, 0};  ///< [slab] into `active_`
-    bool changed_ = false;                 ///< `held_` is not that of the active bonds
+    std::vector<Index> first_pack_{0, 0};   ///< [slab]
+    std::vector<BondedPair> looked_after_;  ///< spheres, the smaller first, sorted
+    std::vector<Index> first_bond_{0, 0};   ///< [slab] into `active_`
+    bool changed_ = false;                  ///< `looked_after_` is not that of the active bonds
 };
 
 }  // namespace abrade

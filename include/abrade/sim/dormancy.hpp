@@ -26,7 +26,7 @@ struct Dormancy {
              lever = Vec3::Zero();  ///< as it fell asleep [N], of its active bonds and contacts
         Vec3 change = Vec3::Zero(), turning = Vec3::Zero();  ///< since then [N]
         Index bonds = 0;                                     ///< active ones
-        std::int64_t which = 0;                              ///< the sum of their numbers
+        std::int64_t numbers = 0;                            ///< their sum, to tell whether they are the same
         bool fresh = true;  ///< its bonds are others than before: the next load begins anew
 
         /// Takes in the loads of a step; true where they have changed by more than `limit` [N].

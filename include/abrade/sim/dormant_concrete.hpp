@@ -34,7 +34,8 @@ private:
 /// Whether a body can set concrete in motion: anything that moves and is no standing concrete.
 template <class P>
 bool may_load(const State<P>& state, Index body) {
-    return state.particles.inverse_mass[at(body)] > 0 && state.particles.kind[at(body)] != Kind::concrete;
+    return state.particles.inverse_mass[at(body)] > 0 && state.particles.kind[at(body)] != Kind::concrete &&
+           !state.sleep.asleep(body);
 }
 
 /// Whether a body may touch concrete that stands still and be held by it: one that sleeps on it, or standing
@@ -67,6 +68,13 @@ void mark_near(const State<P>& state, Index body, Real skin, SiteMarks& marks) {
             space.period, [](int, int) { return true; },
             [&](const ImageShift& shift) { look(p.centre[at(s)] + shift.times(space.period)); });
     }
+}
+
+/// The same for all bodies that are `wanted(body)`.
+template <class P, class Wanted>
+void mark_near_all(const State<P>& state, Real skin, SiteMarks& marks, Wanted&& wanted) {
+    for (Index b = 0; b < state.particles.bodies(); ++b)
+        if (wanted(b)) mark_near(state, b, skin, marks);
 }
 
 /// Marks what can be reached from the marked sites over `radius` bonds.
@@ -205,8 +213,7 @@ void quieten(State<P>& state, const Move& half, Real skin, MotionSums& sums) {
     if (candidates.empty()) return;
     detail::SiteMarks near(dormancy.marks);
     state.publish_places();
-    for (Index b = 0; b < p.bodies(); ++b)
-        if (detail::may_load(state, b) && !state.sleep.asleep(b)) detail::mark_near(state, b, skin, near);
+    detail::mark_near_all(state, skin, near, [&](Index b) { return detail::may_load(state, b); });
     if constexpr (P::has_bonds) detail::spread(state.network.ties(), dormancy.wake_radius, near);
     std::vector<Index> sleepers;
     for (const Index b : candidates) {
@@ -237,9 +244,8 @@ void retire(State<P>& state, Real skin, std::vector<char>& gone) {
     const Particles& p = state.particles;
     Dormancy& dormancy = state.dormancy;
     detail::SiteMarks needed(dormancy.marks);
-    for (Index b = 0; b < p.bodies(); ++b)
-        if (detail::may_load(state, b) || detail::may_lean(state, b))
-            detail::mark_near(state, b, skin, needed);
+    detail::mark_near_all(state, skin, needed,
+                          [&](Index b) { return detail::may_load(state, b) || detail::may_lean(state, b); });
     if constexpr (P::has_bonds) {
         state.network.let_rest([&](Index body) { return p.inverse_mass[at(body)] > 0; });
         state.network.each_bond(
@@ -263,49 +269,67 @@ void retire(State<P>& state, Real skin, std::vector<char>& gone) {
     }
 }
 
-/// Wakes what is near a body that may load it within `skin` [m], what stirred anchors call for, and what has
-/// come loose; `particles` must be as of now.
+namespace detail {
+
+/// Wakes what is near a body that may load it, and what stirred anchors call for.
+template <class P>
+void wake_called(State<P>& state, Real skin) {
+    const Dormancy& dormancy = state.dormancy;
+    SiteMarks called(state.dormancy.marks);
+    if (dormancy.stirred)
+        for (const Dormancy::Anchor& anchor : dormancy.anchors)
+            if (anchor.stirred(0.25 * dormancy.wake_force)) called.add(anchor.site);
+    if constexpr (P::has_bonds) spread(state.network.ties(), dormancy.ahead, called);
+    mark_near_all(state, skin, called, [&](Index b) { return may_load(state, b); });
+    if constexpr (P::has_bonds) spread(state.network.ties(), dormancy.wake_radius, called);
+    called.sort();
+    for (const Index site : called.all())
+        if (!state.concrete.gone(site)) wake_site(state, site);
+}
+
+/// Wakes all there is: concrete no longer sleeps.
+template <class P>
+void wake_all(State<P>& state) {
+    for (Index site = 0; site < state.concrete.sites(); ++site)
+        if (!state.concrete.gone(site)) wake_site(state, site);
+    state.dormancy.anchors.clear(), state.dormancy.anchor_at.clear();
+    state.dormancy.begun = false;
+}
+
+/// Sets free what has come loose while it stood still.
+template <class P>
+void let_go(State<P>& state) {
+    Dormancy& dormancy = state.dormancy;
+    for (const Index site : dormancy.loosened) {
+        wake_site(state, site);
+        state.particles.kind[at(dormancy.body_of[at(site)])] = Kind::grain;
+        --dormancy.awake;  // of what stands
+    }
+    dormancy.loosened.clear();
+}
+
+/// Makes bodies of what others may lean on.
+template <class P>
+void bring_back_support(State<P>& state, Real skin) {
+    SiteMarks support(state.dormancy.marks);
+    mark_near_all(state, skin, support, [&](Index b) { return may_lean(state, b); });
+    support.sort();
+    for (const Index site : support.all()) standing_body(state, site);
+}
+
+}  // namespace detail
+
+/// Brings back what is wanted, awake or as support, within `skin` [m] of other bodies; `particles` must be as
+/// of now.
 template <class P>
 void wake_concrete(State<P>& state, Real skin) {
-    using detail::at;
-    Particles& p = state.particles;
-    Dormancy& dormancy = state.dormancy;
-    {
-        detail::SiteMarks wanted(dormancy.marks);
-        if (dormancy.on()) {
-            if (dormancy.stirred) {
-                for (const Dormancy::Anchor& anchor : dormancy.anchors)
-                    if (anchor.stirred(0.25 * dormancy.wake_force)) wanted.add(anchor.site);
-                if constexpr (P::has_bonds) detail::spread(state.network.ties(), dormancy.ahead, wanted);
-            }
-            const Index bodies = p.bodies();
-            for (Index b = 0; b < bodies; ++b)
-                if (detail::may_load(state, b) && !state.sleep.asleep(b))
-                    detail::mark_near(state, b, skin, wanted);
-            if constexpr (P::has_bonds) detail::spread(state.network.ties(), dormancy.wake_radius, wanted);
-            wanted.sort();
-        } else {
-            for (Index site = 0; site < state.concrete.sites(); ++site)
-                if (!state.concrete.gone(site)) wanted.add(site);
-            dormancy.anchors.clear(), dormancy.anchor_at.clear();
-            dormancy.begun = false;
-        }
-        for (const Index site : wanted.all())
-            if (!state.concrete.gone(site)) detail::wake_site(state, site);
-    }
-    for (const Index site : dormancy.loosened) {
-        detail::wake_site(state, site);
-        --dormancy.awake;
-        p.kind[at(dormancy.body_of[at(site)])] = Kind::grain;
-    }
-    detail::SiteMarks leant_on(dormancy.marks);
-    const Index bodies = p.bodies();
-    for (Index b = 0; b < bodies; ++b)
-        if (detail::may_lean(state, b)) detail::mark_near(state, b, skin, leant_on);
-    leant_on.sort();
-    for (const Index site : leant_on.all()) detail::standing_body(state, site);
-    dormancy.loosened.clear();
-    dormancy.due = dormancy.stirred = false;
+    if (state.dormancy.on())
+        detail::wake_called(state, skin);
+    else
+        detail::wake_all(state);
+    detail::let_go(state);
+    detail::bring_back_support(state, skin);
+    state.dormancy.due = state.dormancy.stirred = false;
     state.sleep.changed = true;  // contacts between those that stand still rest
 }
 
@@ -322,7 +346,10 @@ void find_anchors(State<P>& state) {
         const auto stands = [&](Index body) {
             return p.kind[at(body)] == Kind::concrete && p.inverse_mass[at(body)] == 0;
         };
-        std::vector<std::pair<Index, Index>> ends;  // site, number of the bond
+        std::vector<std::pair<Index, Index>>
+            ends;  // site, number of the bond; -1: there may be contacts alone
+        for (Index b = 0; b < p.bodies(); ++b)
+            if (stands(b)) ends.emplace_back(p.site[at(b)], -1);
         for (const Index number : state.network.active()) {
             const auto& bond = state.network.bond(number);
             if (stands(bond.bodies.first)) ends.emplace_back(bond.members.first, number);
@@ -332,7 +359,7 @@ void find_anchors(State<P>& state) {
         for (const auto& [site, number] : ends) {
             if (dormancy.anchors.empty() || dormancy.anchors.back().site != site)
                 dormancy.anchors.push_back({.site = site});
-            ++dormancy.anchors.back().bonds, dormancy.anchors.back().which += number;
+            if (number >= 0) ++dormancy.anchors.back().bonds, dormancy.anchors.back().numbers += number;
         }
     }
     auto old = before.begin();
@@ -340,7 +367,7 @@ void find_anchors(State<P>& state) {
         Dormancy::Anchor& anchor = dormancy.anchors[n];
         while (old != before.end() && old->site < anchor.site) ++old;
         if (old != before.end() && old->site == anchor.site) {
-            const bool same = old->bonds == anchor.bonds && old->which == anchor.which;
+            const bool same = old->bonds == anchor.bonds && old->numbers == anchor.numbers;
             anchor.force = old->force, anchor.lever = old->lever;
             anchor.change = old->change, anchor.turning = old->turning;
             anchor.fresh = old->fresh || !same;
