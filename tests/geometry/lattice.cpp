@@ -1,6 +1,8 @@
 // Lattices of concrete: cells fill the body, spheres have room, neighbours are counted once.
 #include <abrade/geometry/lattice.hpp>
 
+#include "lattice_sums.hpp"
+
 #include <doctest/doctest.h>
 
 #include <limits>
@@ -10,16 +12,6 @@ using namespace abrade;
 
 namespace {
 
-Real sum_of_cells(const Lattice& lattice) {
-    Real sum = 0;
-    for (const LatticeSite& site : lattice.sites) sum += site.cell_volume;
-    return sum;
-}
-Real sum_of_areas(const Lattice& lattice) {
-    Real sum = 0;
-    for (const Real a : lattice.column_area) sum += a;
-    return sum;
-}
 Real closest_pair(const Lattice& lattice) {
     Real closest = 1e300;
     for (const auto& [i, j] : lattice.bonds)

@@ -3,6 +3,7 @@
 #include <abrade/geometry/surface_lattice.hpp>
 
 #include "../message_of.hpp"
+#include "lattice_sums.hpp"
 
 #include <doctest/doctest.h>
 
@@ -22,16 +23,6 @@ constexpr Index layers = 3;
 Real wave(Real x, Real y) { return 0.02 * std::sin(15 * x) * std::cos(12 * y); }
 Real ramp(Real x, Real y) { return 0.9 * x - 0.4 * y; }
 
-Real sum_of_cells(const Lattice& lattice) {
-    Real sum = 0;
-    for (const LatticeSite& site : lattice.sites) sum += site.cell_volume;
-    return sum;
-}
-Real sum_of_areas(const Lattice& lattice) {
-    Real sum = 0;
-    for (const Real area : lattice.column_area) sum += area;
-    return sum;
-}
 /// By all pairs.
 Real closest_pair(const Lattice& lattice) {
     Real closest2 = 1e300;

@@ -9,13 +9,7 @@ namespace {
 
 void check_energy(const Drawn& bar, const std::string& what) {
     const Loaded& seen = bar.seen;
-    MESSAGE(what << ": " << bar.spheres << " spheres, " << bar.bonds << " bonds a sphere; E " << bar.youngs
-                 << " k_n/d; as an isotropic solid E " << bar.solid.youngs() / (kn / d) << ", nu "
-                 << bar.solid.poisson() << ", M " << bar.solid.constrained() / (kn / d) << "; first bond at "
-                 << bar.first << ", most " << bar.strength << " A sigma_t/d^2; " << seen.cracks.size()
-                 << " bonds broken, the first at z " << seen.cracks.at(0).place.z() / d << " d, "
-                 << seen.parted << " spheres parted; lost " << seen.end.lost() << " J, residue "
-                 << seen.end.integration_residue() << " J, residual " << seen.end.residual_relative());
+    MESSAGE(what << ": " << bar);
     // What the plates gave is stored, moves, or is booked as lost, up to the residue that is shown.
     const Real given = seen.start.kinetic - seen.end.kinetic;
     CHECK(given - seen.end.stored_bonds - seen.end.stored_contacts - seen.end.lost() ==

@@ -5,6 +5,7 @@
 #include <abrade/sim/simulation.hpp>
 
 #include <numeric>
+#include <ostream>
 #include <random>
 #include <set>
 
@@ -379,6 +380,16 @@ struct Drawn {
     std::size_t spheres;
     Loaded seen;
 };
+
+inline std::ostream& operator<<(std::ostream& out, const Drawn& bar) {
+    return out << bar.spheres << " spheres, " << bar.bonds << " bonds a sphere; E " << bar.youngs
+               << " k_n/d; as an isotropic solid E " << bar.solid.youngs() / (kn / d) << ", nu "
+               << bar.solid.poisson() << ", M " << bar.solid.constrained() / (kn / d) << "; first bond at "
+               << bar.first << ", most " << bar.strength << " A sigma_t/d^2; " << bar.seen.cracks.size()
+               << " bonds broken, the first at z " << bar.seen.cracks.at(0).place.z() / d << " d, "
+               << bar.seen.parted << " spheres parted; lost " << bar.seen.end.lost() << " J, residue "
+               << bar.seen.end.integration_residue() << " J, residual " << bar.seen.end.residual_relative();
+}
 
 inline Drawn draw_apart(const Material& material, const Bar& bar, Real ratio) {
     const Lattice lattice = cut(material, [&](const Vec3& x) { return bar.holds(x); });

@@ -16,13 +16,7 @@ void tell(const std::string& what, const Drawn& bar) {
     for (const Crack& crack : seen.cracks) heights.push_back(std::abs(crack.place.z()) / d);
     std::sort(heights.begin(), heights.end());
     MESSAGE("half of the broken bonds within " << heights[heights.size() / 2] << " d of the neck's middle");
-    MESSAGE(what << ": " << bar.spheres << " spheres, " << bar.bonds << " bonds a sphere; E " << bar.youngs
-                 << " k_n/d; as an isotropic solid E " << bar.solid.youngs() / (kn / d) << ", nu "
-                 << bar.solid.poisson() << ", M " << bar.solid.constrained() / (kn / d) << "; first bond at "
-                 << bar.first << ", most " << bar.strength << " A sigma_t/d^2; " << seen.cracks.size()
-                 << " bonds broken, the first at z " << seen.cracks.at(0).place.z() / d << " d, "
-                 << seen.parted << " spheres parted; lost " << seen.end.lost() << " J, residue "
-                 << seen.end.integration_residue() << " J, residual " << seen.end.residual_relative());
+    MESSAGE(what << ": " << bar);
     CHECK(seen.end.residual_relative() < 1e-12);
     CHECK(std::abs(seen.end.integration_residue()) < 0.02 * seen.end.lost());
     CHECK(seen.load.size() < 900);  // it came apart

@@ -184,7 +184,6 @@ void begin_dormancy(State<P>& state) {
     const std::vector<Index> moved = p.remove(gone);
     if constexpr (P::has_bonds) state.network.prune(p, moved, p.centre);
     state.note_sites();
-    dormancy.begun = true;
 }
 
 /// Sees which spheres move no more and hold no load that changes, and puts them to sleep; loads must be those

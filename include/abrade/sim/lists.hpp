@@ -212,9 +212,7 @@ private:
         d.gone.assign(at(p.bodies()), 0);
         d.moved.resize(at(state.store.spheres()));
         std::iota(d.moved.begin(), d.moved.end(), 0);
-        if (state.dormancy.due && state.dormancy.on()) {
-            retire(state, 2 * list_skin_, d.gone);
-        }
+        if (state.dormancy.due && state.dormancy.on()) retire(state, 2 * list_skin_, d.gone);
         if constexpr (P::has_bonds)
             if (!state.pieces.empty()) {
                 d.fragments = join_pieces(state, d.gone);
