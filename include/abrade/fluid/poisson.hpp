@@ -1,17 +1,11 @@
 #pragma once
 // The discrete Poisson operator of the pressure on one grid, and what works on it row by row.
 
-#include <abrade/fluid/grid.hpp>
+#include <abrade/fluid/wet_rows.hpp>
 
 #include <algorithm>
 
 namespace abrade {
-
-/// Cells [begin, end) of a row, numbers along the inner axis.
-struct RowRange {
-    int begin = 0, end = 0;
-    bool empty() const noexcept { return begin >= end; }
-};
 
 /// The operator of a finite volume on one grid,
 ///   (A e)_c = sum over faces g (e_c - e_neighbour) + d_c e_c,
