@@ -48,25 +48,26 @@ public:
             for (int a = 0; a < Dim; ++a)
                 velocity_[a][c] = static_cast<State>(of(grid_.face_centre(a, cell))[a]);
         });
-        sides_.fill(velocity_, time_);
+        sides_.fill(velocity_);
         Field<State> ignored(grid_.layout().total);
         report_ = projection_.project(velocity_, ignored, 1, 1e-12);
     }
 
     void step(Real dt) {
-        sides_.fill(velocity_, time_);
+        sides_.fill(velocity_);
         sides_.fill_cells(pressure_);
         advance_momentum<Scheme>(grid_, projection_.faces(),
                                  MomentumStage<Dim, State>{velocity_, velocity_, velocity_, stage_, pressure_,
                                                            dt, 0, -dt, nu(), params_.gravity});
         leave(stage_);
-        sides_.fill(stage_, time_ + dt);
+        if (!params_.steady_sides) sides_.set_time(time_ + dt);
+        sides_.fill(stage_);
         advance_momentum<Scheme>(grid_, projection_.faces(),
                                  MomentumStage<Dim, State>{stage_, stage_, velocity_, velocity_, pressure_,
                                                            dt, 0.5, -0.5 * dt, nu(), params_.gravity});
         leave(velocity_);
         time_ += dt;
-        sides_.fill(velocity_, time_);
+        sides_.fill(velocity_);
         report_ = projection_.project(velocity_, pressure_, dt, params_.tolerance);
     }
 

@@ -59,7 +59,7 @@ public:
         parallel_tasks(levels_[0].matrix.layout.planes(),
                        [&](Index plane) { levels_[0].matrix.complete(plane); });
         for (std::size_t l = 0; l + 1 < levels_.size(); ++l) coarsen(levels_[l], levels_[l + 1]);
-        floating_ = levels_.back().matrix.inverse_diagonal[levels_.back().matrix.layout.at({})] == 0;
+        floating_ = levels_.back().matrix.dirichlet[levels_.back().matrix.layout.at({})] == 0;
     }
 
     struct Report {
@@ -106,6 +106,7 @@ private:
         const Layout<Dim>& l = m.layout;
         for (int a = 0; a < Dim; ++a) {
             if (!m.periodic[a]) continue;
+            if (l.cells[a] == 1) m.face[a].fill(0);  // a cell has no exchange with itself
             const Offset around = l.cells[a] * l.stride[a];
             for_face(l, a, [&](Offset c) { m.face[a][c + around] = m.face[a][c]; });
         }

@@ -12,25 +12,47 @@ namespace abrade {
 template <int Dim>
 using SideVelocity = std::function<Point<Dim>(const Point<Dim>&, Real)>;
 
-/// Fills ghosts of a staggered velocity, and its normal component on sides that fix it. Tangential ghosts
-/// mirror, so that the mean of both sides of a wall is the wall's velocity.
+/// Fills ghosts of a staggered velocity, and its normal component on sides that fix it. Tangential ghosts mirror, so
+/// that the mean of both sides of a wall is the wall's velocity.
 template <int Dim>
 class VelocitySides {
 public:
     VelocitySides(const Grid<Dim>& grid, const Sides<Dim>& sides, SideVelocity<Dim> given)
-        : grid_(&grid), sides_(sides), given_(std::move(given)) {}
+        : grid_(&grid), sides_(sides), given_(std::move(given)) {
+        sides_.validate();
+        set_time(0);
+    }
+
+    /// Asks for the given velocities as they are at a time [s].
+    void set_time(Real time) {
+        if (!given_) return;
+        for (int b = 0; b < Dim; ++b)
+            for (const bool high : {false, true}) {
+                const Side side = kind(b, high);
+                if (side != Side::wall && side != Side::inflow) continue;
+                for (int a = 0; a < Dim; ++a) {
+                    std::vector<Real>& values = table(a, b, high);
+                    values.clear();
+                    for_side(b, high, [&](Offset, const CellNumber<Dim>& cell) {
+                        Point<Dim> x = grid_->face_centre(a, cell);
+                        x[b] = high ? grid_->high(b) : grid_->low(b);
+                        const bool through = a == b && side == Side::wall;
+                        values.push_back(through ? 0 : given_(x, time)[a]);
+                    });
+                }
+            }
+    }
 
     template <class State>
-    void fill(FaceField<Dim, State>& u, Real time) const {
+    void fill(FaceField<Dim, State>& u) const {
         // Axis by axis, ghosts of the former ones included: so corners get theirs.
         for (int b = 0; b < Dim; ++b)
             for (int a = 0; a < Dim; ++a)
                 if (sides_.periodic(b))
                     copy_around(u[a], b);
-                else if (a == b)
-                    normal(u[a], b, time);
                 else
-                    tangential(u[a], a, b, time);
+                    for (const bool high : {false, true})
+                        a == b ? normal(u[a], b, high) : tangential(u[a], a, b, high);
     }
 
     /// Fills ghosts of a cell field with what is around (periodic) or beside.
@@ -42,8 +64,7 @@ public:
             else
                 for (const bool high : {false, true}) {
                     const Offset out = high ? step(b) : -step(b);
-                    for_side(b, high,
-                             [&](Offset c, const CellNumber<Dim>&) { x[c + out] = x[c + 2 * out] = x[c]; });
+                    along_side(b, high, [&](Offset c, std::size_t) { x[c + out] = x[c + 2 * out] = x[c]; });
                 }
     }
 
@@ -53,31 +74,56 @@ private:
     Side kind(int axis, bool high) const noexcept {
         return (high ? sides_.high : sides_.low)[static_cast<std::size_t>(axis)];
     }
+    std::vector<Real>& table(int a, int b, bool high) noexcept {
+        return tables_[static_cast<std::size_t>((a * Dim + b) * 2 + high)];
+    }
+    const std::vector<Real>& table(int a, int b, bool high) const noexcept {
+        return tables_[static_cast<std::size_t>((a * Dim + b) * 2 + high)];
+    }
 
-    /// Calls body(offset, number) for the cells beside a side, ghosts of the other axes included.
+    /// Axes along a side: first, then the one nearer in memory; in 2-D the first is the side's own, once.
+    struct Plane {
+        int first, second;
+    };
+    static constexpr Plane plane_of(int axis) noexcept {
+        constexpr int inner = Layout<Dim>::inner, outer = Layout<Dim>::outer;
+        if constexpr (Dim == 2) return {axis, 1 - axis};
+        if (axis == outer) return {2, inner};
+        return axis == inner ? Plane{outer, 2} : Plane{outer, inner};
+    }
+    /// Calls body(offset, k) for the cells beside a side, ghosts of the other axes included; k counts them.
+    void along_side(int axis, bool high, auto&& body) const {
+        constexpr int g = Layout<Dim>::ghosts;
+        const Plane p = plane_of(axis);
+        CellNumber<Dim> corner;
+        corner.fill(-g);
+        corner[axis] = high ? cells(axis) - 1 : 0;
+        const int first = p.first == axis ? 1 : cells(p.first) + 2 * g, second = cells(p.second) + 2 * g;
+        const Offset from = grid_->layout().at(corner);
+        std::size_t k = 0;
+        for (int i = 0; i < first; ++i) {
+            const Offset line = from + i * step(p.first);
+            for (int j = 0; j < second; ++j) body(line + j * step(p.second), k++);
+        }
+    }
+    /// The same with the cell's number.
     void for_side(int axis, bool high, auto&& body) const {
-        const Layout<Dim>& l = grid_->layout();
-        CellNumber<Dim> cell;
-        cell[axis] = high ? cells(axis) - 1 : 0;
-        std::array<int, Dim - 1> other{};
-        for (int a = 0, k = 0; a < Dim; ++a)
-            if (a != axis) other[k++] = a;
-        // The inner axis last, where there is a choice.
-        if constexpr (Dim == 3)
-            if (other[0] == Layout<Dim>::inner) std::swap(other[0], other[1]);
-        const auto along = [&](int a, auto&& each) {
-            for (cell[a] = -Layout<Dim>::ghosts; cell[a] < cells(a) + Layout<Dim>::ghosts; ++cell[a]) each();
-        };
-        if constexpr (Dim == 3)
-            along(other[0], [&] { along(other[1], [&] { body(l.at(cell), cell); }); });
-        else
-            along(other[0], [&] { body(l.at(cell), cell); });
+        constexpr int g = Layout<Dim>::ghosts;
+        const Plane p = plane_of(axis);
+        const auto second = static_cast<std::size_t>(cells(p.second) + 2 * g);
+        along_side(axis, high, [&](Offset c, std::size_t k) {
+            CellNumber<Dim> cell;
+            cell[p.first] = static_cast<int>(k / second) - g;
+            cell[p.second] = static_cast<int>(k % second) - g;
+            cell[axis] = high ? cells(axis) - 1 : 0;
+            body(c, cell);
+        });
     }
 
     template <class State>
     void copy_around(Field<State>& x, int b) const {
         const Offset s = step(b), around = cells(b) * s;
-        for_side(b, false, [&](Offset c, const CellNumber<Dim>&) {
+        along_side(b, false, [&](Offset c, std::size_t) {
             x[c - 2 * s] = x[c - 2 * s + around];
             x[c - s] = x[c - s + around];
             x[c + around] = x[c];
@@ -85,59 +131,50 @@ private:
         });
     }
 
-    Real given(int component, const Point<Dim>& x, Real time) const {
-        return given_ ? given_(x, time)[component] : 0;
+    template <class State>
+    void normal(Field<State>& u, int b, bool high) const {
+        const Offset s = step(b), to_face = high ? s : 0, in = high ? -s : s;
+        const Side side = kind(b, high);
+        if (side == Side::outflow) {  // as it leaves, so beyond
+            along_side(b, high, [&](Offset c, std::size_t) {
+                const Offset face = c + to_face;
+                u[face - in] = u[face];
+                if (!high) u[face - 2 * in] = u[face];
+            });
+            return;
+        }
+        const std::vector<Real>& values = table(b, b, high);
+        along_side(b, high, [&](Offset c, std::size_t k) {
+            const Offset face = c + to_face;
+            u[face] = values.empty() ? State(0) : static_cast<State>(values[k]);
+            u[face - in] = 2 * u[face] - u[face + in];
+            if (!high) u[face - 2 * in] = 2 * u[face] - u[face + 2 * in];
+        });
     }
 
     template <class State>
-    void normal(Field<State>& u, int b, Real time) const {
-        const Offset s = step(b);
-        for (const bool high : {false, true}) {
-            const Side side = kind(b, high);
-            for_side(b, high, [&](Offset c, CellNumber<Dim> cell) {
-                const Offset face = high ? c + s : c, in = high ? -s : s;
-                if (side == Side::wall || side == Side::slip) {
-                    u[face] = 0;
-                } else if (side == Side::inflow) {
-                    if (high) ++cell[b];
-                    u[face] = static_cast<State>(given(b, grid_->face_centre(b, cell), time));
-                }
-                // Beyond: straight on where the side fixes the flow, as at the face where it leaves.
-                const State beyond = side == Side::outflow ? u[face] : 2 * u[face] - u[face + in];
-                u[face - in] = beyond;
-                if (!high) u[face - 2 * in] = side == Side::outflow ? u[face] : 2 * beyond - u[face];
+    void tangential(Field<State>& u, int a, int b, bool high) const {
+        const Offset out = high ? step(b) : -step(b);
+        const Side side = kind(b, high);
+        if (side == Side::slip || side == Side::outflow) {
+            along_side(b, high, [&](Offset c, std::size_t) {
+                u[c + out] = u[c];
+                u[c + 2 * out] = side == Side::slip ? u[c - out] : u[c];
             });
+            return;
         }
-    }
-
-    template <class State>
-    void tangential(Field<State>& u, int a, int b, Real time) const {
-        const Offset s = step(b);
-        for (const bool high : {false, true}) {
-            const Side side = kind(b, high);
-            const Offset out = high ? s : -s;
-            const bool held = side == Side::wall || side == Side::inflow;
-            for_side(b, high, [&](Offset c, const CellNumber<Dim>& cell) {
-                if (!held) {
-                    u[c + out] = u[c];
-                    u[c + 2 * out] = side == Side::slip ? u[c - out] : u[c];
-                    return;
-                }
-                State wall = 0;
-                if (given_) {
-                    Point<Dim> x = grid_->face_centre(a, cell);
-                    x[b] = high ? grid_->high(b) : grid_->low(b);
-                    wall = static_cast<State>(given(a, x, time));
-                }
-                u[c + out] = 2 * wall - u[c];
-                u[c + 2 * out] = 2 * wall - u[c - out];
-            });
-        }
+        const std::vector<Real>& values = table(a, b, high);
+        along_side(b, high, [&](Offset c, std::size_t k) {
+            const State twice = values.empty() ? State(0) : static_cast<State>(2 * values[k]);
+            u[c + out] = twice - u[c];
+            u[c + 2 * out] = twice - u[c - out];
+        });
     }
 
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
     SideVelocity<Dim> given_;
+    std::array<std::vector<Real>, static_cast<std::size_t>(2 * Dim * Dim)> tables_;
 };
 
 }  // namespace abrade
