@@ -40,8 +40,8 @@ public:
         : grid_(grid), layout_(grid.layout()), s_(stage), pitch_(layout_.row_length() + 16) {}
 
     /// Component `a` on planes [first, last).
-    void run(int a, const WetRows& faces, int first, int last) {
-        const int rows = faces.rows();
+    void run(int a, const WetRows<Dim>& faces, int first, int last) {
+        const int rows = faces.layout().rows_per_plane();
         const auto room = static_cast<std::size_t>(pitch_);
         plane_.resize(room * static_cast<std::size_t>(rows));
         above_.resize(room), along_.resize(room), low_.resize(room), high_.resize(room);
@@ -136,7 +136,7 @@ private:
 /// Computes one stage on the faces that `faces[a]` names, for each component a.
 /// Same bits for any number of threads.
 template <class Scheme, int Dim, class State>
-void advance_momentum(const Grid<Dim>& grid, const std::type_identity_t<std::array<WetRows, Dim>>& faces,
+void advance_momentum(const Grid<Dim>& grid, const std::type_identity_t<std::array<WetRows<Dim>, Dim>>& faces,
                       const MomentumStage<Dim, State>& stage) {
     const int planes = grid.layout().planes();
     const int runs = std::clamp(planes / 8, 1, thread_count());

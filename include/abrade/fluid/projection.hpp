@@ -26,15 +26,15 @@ class Projection {
 
 public:
     Projection(const Grid<Dim>& grid, const Sides<Dim>& sides)
-        : grid_(&grid), sides_(sides), multigrid_(grid.layout(), mean_size(grid), sides.periodic()) {
-        for (auto& f : faces_) f = WetRows(grid.layout());
+        : grid_(&grid), sides_(sides), multigrid_(grid.layout(), mean_size(grid), periodic_axes(sides)) {
+        for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         fill_box();
         multigrid_.build();
         find_rows();
     }
 
     /// Faces whose velocity the pressure changes: between two cells that take part.
-    const std::array<WetRows, Dim>& faces() const noexcept { return faces_; }
+    const std::array<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }
     const Multigrid<Dim>& multigrid() const noexcept { return multigrid_; }
 
     struct Report {
@@ -65,6 +65,11 @@ public:
     }
 
 private:
+    static std::array<bool, Dim> periodic_axes(const Sides<Dim>& sides) {
+        std::array<bool, Dim> repeats;
+        for (int a = 0; a < Dim; ++a) repeats[static_cast<std::size_t>(a)] = sides.periodic(a);
+        return repeats;
+    }
     static Point<Dim> mean_size(const Grid<Dim>& grid) {
         Point<Dim> mean;
         for (int a = 0; a < Dim; ++a) mean[a] = (grid.high(a) - grid.low(a)) / grid.cells(a);
@@ -89,13 +94,12 @@ private:
         open_.clear();
         grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
             for (int a = 0; a < Dim; ++a) {
-                const auto axis = static_cast<std::size_t>(a);
                 const Real g = area(a, cell);
                 if (cell[a] > 0 || sides_.periodic(a))
                     m.face[a][c] = static_cast<float>(g / grid_->gap(a, cell[a]));
                 const Real slope = 2 / grid_->size(a, cell[a]);
-                if (cell[a] == 0 && sides_.low[axis] == Side::outflow) open_.push_back({c, c, a, slope});
-                if (cell[a] == l.cells[a] - 1 && sides_.high[axis] == Side::outflow)
+                if (cell[a] == 0 && sides_[a][0] == Side::outflow) open_.push_back({c, c, a, slope});
+                if (cell[a] == l.cells[a] - 1 && sides_[a][1] == Side::outflow)
                     open_.push_back({c + l.stride[a], c, a, -slope});
                 if (!open_.empty() && open_.back().cell == c && open_.back().axis == a)
                     m.dirichlet[c] += static_cast<float>(g * slope);
@@ -115,7 +119,7 @@ private:
                     RowRange r{m.layout.row_length(), 0};
                     for (int i = 0; i < m.layout.row_length(); ++i)
                         if (m.face[a][start + i] > 0) r.begin = std::min(r.begin, i), r.end = i + 1;
-                    faces_[a].range(plane, row) = r.empty() ? RowRange{} : r;
+                    faces_[a].row(plane, row) = r.empty() ? RowRange{} : r;
                 }
             }
     }
@@ -249,7 +253,7 @@ private:
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
     Multigrid<Dim> multigrid_;
-    std::array<WetRows, Dim> faces_;
+    std::array<WetRows<Dim>, Dim> faces_;
     std::vector<OpenFace> open_;
     std::vector<Real> squares_;
     Index wet_cells_ = 0;

@@ -1,40 +1,57 @@
 #pragma once
-// What stands at the sides of a fluid's box.
+// What stands at the sides of a box of fluid.
 
-#include <abrade/core/require.hpp>
+#include <abrade/fluid/grid.hpp>
 
 #include <array>
 #include <string>
+#include <string_view>
 
 namespace abrade {
 
-/// wall: no slip; slip: nothing flows through, nothing holds back; periodic: joined to the opposite side;
-/// inflow: velocity is given; outflow: pressure 0, velocity goes on as it is.
-enum class Side { wall, slip, periodic, inflow, outflow };
+/// Kind of a side of the box.
+enum class Side {
+    wall,      ///< closed; fluid sticks to it
+    slip,      ///< closed; fluid glides along it
+    periodic,  ///< what leaves here comes back at the opposite side
+    inflow,    ///< velocity and liquid fraction of the ghosts are given and stay
+    outflow    ///< zero gradient
+};
 
-/// Kinds of the sides at the low and high end of each axis.
+constexpr std::string_view side_name(Side side) noexcept {
+    constexpr std::array<std::string_view, 5> names{"wall", "slip", "periodic", "inflow", "outflow"};
+    return names[static_cast<std::size_t>(side)];
+}
+
+/// Whether nothing passes.
+constexpr bool is_closed(Side side) noexcept { return side == Side::wall || side == Side::slip; }
+
+/// The kinds of all sides.
 template <int Dim>
 struct Sides {
-    std::array<Side, Dim> low{}, high{};
+    /// [axis][0: low, 1: high]
+    std::array<std::array<Side, 2>, Dim> kind{};
 
-    bool periodic(int axis) const noexcept { return low[static_cast<std::size_t>(axis)] == Side::periodic; }
-    std::array<bool, Dim> periodic() const noexcept {
-        std::array<bool, Dim> p;
-        for (int a = 0; a < Dim; ++a) p[static_cast<std::size_t>(a)] = periodic(a);
-        return p;
+    static Sides all(Side side) noexcept {
+        Sides sides;
+        for (auto& ends : sides.kind) ends = {side, side};
+        return sides;
     }
-    static Sides all(Side kind) noexcept {
-        Sides s;
-        s.low.fill(kind), s.high.fill(kind);
-        return s;
+    const std::array<Side, 2>& operator[](int axis) const noexcept {
+        return kind[static_cast<std::size_t>(axis)];
     }
+    std::array<Side, 2>& operator[](int axis) noexcept { return kind[static_cast<std::size_t>(axis)]; }
+    bool periodic(int axis) const noexcept { return (*this)[axis][0] == Side::periodic; }
 
+    /// Throws InputError where one end of an axis is periodic and the other is not.
     void validate() const {
-        for (std::size_t a = 0; a < Dim; ++a)
-            if ((low[a] == Side::periodic) != (high[a] == Side::periodic))
-                fail({"Sides." + std::string(1, Dim == 3 ? "xyz"[a] : "xz"[a]),
-                      "periodic at both ends or at none", "", "set low and high alike"},
-                     "one of each");
+        for (int a = 0; a < Dim; ++a) {
+            const auto& [low, high] = (*this)[a];
+            if ((low == Side::periodic) == (high == Side::periodic)) continue;
+            fail({std::string("Sides.") + Grid<Dim>::axis_name(a), "periodic at both ends or at none", "",
+                  "what leaves at one end must come back at the other"},
+                 std::string(side_name(low)) + " and " + std::string(side_name(high)));
+        }
     }
 };
 

@@ -72,7 +72,7 @@ private:
     Offset step(int axis) const noexcept { return grid_->layout().stride[axis]; }
     int cells(int axis) const noexcept { return grid_->cells(axis); }
     Side kind(int axis, bool high) const noexcept {
-        return (high ? sides_.high : sides_.low)[static_cast<std::size_t>(axis)];
+        return sides_[axis][static_cast<std::size_t>(high)];
     }
     std::vector<Real>& table(int a, int b, bool high) noexcept {
         return tables_[static_cast<std::size_t>((a * Dim + b) * 2 + high)];
