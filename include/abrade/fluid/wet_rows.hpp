@@ -1,0 +1,129 @@
+#pragma once
+// Which part of each row of a grid is wet: what keeps dry cells from costing anything.
+
+#include <abrade/core/parallel.hpp>
+#include <abrade/fluid/grid.hpp>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace abrade {
+
+/// Part of a row: cells begin to end - 1.
+struct RowRange {
+    int begin = 0, end = 0;
+
+    bool empty() const noexcept { return begin >= end; }
+    int length() const noexcept { return std::max(0, end - begin); }
+    /// The smallest range that holds both.
+    friend RowRange hull(const RowRange& a, const RowRange& b) noexcept {
+        if (a.empty()) return b;
+        if (b.empty()) return a;
+        return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
+    }
+    bool operator==(const RowRange&) const = default;
+};
+
+/// For each row of the box (without ghosts) the hull of its wet cells. Rows are numbered plane by plane.
+template <int Dim>
+class WetRows {
+public:
+    WetRows() = default;
+    explicit WetRows(const Layout<Dim>& layout)
+        : layout_(layout), rows_(static_cast<std::size_t>(layout.planes()) *
+                                 static_cast<std::size_t>(layout.rows_per_plane())) {}
+
+    const Layout<Dim>& layout() const noexcept { return layout_; }
+    const RowRange& row(int plane, int row) const noexcept { return rows_[index(plane, row)]; }
+    RowRange& row(int plane, int row) noexcept { return rows_[index(plane, row)]; }
+
+    /// Sets each range to the hull of cells above `dry`, looking through whole rows.
+    void find(const Field<Real>& fraction, Real dry = 0) {
+        for_each_plane([&](int plane) {
+            for (int r = 0; r < layout_.rows_per_plane(); ++r)
+                row(plane, r) = wet_part(fraction, plane, r, {0, layout_.row_length()}, dry);
+        });
+    }
+
+    /// The same, where nothing outside of `within` can be wet: only the ends of ranges are looked at.
+    void find_within(const WetRows& within, const Field<Real>& fraction, Real dry = 0) {
+        for_each_plane([&](int plane) {
+            for (int r = 0; r < layout_.rows_per_plane(); ++r)
+                row(plane, r) = wet_part(fraction, plane, r, within.row(plane, r), dry);
+        });
+    }
+
+    /// Grown by `cells` along every axis, diagonals included; across those ends where the box is periodic.
+    WetRows dilated(int cells, const std::array<bool, Dim>& periodic = {}) const {
+        WetRows grown = *this;
+        const int n = layout_.row_length();
+        grown.for_each_plane([&](int plane) {
+            for (int r = 0; r < layout_.rows_per_plane(); ++r) {
+                RowRange all{};
+                for (int p = plane - cells; p <= plane + cells; ++p)
+                    for (int q = Dim == 3 ? r - cells : r; q <= (Dim == 3 ? r + cells : r); ++q)
+                        all = hull(all, wrapped(p, q, periodic));
+                if (!all.empty()) {
+                    all = {all.begin - cells, all.end + cells};
+                    // What crosses one end comes in at the other: the hull is then the whole row.
+                    if (periodic[1] && (all.begin < 0 || all.end > n)) all = {0, n};
+                }
+                grown.row(plane, r) = {std::max(0, all.begin), std::min(n, all.end)};
+            }
+        });
+        return grown;
+    }
+
+    /// The ranges that hold those of both.
+    void include(const WetRows& other) {
+        for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i] = hull(rows_[i], other.rows_[i]);
+    }
+
+    /// Cells in all ranges.
+    std::int64_t cells() const noexcept {
+        std::int64_t count = 0;
+        for (const RowRange& r : rows_) count += r.length();
+        return count;
+    }
+
+    /// Calls body(plane, row, range) for each row that is not dry; planes in parallel.
+    void for_each_row(auto&& body) const {
+        for_each_plane([&](int plane) {
+            for (int r = 0; r < layout_.rows_per_plane(); ++r)
+                if (const RowRange& range = row(plane, r); !range.empty()) body(plane, r, range);
+        });
+    }
+
+    /// Calls body(plane) for each plane, in parallel.
+    void for_each_plane(auto&& body) const {
+        parallel_tasks(layout_.planes(), [&](Index plane) { body(static_cast<int>(plane)); });
+    }
+
+private:
+    std::size_t index(int plane, int row) const noexcept {
+        return static_cast<std::size_t>(plane) * static_cast<std::size_t>(layout_.rows_per_plane()) +
+               static_cast<std::size_t>(row);
+    }
+    RowRange wet_part(const Field<Real>& fraction, int plane, int r, RowRange range,
+                      Real dry) const noexcept {
+        const Real* f = fraction.data() + layout_.row_start(plane, r);
+        while (range.begin < range.end && !(f[range.begin] > dry)) ++range.begin;
+        while (range.begin < range.end && !(f[range.end - 1] > dry)) --range.end;
+        return range.begin < range.end ? range : RowRange{};
+    }
+    RowRange wrapped(int plane, int r, const std::array<bool, Dim>& periodic) const noexcept {
+        const auto inside = [](int& i, int n, bool wraps) {
+            if (wraps) i = ((i % n) + n) % n;
+            return i >= 0 && i < n;
+        };
+        if (!inside(plane, layout_.planes(), periodic[Layout<Dim>::outer])) return {};
+        if (!inside(r, layout_.rows_per_plane(), periodic[Dim - 1])) return {};
+        return row(plane, r);
+    }
+
+    Layout<Dim> layout_{};
+    std::vector<RowRange> rows_;
+};
+
+}  // namespace abrade
