@@ -26,17 +26,15 @@ using CellNumber = std::array<int, Dim>;
 /// Distance between two cells in memory.
 using Offset = std::ptrdiff_t;
 
-/// Where cells stand in memory. In 3-D planes of constant x follow each other, in a plane rows of constant z,
-/// in a row cells along y: a long channel is cut into many thin planes, several of which stay in cache at
-/// once. In 2-D rows of constant z are planes, and cells stand along x. So the axis along rows is never a
-/// stretched one. Around the box stand two layers of ghosts: limited second-order fluxes reach two cells
-/// upstream.
+/// Where cells stand in memory. Planes of constant x follow each other; within a plane rows (of constant z
+/// in 3-D); within a row cells along the second axis, which is y in 3-D and z in 2-D. So a long channel is cut
+/// into many thin planes, several of which stay in cache at once. Around the box stand two layers of ghosts:
+/// limited second-order fluxes reach two cells upstream.
 template <int Dim>
 struct Layout {
     static_assert(Dim == 2 || Dim == 3, "fluids are two- or three-dimensional");
     static constexpr int ghosts = 2;
-    static constexpr int outer = Dim == 3 ? 0 : 1;  ///< axis across planes
-    static constexpr int inner = Dim == 3 ? 1 : 0;  ///< axis along rows
+    static constexpr int outer = 0, inner = 1;  ///< axis across planes, axis along rows
 
     std::array<int, Dim> cells{};      ///< along each axis, without ghosts
     std::array<Offset, Dim> stride{};  ///< from a cell to the next one along each axis

@@ -71,7 +71,7 @@ public:
                 if (!all.empty()) {
                     all = {all.begin - cells, all.end + cells};
                     // What crosses one end comes in at the other: the hull is then the whole row.
-                    if (periodic[Layout<Dim>::inner] && (all.begin < 0 || all.end > n)) all = {0, n};
+                    if (periodic[1] && (all.begin < 0 || all.end > n)) all = {0, n};
                 }
                 grown.row(plane, r) = {std::max(0, all.begin), std::min(n, all.end)};
             }

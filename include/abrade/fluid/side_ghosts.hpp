@@ -1,0 +1,60 @@
+#pragma once
+// Copies of cells beyond the sides of a box.
+
+#include <abrade/fluid/sides.hpp>
+
+namespace abrade {
+
+/// Copies all cells with number `from` along an axis, those beyond other sides included, to number `to`.
+template <int Dim, class Number>
+void copy_layer(Field<Number>& field, const Layout<Dim>& layout, int axis, int from, int to) noexcept {
+    constexpr int ghosts = Layout<Dim>::ghosts;
+    const auto a = static_cast<std::size_t>(axis);
+    Number* data = field.data();
+    const Offset planes = layout.planes() + 2 * ghosts, plane = layout.stride[Layout<Dim>::outer];
+    if (axis == Layout<Dim>::outer) {
+        std::copy_n(data + (from + ghosts) * plane, plane, data + (to + ghosts) * plane);
+    } else if (axis != Layout<Dim>::inner) {
+        const Offset row = layout.stride[a];
+        for (Offset p = 0; p < planes; ++p)
+            std::copy_n(data + p * plane + (from + ghosts) * row, row,
+                        data + p * plane + (to + ghosts) * row);
+    } else {
+        const Offset rows = layout.rows_per_plane() + (Dim == 3 ? 2 * ghosts : 0);
+        const Offset row = layout.stride[Dim == 3 ? 2 : 0];
+        for (Offset p = 0; p < planes; ++p)
+            for (Offset r = 0; r < rows; ++r) {
+                Number* first = data + p * plane + (Dim == 3 ? r * row : 0) + ghosts;
+                first[to] = first[from];
+            }
+    }
+}
+
+/// Ghosts beyond periodic ends.
+template <int Dim, class Number>
+void fill_periodic(Field<Number>& field, const Layout<Dim>& layout, const Sides<Dim>& sides) noexcept {
+    for (int a = 0; a < Dim; ++a) {
+        if (!sides.periodic(a)) continue;
+        const int n = layout.cells[static_cast<std::size_t>(a)];
+        for (int g = 0; g < Layout<Dim>::ghosts; ++g) {
+            // An axis of one cell is its own neighbour, twice over.
+            copy_layer(field, layout, a, (n - 1 - g % n), -1 - g);
+            copy_layer(field, layout, a, g % n, n + g);
+        }
+    }
+}
+
+/// Ghosts beyond all sides but those of an inflow, which are given: periodic, or as the cell inside.
+template <int Dim, class Number>
+void fill_ghosts(Field<Number>& field, const Layout<Dim>& layout, const Sides<Dim>& sides) noexcept {
+    for (int a = 0; a < Dim; ++a) {
+        const int n = layout.cells[static_cast<std::size_t>(a)];
+        for (int g = 0; g < Layout<Dim>::ghosts; ++g) {
+            const bool wraps = sides.periodic(a);
+            if (sides[a][0] != Side::inflow) copy_layer(field, layout, a, wraps ? n - 1 - g % n : 0, -1 - g);
+            if (sides[a][1] != Side::inflow) copy_layer(field, layout, a, wraps ? g % n : n - 1, n + g);
+        }
+    }
+}
+
+}  // namespace abrade

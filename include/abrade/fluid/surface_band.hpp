@@ -1,0 +1,154 @@
+#pragma once
+// The cells at the surface: all that the surface can cut before the end of a step.
+
+#include <abrade/fluid/side_ghosts.hpp>
+#include <abrade/fluid/surface_planes.hpp>
+#include <abrade/fluid/wet_rows.hpp>
+
+#include <cstring>
+#include <span>
+
+namespace abrade {
+
+/// Cells that hold liquid and have air in them or at one of their faces, and all cells around them (diagonals
+/// too, because a step sweeps along one axis after the other). The others are full, and stay so, or dry.
+template <int Dim>
+class SurfaceBand {
+public:
+    /// Air of less than this share of a cell [-] is a defect of the velocity's divergence, not a surface.
+    static constexpr Real smallest_void = 1e-6;
+
+    SurfaceBand() = default;
+    explicit SurfaceBand(const Layout<Dim>& layout)
+        : layout_(layout), air_(layout.total, 0), edge_(layout.total, 0), band_(layout.total, 0),
+          searched_(layout) {}
+
+    /// Finds the band within `rows`, which hold everything wet and one cell around it at least.
+    void find(const Field<Real>& fraction, const Field<std::uint8_t>& marks, const WetRows<Dim>& rows,
+              const Sides<Dim>& sides) {
+        searched_.for_each_row([&](int plane, int r, const RowRange& range) {
+            const Offset start = layout_.row_start(plane, r) + range.begin;
+            std::memset(edge_.data() + start, 0, static_cast<std::size_t>(range.length()));
+            std::memset(band_.data() + start, 0, static_cast<std::size_t>(range.length()));
+        });
+        searched_ = rows;
+        rows.for_each_row([&](int plane, int r, const RowRange& range) {
+            const Offset start = layout_.row_start(plane, r);
+            for (Offset c = start + range.begin; c < start + range.end; ++c)
+                air_[c] = static_cast<std::uint8_t>((fraction[c] < 1 - smallest_void) &
+                                                    ((marks[c] & cell_mark::open) != 0));
+        });
+        fill_periodic(air_, layout_, sides);
+        for_each_inflow_cell(sides, [&](Offset ghost, Offset) {
+            air_[ghost] = static_cast<std::uint8_t>(fraction[ghost] < 1 - smallest_void);
+        });
+        rows.for_each_row([&](int plane, int r, const RowRange& range) {
+            const Offset start = layout_.row_start(plane, r);
+            const std::uint8_t* air = air_.data();
+            for (Offset c = start + range.begin; c < start + range.end; ++c) {
+                std::uint8_t near = air[c];
+                for (const Offset s : layout_.stride)
+                    near = static_cast<std::uint8_t>(near | air[c - s] | air[c + s]);
+                edge_[c] =
+                    static_cast<std::uint8_t>(near & (fraction[c] > 0) & ((marks[c] & cell_mark::open) != 0));
+            }
+        });
+        fill_periodic(edge_, layout_, sides);
+        for_each_inflow_cell(sides, [&](Offset ghost, Offset inside) {
+            edge_[ghost] = static_cast<std::uint8_t>((air_[ghost] | air_[inside]) & (fraction[ghost] > 0));
+        });
+        spread(marks, rows);
+        list(rows);
+    }
+
+    bool holds(Offset cell) const noexcept { return band_[cell] != 0; }
+    const std::uint8_t* data() const noexcept { return band_.data(); }
+    /// Offsets of its cells, in order, and their numbers along the vertical axis.
+    std::span<const Index> cells() const noexcept { return cell_; }
+    std::span<const Index> levels() const noexcept { return level_; }
+    /// Whether air is in the cell.
+    bool airy(Offset cell) const noexcept { return air_[cell] != 0; }
+
+private:
+    void for_each_inflow_cell(const Sides<Dim>& sides, auto&& body) const {
+        for (int a = 0; a < Dim; ++a)
+            for (const int end : {0, 1}) {
+                if (sides[a][end] != Side::inflow) continue;
+                CellNumber<Dim> cell{};
+                const int n = layout_.cells[static_cast<std::size_t>(a)];
+                walk<0>(cell, a, end == 0 ? -1 : n, end == 0 ? 0 : n - 1, body);
+            }
+    }
+    template <int Axis>
+    void walk(CellNumber<Dim>& cell, int axis, int ghost, int inside, auto& body) const {
+        if constexpr (Axis == Dim) {
+            const auto a = static_cast<std::size_t>(axis);
+            cell[a] = ghost;
+            const Offset beyond = layout_.at(cell);
+            cell[a] = inside;
+            body(beyond, layout_.at(cell));
+        } else if (Axis == axis) {
+            walk<Axis + 1>(cell, axis, ghost, inside, body);
+        } else {
+            for (int i = 0; i < layout_.cells[Axis]; ++i) {
+                cell[Axis] = i;
+                walk<Axis + 1>(cell, axis, ghost, inside, body);
+            }
+        }
+    }
+
+    void spread(const Field<std::uint8_t>& marks, const WetRows<Dim>& rows) noexcept {
+        constexpr int around = Dim == 3 ? 9 : 3;
+        std::array<Offset, around> step;
+        for (int k = 0; k < around; ++k)
+            step[static_cast<std::size_t>(k)] = (k % 3 - 1) * layout_.stride[Layout<Dim>::outer] +
+                                                (Dim == 3 ? (k / 3 - 1) * layout_.stride[Dim - 1] : 0);
+        rows.for_each_row([&](int plane, int r, const RowRange& range) {
+            const Offset start = layout_.row_start(plane, r);
+            const std::uint8_t* edge = edge_.data();
+            for (Offset c = start + range.begin; c < start + range.end; ++c) {
+                unsigned near = 0;
+                for (const Offset s : step)
+                    near |= static_cast<unsigned>(edge[c + s - 1] | edge[c + s] | edge[c + s + 1]);
+                band_[c] = static_cast<std::uint8_t>(near & ((marks[c] & cell_mark::open) != 0));
+            }
+        });
+    }
+
+    void list(const WetRows<Dim>& rows) {
+        std::vector<Index> first(static_cast<std::size_t>(layout_.planes()) + 1, 0);
+        rows.for_each_row([&](int plane, int r, const RowRange& range) {
+            const std::uint8_t* band = band_.data() + layout_.row_start(plane, r);
+            Index count = 0;
+            for (int i = range.begin; i < range.end; ++i) count += band[i];
+            first[static_cast<std::size_t>(plane) + 1] += count;
+        });
+        for (std::size_t p = 1; p < first.size(); ++p) first[p] += first[p - 1];
+        cell_.resize(static_cast<std::size_t>(first.back()));
+        level_.resize(cell_.size());
+        rows.for_each_row([&](int plane, int r, const RowRange& range) {
+            const Offset start = layout_.row_start(plane, r);
+            const std::uint8_t* band = band_.data() + start;
+            auto next = static_cast<std::size_t>(first[static_cast<std::size_t>(plane)]);
+            for (int i = range.begin; i < range.end; ++i) {
+                // Most of a row is not in the band: eight cells at a glance.
+                std::uint64_t eight = 0;
+                if (i + 8 <= range.end && (std::memcpy(&eight, band + i, 8), eight == 0)) {
+                    i += 7;
+                    continue;
+                }
+                if (band[i] == 0) continue;
+                cell_[next] = static_cast<Index>(start + i);
+                level_[next++] = Dim == 3 ? r : i;
+            }
+            first[static_cast<std::size_t>(plane)] = static_cast<Index>(next);
+        });
+    }
+
+    Layout<Dim> layout_{};
+    Field<std::uint8_t> air_, edge_, band_;
+    WetRows<Dim> searched_;
+    std::vector<Index> cell_, level_;
+};
+
+}  // namespace abrade

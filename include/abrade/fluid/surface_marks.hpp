@@ -1,0 +1,81 @@
+#pragma once
+// What is known of each cell before anything flows: see cell_mark.
+
+#include <abrade/fluid/side_ghosts.hpp>
+#include <abrade/fluid/surface_planes.hpp>
+
+namespace abrade {
+
+/// Below this share of a cell [-] walls leave no room for liquid.
+inline constexpr Real smallest_open_volume = 1e-6;
+
+namespace detail {
+
+/// A cell is regular where it and the three before and behind it along every axis, diagonals included, are.
+template <int Dim>
+void mark_regular(Field<std::uint8_t>& marks, const Grid<Dim>& grid) {
+    constexpr int reach = 3;
+    const Layout<Dim>& layout = grid.layout();
+    Field<std::uint8_t> now(layout.total, 0), next(layout.total, 0);
+    grid.for_each([&](const CellNumber<Dim>&, Offset c) { now[c] = marks[c] & cell_mark::whole; });
+    for (int a = 0; a < Dim; ++a) {
+        const auto axis = static_cast<std::size_t>(a);
+        const Offset step = layout.stride[axis];
+        next.fill(0);
+        grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
+            if (cell[axis] < reach || cell[axis] >= layout.cells[axis] - reach) return;
+            std::uint8_t all = 1;
+            for (int k = -reach; k <= reach; ++k) all = static_cast<std::uint8_t>(all & now[c + k * step]);
+            next[c] = all;
+        });
+        std::swap(now, next);
+    }
+    grid.for_each([&](const CellNumber<Dim>&, Offset c) {
+        if (now[c] != 0) marks[c] = static_cast<std::uint8_t>(marks[c] | cell_mark::regular);
+    });
+}
+
+}  // namespace detail
+
+/// Marks of all cells; `open_volumes` [-] are the shares that walls leave, none: all open.
+template <int Dim>
+Field<std::uint8_t> surface_marks(const Grid<Dim>& grid, const Sides<Dim>& sides,
+                                  const Field<Real>* open_volumes) {
+    const Layout<Dim>& layout = grid.layout();
+    Field<std::uint8_t> marks(layout.total, 0);
+    const auto of = [&](Offset c) {
+        const Real share = open_volumes ? (*open_volumes)[c] : 1;
+        return static_cast<std::uint8_t>((share > smallest_open_volume ? cell_mark::open : 0) |
+                                         (share > 1 - 1e-9 ? cell_mark::whole : 0));
+    };
+    grid.for_each(
+        [&](const CellNumber<Dim>& cell, Offset c) {
+            int beyond = 0;
+            bool given = true;  // by an inflow
+            for (int a = 0; a < Dim; ++a) {
+                const int i = cell[static_cast<std::size_t>(a)];
+                const int end = i < 0 ? 0 : i >= grid.cells(a) ? 1 : -1;
+                if (end < 0) continue;
+                ++beyond;
+                given = given && sides[a][static_cast<std::size_t>(end)] == Side::inflow;
+            }
+            if (beyond == 0)
+                marks[c] = static_cast<std::uint8_t>(of(c) | cell_mark::inside);
+            else if (given)
+                marks[c] = of(c);
+        },
+        Layout<Dim>::ghosts);
+    detail::mark_regular(marks, grid);
+    // Ghosts beyond periodic ends are what they are copies of, but for their place.
+    Field<std::uint8_t> copies = marks;
+    fill_periodic(copies, layout, sides);
+    grid.for_each(
+        [&](const CellNumber<Dim>&, Offset c) {
+            if ((marks[c] & cell_mark::inside) == 0)
+                marks[c] = static_cast<std::uint8_t>(copies[c] & ~(cell_mark::inside | cell_mark::regular));
+        },
+        Layout<Dim>::ghosts);
+    return marks;
+}
+
+}  // namespace abrade

@@ -1,0 +1,209 @@
+#pragma once
+// The normal of the surface in each cell that it cuts.
+
+#include <abrade/core/parallel.hpp>
+#include <abrade/fluid/volume_fit.hpp>
+
+namespace abrade {
+
+/// Reconstruction of the surface by planes. Exact for a planar surface of any tilt, beside sides and walls
+/// too.
+///
+/// Away from them: height functions. The liquid of a column of up to 7 cells along the axis that lies nearest
+/// to the normal is its height S; with complete columns (full at one end, dry at the other) on both sides
+///   dS/dt = [S(t + 1) - S(t - 1)] / 2,
+/// which is second order, and exact where the surface is a plane. Where a column is not complete, and beside
+/// sides and walls, `VolumeFit` takes over.
+template <int Dim>
+class SurfaceNormals {
+public:
+    SurfaceNormals() = default;
+    SurfaceNormals(const Layout<Dim>& layout, const CellSizes<Dim>& sizes)
+        : layout_(layout), sizes_(sizes), stencil_(layout), fit_(layout, sizes) {}
+
+    /// Fills in normals, distances and positions of planes whose cells are set.
+    void find(SurfacePlanes<Dim>& planes, const Real* fraction, const std::uint8_t* marks) const {
+        parallel_blocks(planes.count(), [&](Index, Index first, Index last) {
+            Block block(*this, planes, fraction, marks);
+            block.sort(first, last);
+            for (int way = 0; way < 2 * Dim; ++way) block.heights(way);
+            block.fit();
+        });
+    }
+
+private:
+    using PackCells = detail::PackCells;
+    static constexpr int vertical = Grid<Dim>::vertical;
+    static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// Cells that are treated alike.
+    struct List {
+        std::array<Index, block_size> item;
+        int count = 0;
+        void add(Index i) noexcept { item[at(count++)] = i; }
+    };
+
+    /// A block of planes: small enough for its lists to stand in cache.
+    struct Block {
+        Block(const SurfaceNormals& owner, SurfacePlanes<Dim>& all, const Real* f, const std::uint8_t* m)
+            : self(owner), planes(all), fraction(f), marks(m) {}
+
+        const SurfaceNormals& self;
+        SurfacePlanes<Dim>& planes;
+        const Real* fraction;
+        const std::uint8_t* marks;
+        std::array<List, 2 * Dim> ways{};  ///< 2 axis + (air above)
+        List rest{};
+
+        /// A pack of a list, its last item repeated.
+        static std::array<Index, pack_lanes> items(const List& list, int first) noexcept {
+            std::array<Index, pack_lanes> result;
+            for (int lane = 0; lane < pack_lanes; ++lane)
+                result[at(lane)] = list.item[at(std::min(first + lane, list.count - 1))];
+            return result;
+        }
+        PackCells cells(const std::array<Index, pack_lanes>& item) const noexcept {
+            PackCells result;
+            for (std::size_t lane = 0; lane < result.size(); ++lane)
+                result[lane] = planes.cell[static_cast<std::size_t>(item[lane])];
+            return result;
+        }
+        PackCells levels(const std::array<Index, pack_lanes>& item) const noexcept {
+            PackCells result;
+            for (std::size_t lane = 0; lane < result.size(); ++lane)
+                result[lane] = planes.level[static_cast<std::size_t>(item[lane])];
+            return result;
+        }
+
+        void keep(const std::array<Index, pack_lanes>& item, int lanes, const std::array<Pack, Dim>& normal,
+                  const Pack& distance) noexcept {
+            for (int lane = 0; lane < lanes; ++lane) {
+                const auto i = static_cast<std::size_t>(item[at(lane)]);
+                for (std::size_t a = 0; a < Dim; ++a) planes.normal[a][i] = normal[a][lane];
+                planes.distance[i] = planes.position[i] = distance[lane];
+            }
+        }
+
+        /// Which axis lies nearest to the normal, and on which side the air is.
+        void sort(Index first, Index last) noexcept {
+            List regular;
+            for (Index i = first; i < last; ++i)
+                (marks[planes.cell[static_cast<std::size_t>(i)]] & cell_mark::regular ? regular : rest)
+                    .add(i);
+            for (int i = 0; i < regular.count; i += pack_lanes) {
+                const auto item = items(regular, i);
+                const PackCells cell = cells(item);
+                std::array<Pack, Dim> g;
+                g.fill(Pack(0));
+                constexpr int size = detail::Stencil<Dim>::size;
+                for (int k = 0; k < size; ++k) {
+                    if (k == detail::Stencil<Dim>::own) continue;
+                    const Pack f = detail::gather(fraction, cell, self.stencil_.step[at(k)]);
+                    for (int a = 0; a < Dim; ++a)
+                        if (const int side = detail::Stencil<Dim>::along(a, k); side != 0)
+                            g[at(a)] = side > 0 ? g[at(a)] + f : g[at(a)] - f;
+                }
+                for (int lane = 0; lane < std::min(pack_lanes, regular.count - i); ++lane) {
+                    int axis = vertical;  // where all are alike
+                    for (int a = 0; a < Dim; ++a)
+                        if (std::abs(g[at(a)][lane]) > std::abs(g[at(axis)][lane])) axis = a;
+                    ways[at(2 * axis + (g[at(axis)][lane] <= 0))].add(item[at(lane)]);
+                }
+            }
+        }
+
+        struct Column {
+            Pack amount;
+            PackMask complete;
+        };
+
+        /// Liquid of the columns that stand `step` aside. `air` leads one cell towards the air. Cells that
+        /// are nearly full or dry end a column but count as they are: a plane that cuts off less than a
+        /// thousandth of a cell cuts no cell beyond it.
+        Column column(const PackCells& cell, Offset step, Offset air, const std::array<Pack, 7>& height,
+                      bool stretched) const noexcept {
+            const Pack dry = Pack(1e-3), full = Pack(1 - 1e-3);
+            const Pack own = detail::gather(fraction, cell, step);
+            Pack amount = own;
+            PackMask to_air = own > dry, to_liquid = own < full;
+            for (int k = 1; k <= 3; ++k) {
+                if (any(to_air)) {
+                    const Pack f = detail::gather(fraction, cell, step + k * air);
+                    const Pack part = stretched ? f * height[at(3 + k)] : f;
+                    amount += select(to_air, part, Pack(0));
+                    to_air = to_air & (f > dry);
+                }
+                if (any(to_liquid)) {
+                    const Pack f = detail::gather(fraction, cell, step - k * air);
+                    const Pack whole = stretched ? height[at(3 - k)] : Pack(1);
+                    amount += select(to_liquid, f * whole, whole);
+                    to_liquid = to_liquid & (f < full);
+                } else {
+                    amount += stretched ? height[at(3 - k)] : Pack(1);
+                }
+            }
+            return {amount, !(to_air | to_liquid)};
+        }
+
+        void heights(int way) noexcept {
+            const int axis = way / 2;
+            const Real out = way % 2 == 0 ? -1 : 1;  // where the air is
+            const Offset air = (way % 2 == 0 ? -1 : 1) * self.layout_.stride[at(axis)];
+            const bool stretched = !self.sizes_.uniform();
+            const List& list = ways[at(way)];
+            for (int i = 0; i < list.count; i += pack_lanes) {
+                const auto item = items(list, i);
+                const PackCells cell = cells(item);
+                std::array<Pack, 7> height;
+                std::array<Pack, 2> gap{Pack(1), Pack(1)};  // to the levels below and above
+                height.fill(Pack(1));
+                if (stretched)
+                    for (int lane = 0; lane < pack_lanes; ++lane) {
+                        const Index level = planes.level[static_cast<std::size_t>(item[at(lane)])];
+                        const Real own = self.sizes_.edge(vertical, level);
+                        for (int k = -3; k <= 3 && axis == vertical; ++k)
+                            height[at(3 + k)].set(
+                                lane, self.sizes_.edge(vertical, level + (out > 0 ? k : -k)) / own);
+                        gap[0].set(lane, self.sizes_.gap(level) / own);
+                        gap[1].set(lane, self.sizes_.gap(level + 1) / own);
+                    }
+                const bool weighed = stretched && axis == vertical;
+                std::array<Pack, Dim> normal;
+                normal[at(axis)] = Pack(out);
+                PackMask complete = Pack(0) < Pack(1);
+                for (int t = 0; t < Dim; ++t) {
+                    if (t == axis) continue;
+                    const Offset step = self.layout_.stride[at(t)];
+                    const Column low = column(cell, -step, air, height, weighed);
+                    const Column high = column(cell, step, air, height, weighed);
+                    complete = complete & low.complete & high.complete;
+                    const Pack apart = t == vertical ? gap[0] + gap[1] : Pack(2);
+                    normal[at(t)] = (low.amount - high.amount) / apart;
+                }
+                const Pack distance = plane_distance<Dim>(normal, detail::gather(fraction, cell));
+                const int lanes = std::min(pack_lanes, list.count - i);
+                keep(item, lanes, normal, distance);
+                const unsigned found = lanes_of(complete);
+                for (int lane = 0; lane < lanes; ++lane)
+                    if ((found >> lane & 1) == 0) rest.add(item[at(lane)]);
+            }
+        }
+
+        void fit() noexcept {
+            for (int i = 0; i < rest.count; i += pack_lanes) {
+                const auto item = items(rest, i);
+                const PackCells cell = cells(item);
+                const auto normal = self.fit_.normals(fraction, marks, cell_mark::whole, cell, levels(item));
+                keep(item, std::min(pack_lanes, rest.count - i), normal,
+                     plane_distance<Dim>(normal, detail::gather(fraction, cell)));
+            }
+        }
+    };
+
+    Layout<Dim> layout_{};
+    CellSizes<Dim> sizes_{};
+    detail::Stencil<Dim> stencil_{};
+    VolumeFit<Dim> fit_{};
+};
+
+}  // namespace abrade

@@ -1,0 +1,81 @@
+#pragma once
+// The planes that stand for the liquid's surface, and what cells they may be told from.
+
+#include <abrade/core/simd.hpp>
+#include <abrade/fluid/cut_cell.hpp>
+#include <abrade/fluid/grid.hpp>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace abrade {
+
+/// What is known of a cell before anything flows.
+namespace cell_mark {
+inline constexpr std::uint8_t whole = 1;    ///< not cut: its fraction tells of a plane in the full cell
+inline constexpr std::uint8_t regular = 2;  ///< all cells within 3 of it are whole
+inline constexpr std::uint8_t open = 4;     ///< fluid may be in it
+inline constexpr std::uint8_t inside = 8;   ///< no ghost
+}  // namespace cell_mark
+
+/// Planes of the cells that are neither full nor dry, in order of the cells in memory.
+template <int Dim>
+struct SurfacePlanes {
+    std::vector<Index> cell{};                    ///< offset in memory
+    std::vector<Index> level{};                   ///< number along the vertical axis
+    std::array<std::vector<Real>, Dim> normal{};  ///< in units of the cell, from liquid to air
+    std::vector<Real> distance{};                 ///< of the plane that holds the cell's volume
+    std::vector<Real> position{};                 ///< of the surface; another one in cells cut by walls
+
+    Index count() const noexcept { return static_cast<Index>(cell.size()); }
+    void resize(std::size_t planes) {
+        cell.resize(planes);
+        level.resize(planes);
+        for (auto& component : normal) component.resize(planes);
+        distance.resize(planes);
+        position.resize(planes);
+    }
+    CellPlane<Dim> plane(Index i) const noexcept {
+        const auto k = static_cast<std::size_t>(i);
+        CellPlane<Dim> result{{}, distance[k]};
+        for (std::size_t a = 0; a < Dim; ++a) result.normal[a] = normal[a][k];
+        return result;
+    }
+};
+
+namespace detail {
+
+using PackCells = std::array<Index, pack_lanes>;
+
+/// Values of the cells that stand `step` from those of a pack.
+template <class Number>
+Pack gather(const Number* values, const PackCells& cells, Offset step = 0) noexcept {
+    return [&]<std::size_t... L>(std::index_sequence<L...>) {
+        return Pack(Pack::Native{static_cast<Real>(values[cells[L] + step])...});
+    }
+    (std::make_index_sequence<pack_lanes>{});
+}
+
+/// The 3^Dim cells around one: steps in memory and along the axes; the cell itself is number `own`.
+template <int Dim>
+struct Stencil {
+    static constexpr int size = Dim == 3 ? 27 : 9, own = size / 2;
+    std::array<Offset, size> step{};
+
+    Stencil() = default;
+    explicit Stencil(const Layout<Dim>& layout) {
+        for (int k = 0; k < size; ++k)
+            for (int a = 0; a < Dim; ++a)
+                step[static_cast<std::size_t>(k)] += along(a, k) * layout.stride[static_cast<std::size_t>(a)];
+    }
+    /// -1, 0 or 1.
+    static constexpr int along(int axis, int k) noexcept {
+        constexpr std::array<int, 3> power{1, 3, 9};
+        return k / power[static_cast<std::size_t>(axis)] % 3 - 1;
+    }
+};
+
+}  // namespace detail
+}  // namespace abrade

@@ -1,0 +1,359 @@
+#pragma once
+// How VolumeOfFluid carries liquid: the bulk, the sweeps of the band, and what found no room.
+
+#include <abrade/fluid/volume_of_fluid.hpp>
+
+#include <limits>
+
+namespace abrade {
+
+/// Rows at an inflow count as active where water stands beyond.
+template <int Dim>
+void VolumeOfFluid<Dim>::include_inflows() {
+    const int planes = layout_.planes(), rows = layout_.rows_per_plane(), n = layout_.row_length();
+    for (int a = 0; a < Dim; ++a)
+        for (const int end : {0, 1}) {
+            if (sides_[a][index(end)] != Side::inflow) continue;
+            for (int p = 0; p < planes; ++p)
+                for (int r = 0; r < rows; ++r) {
+                    if (a == Layout<Dim>::outer && p != (end == 0 ? 0 : planes - 1)) continue;
+                    if (Dim == 3 && a == Dim - 1 && r != (end == 0 ? 0 : rows - 1)) continue;
+                    const Real* own = fraction_.data() + layout_.row_start(p, r);
+                    RowRange wet{};
+                    if (a == inner) {
+                        if (own[end == 0 ? -1 : n] > 0) wet = end == 0 ? RowRange{0, 2} : RowRange{n - 2, n};
+                    } else {
+                        const Real* given = own + (end == 0 ? -1 : 1) * layout_.stride[index(a)];
+                        for (int i = 0; i < n; ++i)
+                            if (given[i] > 0) wet = hull(wet, {i - 1, i + 2});
+                    }
+                    wet = {std::max(wet.begin, 0), std::min(wet.end, n)};
+                    active_.row(p, r) = hull(active_.row(p, r), wet);
+                }
+        }
+}
+
+/// Planes of all cells of the band that are neither full nor dry.
+template <int Dim>
+void VolumeOfFluid<Dim>::reconstruct() {
+    for (const Index c : planes_.cell) plane_of_[c] = -1;
+    const auto cells = band_.cells();
+    const auto levels = band_.levels();
+    const auto count = static_cast<Index>(cells.size());
+    const auto cut = [&](Index c) { return fraction_[c] > wisp && fraction_[c] < 1 - wisp; };
+    std::vector<Index> first(static_cast<std::size_t>(block_count(count)) + 1, 0);
+    parallel_blocks(count, [&](Index block, Index begin, Index end) {
+        Index number = 0;
+        for (Index i = begin; i < end; ++i) number += cut(cells[static_cast<std::size_t>(i)]);
+        first[static_cast<std::size_t>(block) + 1] = number;
+    });
+    for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
+    planes_.resize(static_cast<std::size_t>(first.back()));
+    parallel_blocks(count, [&](Index block, Index begin, Index end) {
+        Index next = first[static_cast<std::size_t>(block)];
+        for (Index i = begin; i < end; ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            if (!cut(cells[k])) continue;
+            planes_.cell[static_cast<std::size_t>(next)] = cells[k];
+            planes_.level[static_cast<std::size_t>(next)] = levels[k];
+            plane_of_[cells[k]] = next++;
+        }
+    });
+    normals_.find(planes_, fraction_.data(), marks_.data());
+}
+
+/// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
+/// band; and what divergence leaves in the bulk.
+template <int Dim>
+void VolumeOfFluid<Dim>::carry_bulk() {
+    const int rows = layout_.rows_per_plane(), planes = layout_.planes(), n = layout_.row_length();
+    const Real* f = fraction_.data();
+    const auto through = [&](int axis, Offset start, int begin, int end, Index level) {
+        const Real* u = (*velocity_)[index(axis)].data() + start;
+        const Real* open = open_faces_ ? (*open_faces_)[index(axis)].data() + start : nullptr;
+        const Real* area = areas_[index(axis)].data() + Layout<Dim>::ghosts + (Dim == 3 ? level : 0);
+        const Real* up = f + start;
+        const Real* low = up - layout_.stride[index(axis)];
+        Real* out = moved_[index(axis)].data() + start;
+        const Real dt = dt_;
+#if defined(_OPENMP)
+#pragma omp simd
+#endif
+        for (int i = begin; i < end; ++i) {
+            Real volume = u[i] * (dt * area[Dim == 3 ? 0 : i]);
+            if (open) volume *= open[i];
+            const Real donor = u[i] > 0 ? low[i] : up[i];
+            out[i] = donor > 0 ? volume * donor : 0;
+        }
+    };
+    touched_.for_each_row([&](int p, int r, const RowRange& range) {
+        const Offset start = layout_.row_start(p, r);
+        for (int a = 0; a < Dim; ++a) through(a, start, range.begin, range.end, r);
+        // The upper sides' faces belong to ghosts.
+        if (range.end == n) through(inner, start, n, n + 1, r);
+        if (p == planes - 1) through(0, start + layout_.stride[0], range.begin, range.end, r);
+        if (Dim == 3 && r == rows - 1)
+            through(Dim - 1, start + layout_.stride[Dim - 1], range.begin, range.end, r);
+
+        Real* surplus = surplus_.data() + start;
+        const Real* own = f + start;
+        const std::uint8_t* band = band_.data() + start;
+        std::array<const Real*, Dim> u, area, open{};
+        for (std::size_t a = 0; a < Dim; ++a) {
+            u[a] = (*velocity_)[a].data() + start;
+            area[a] = areas_[a].data() + Layout<Dim>::ghosts + (Dim == 3 ? r : 0);
+            if (open_faces_) open[a] = (*open_faces_)[a].data() + start;
+        }
+        const Real* per_volume = per_volume_.data() + Layout<Dim>::ghosts + (Dim == 3 ? r : 0);
+        const Real* room = open_volumes_ ? open_volumes_->data() + start : nullptr;
+        const Real dt = dt_;
+#if defined(_OPENMP)
+#pragma omp simd
+#endif
+        for (int i = range.begin; i < range.end; ++i) {
+            const int k = Dim == 3 ? 0 : i;
+            Real out = 0;
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const Offset s = layout_.stride[a];
+                if (open_faces_)
+                    out += (u[a][i + s] * open[a][i + s] - u[a][i] * open[a][i]) * area[a][k];
+                else
+                    out += (u[a][i + s] - u[a][i]) * area[a][k];
+            }
+            const bool full = (band[i] == 0) & (own[i] == 1);
+            Real lost = dt * out * per_volume[k];
+            if (room) lost /= room[i];
+            surplus[i] -= full ? lost : 0;
+        }
+    });
+}
+
+template <int Dim>
+void VolumeOfFluid<Dim>::sweep(int number) {
+    const auto cells = band_.cells();
+    const auto levels = band_.levels();
+    const auto count = static_cast<Index>(cells.size());
+    // All orders in turn; in 2-D two, in 3-D six.
+    const auto axis_of = [&](int n) {
+        const int turn = static_cast<int>(steps_ % Dim), way = static_cast<int>(steps_ / Dim % 2);
+        return (Dim == 3 && way == 1 ? 2 * Dim - n + turn : n + turn) % Dim;
+    };
+    const int axis = axis_of(number);
+    if (number == 0) {
+        filled_.resize(cells.size());
+        parallel_for(count, [&](Index i) {
+            const auto k = static_cast<std::size_t>(i);
+            filled_[k] = fraction_[cells[k]] > 0.5;
+        });
+    } else {
+        reconstruct();
+        fluxes_of_band(axis);
+    }
+    fluxes_of_planes(axis);
+    join_periodic(axis);
+
+    const auto dilatation = [&](int a, Offset c, Index level) {
+        return swept(a, c + layout_.stride[index(a)], level) - swept(a, c, level);
+    };
+    const auto& moved = moved_[index(axis)];
+    const bool last = number == Dim - 1;
+    parallel_for(count, [&](Index i) {
+        const auto k = static_cast<std::size_t>(i);
+        const Offset c = cells[k];
+        const Index level = levels[k];
+        Real added = 0;
+        if (filled_[k]) {
+            if (!last)
+                added = dilatation(axis, c, level);
+            else
+                for (int n = 0; n < number; ++n) added -= dilatation(axis_of(n), c, level);
+        }
+        const Real left = (moved[c + layout_.stride[index(axis)]] - moved[c]) - added;
+        fraction_[c] -= left / open_volume(c, level);
+    });
+    if (!last) fill_periodic(fraction_, layout_, sides_);
+}
+
+/// Faces whose donor is full or dry, or a ghost: what is swept times its fraction.
+template <int Dim>
+void VolumeOfFluid<Dim>::fluxes_of_band(int axis) {
+    const auto cells = band_.cells();
+    const auto levels = band_.levels();
+    const Offset step = layout_.stride[index(axis)];
+    auto& moved = moved_[index(axis)];
+    const auto& u = (*velocity_)[index(axis)];
+    const auto one = [&](Offset face, Index level) {
+        const Real f = fraction_[u[face] > 0 ? face - step : face];
+        moved[face] = f < wisp ? 0 : swept(axis, face, level) * (f > 1 - wisp ? 1 : f);
+    };
+    parallel_for(static_cast<Index>(cells.size()), [&](Index i) {
+        const auto k = static_cast<std::size_t>(i);
+        const Offset c = cells[k];
+        one(c, levels[k]);
+        if (!band_.holds(c + step)) one(c + step, levels[k]);
+    });
+}
+
+/// Faces through which cells that the surface cuts give liquid.
+template <int Dim>
+void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
+    const Offset step = layout_.stride[index(axis)];
+    const auto& u = (*velocity_)[index(axis)];
+    auto& moved = moved_[index(axis)];
+    parallel_blocks(planes_.count(), [&](Index, Index first, Index last) {
+        for (Index i = first; i < last; i += pack_lanes) {
+            const int lanes = std::min<int>(pack_lanes, last - i);
+            std::array<Index, pack_lanes> item;
+            for (int l = 0; l < pack_lanes; ++l) item[index(l)] = i + std::min(l, lanes - 1);
+            CellPlane<Dim, Pack> plane;
+            for (std::size_t a = 0; a < Dim; ++a)
+                plane.normal[a] = detail::gather(planes_.normal[a].data(), item);
+            plane.distance = detail::gather(planes_.distance.data(), item);
+            Pack up{}, down{}, room{};
+            for (int l = 0; l < pack_lanes; ++l) {
+                const auto k = static_cast<std::size_t>(item[index(l)]);
+                const Offset c = planes_.cell[k];
+                const Index level = planes_.level[k];
+                up.set(l, u[c + step] > 0 ? swept(axis, c + step, level) : 0);
+                down.set(l, u[c] < 0 ? -swept(axis, c, level) : 0);
+                room.set(l, open_volume(c, level));
+            }
+            const auto given = [&](Pack volume, Pack side) {
+                return volume * slab_fraction(plane, axis, side, min(volume / room, Pack(1)));
+            };
+            // Most cells give through one face, so both are seldom looked at.
+            const PackMask through_upper = up > Pack(0);
+            const Pack once =
+                given(select(through_upper, up, down), select(through_upper, Pack(1), Pack(-1)));
+            Pack again{};
+            const bool both = any(through_upper & (down > Pack(0)));
+            if (both) again = given(down, Pack(-1));
+            for (int l = 0; l < lanes; ++l) {
+                const Offset c = planes_.cell[static_cast<std::size_t>(item[index(l)])];
+                if (up[l] > 0) moved[c + step] = once[l];
+                if (u[c] < 0) moved[c] = up[l] > 0 ? -again[l] : -once[l];
+            }
+        }
+    });
+}
+
+/// The first and the last face of a periodic axis are one: what its donor found holds for both.
+template <int Dim>
+void VolumeOfFluid<Dim>::join_periodic(int axis) {
+    if (!sides_.periodic(axis)) return;
+    const auto& u = (*velocity_)[index(axis)];
+    auto& moved = moved_[index(axis)];
+    const Offset length = layout_.cells[index(axis)] * layout_.stride[index(axis)];
+    const auto join = [&](Offset face) {
+        (u[face] > 0 ? moved[face] : moved[face + length]) = moved[u[face] > 0 ? face + length : face];
+    };
+    active_.for_each_row([&](int p, int r, const RowRange& range) {
+        const Offset start = layout_.row_start(p, r);
+        if (axis == inner) {
+            if (range.begin == 0) join(start);
+        } else if (axis == Layout<Dim>::outer ? p == 0 : r == 0) {
+            for (int i = range.begin; i < range.end; ++i) join(start + i);
+        }
+    });
+}
+
+/// Gives liquid (or, below 0, the lack of it) to the neighbours of a cell; answers what they could not take.
+template <int Dim>
+Real VolumeOfFluid<Dim>::share_out(Offset c, Index level, Real amount) {
+    struct Way {
+        int axis;
+        Offset cell, face, twin;  ///< twin: the same face at the other end of a periodic axis, or none
+        Real sign, room;
+        bool cut;
+        Index level;
+    };
+    std::array<Way, 2 * Dim> ways;
+    int count = 0;
+    for (int a = 0; a < Dim; ++a)
+        for (const int side : {-1, 1}) {
+            const Offset step = layout_.stride[index(a)], length = layout_.cells[index(a)] * step;
+            Way way{a, c + side * step, side > 0 ? c + step : c, -1, Real(side), 0, false, level};
+            if (a == vertical) way.level = level + side;
+            if ((marks_[way.cell] & cell_mark::inside) == 0) {
+                if (!sides_.periodic(a)) continue;
+                way.cell -= side * length;
+                way.twin = way.face - side * length;
+                if (a == vertical) way.level -= side * layout_.cells[index(a)];
+            }
+            if ((marks_[way.cell] & cell_mark::open) == 0) continue;
+            if (open_faces_ && (*open_faces_)[index(a)][way.face] <= 0) continue;
+            const Real f = fraction_[way.cell];
+            way.room = (amount > 0 ? 1 - f : f) * open_volume(way.cell, way.level);
+            way.cut = f > 0 && f < 1;
+            if (way.room > 0) ways[index(count++)] = way;
+        }
+    // First those that the surface cuts: water stays together.
+    for (const bool cut : {true, false}) {
+        Real room = 0;
+        for (int w = 0; w < count; ++w)
+            if (ways[index(w)].cut == cut) room += ways[index(w)].room;
+        if (!(room > 0)) continue;
+        const Real taken = std::clamp(amount, -room, room);
+        for (int w = 0; w < count; ++w) {
+            const Way& way = ways[index(w)];
+            if (way.cut != cut) continue;
+            const Real part = taken * (way.room / room);
+            moved_[index(way.axis)][way.face] += way.sign * part;
+            if (way.twin >= 0) moved_[index(way.axis)][way.twin] += way.sign * part;
+            set_cell(way.cell,
+                     fraction_[way.cell] + surplus_[way.cell] + part / open_volume(way.cell, way.level));
+        }
+        amount -= taken;
+        if (amount == 0) break;
+    }
+    return amount;
+}
+
+/// Brings the fractions of the band within their bounds.
+template <int Dim>
+void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
+    fill_periodic(fraction_, layout_, sides_);
+    const auto cells = band_.cells();
+    const auto levels = band_.levels();
+    const auto count = static_cast<Index>(cells.size());
+    constexpr Real full = 1 - SurfaceBand<Dim>::smallest_void;
+    bulk_.resize(cells.size());
+    parallel_for(count, [&](Index i) {
+        const auto k = static_cast<std::size_t>(i);
+        const Offset c = cells[k];
+        bool bulk = fraction_[c] >= full;
+        for (const Offset s : layout_.stride)
+            for (const Offset n : {c - s, c + s})
+                bulk = bulk && (fraction_[n] >= full || (marks_[n] & cell_mark::open) == 0);
+        bulk_[k] = bulk;
+    });
+    std::vector<std::vector<Index>> wrong(static_cast<std::size_t>(block_count(count)));
+    parallel_blocks(count, [&](Index block, Index first, Index last) {
+        for (Index i = first; i < last; ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            const Offset c = cells[k];
+            const Real liquid = fraction_[c] + surplus_[c];
+            if (bulk_[k]) {
+                fraction_[c] = 1;
+                surplus_[c] = liquid - 1;
+                continue;
+            }
+            set_cell(c, liquid);
+            if (std::abs(surplus_[c]) > wisp) wrong[static_cast<std::size_t>(block)].push_back(i);
+        }
+    });
+    // One after the other, in order: few, and the same for any number of threads.
+    for (const auto& block : wrong)
+        for (const Index i : block) {
+            const auto k = static_cast<std::size_t>(i);
+            const Offset c = cells[k];
+            const Real room = open_volume(c, levels[k]), amount = surplus_[c] * room;
+            if (std::abs(surplus_[c]) <= wisp) continue;  // a neighbour has evened it out
+            const Real left = share_out(c, levels[k], amount);
+            surplus_[c] = left / room;
+            step.moved_aside += std::abs(amount - left);
+            step.left_over += std::abs(surplus_[c]) > wisp;
+        }
+}
+
+}  // namespace abrade
