@@ -1,7 +1,12 @@
 #pragma once
-// What the engine asks of a fluid, and the null policy.
+// What the engine asks of a fluid: that it can be sampled, and of one that changes, that it goes on in time.
+// The null policy.
 
 #include <abrade/core/law.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
 
 namespace abrade {
 
@@ -13,14 +18,59 @@ struct FluidSample {
     Real viscosity = 0;            ///< dynamic [Pa s]
 };
 
+/// The longest step that is stable for a fluid as it stands [s], and what sets it.
+struct FluidStep {
+    Real seconds = std::numeric_limits<Real>::infinity();
+    std::string_view limit = "nothing flows";  ///< "CFL"
+    Index cell = -1;                           ///< that sets it, in the fluid's own count; -1: none
+
+    void lower(Real candidate, std::string_view reason, Index whose = -1) noexcept {
+        if (candidate < seconds) seconds = candidate, limit = reason, cell = whose;
+    }
+};
+
+/// A step of a fluid that went wrong. What throws it leaves the fluid as it was before that step, and says in
+/// its text where, how fast and why; a simulation raises it as RunError.
+struct FluidError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 /// A fluid that can be sampled: `sample(x, t)`, const, noexcept, callable from many threads.
-/// One-way fluids stop here. Fluids that feel the solids will refine this concept: solids in, loads out.
+///
+/// What stays as it is stops here. `AdvancingFluid` refines it. Fluids that feel the solids will refine that:
+/// solids in before `advance`, loads out after it.
 // clang-format off
 template <class F>
 concept FluidModel = Law<F> && requires(const F& fluid, const Vec3& x) {
     { fluid.sample(x, Real{}) } noexcept -> std::same_as<FluidSample>;
 };
+
+/// A fluid that changes in time, in steps of its own:
+/// - `time()`: where it is [s]. It may begin before 0, to be settled when the solids begin;
+/// - `stable_step()`: the longest step that it could take from here; infinite where nothing flows;
+/// - `advance(to_time)`: goes on to exactly that time, in as many steps as that takes; at once where it is there
+///   or beyond. Throws FluidError.
+/// Before solids take a step from t to t + dt the simulation brings the fluid to t + dt, or by a whole step of the
+/// fluid's where that leads beyond. `sample(x, t)` is then asked for times up to `time()`, no more than a step
+/// (the fluid's or the solids', whichever is longer) before it; answering with the state of `time()` is allowed: in
+/// that while no wave crosses a cell.
+template <class F>
+concept AdvancingFluid = FluidModel<F> && requires(F& fluid, const F& still) {
+    fluid.advance(Real{});
+    { still.time() } noexcept -> std::same_as<Real>;
+    { still.stable_step() } -> std::same_as<FluidStep>;
+};
 // clang-format on
+
+/// Brings a fluid that changes to `t`, or one whole step of its own further where that leads beyond `t`: a
+/// step of solids is often much shorter than the fluid's.
+template <AdvancingFluid F>
+void bring_fluid_to(F& fluid, Real t) {
+    const Real now = fluid.time();
+    if (now >= t) return;
+    const Real own = fluid.stable_step().seconds;
+    fluid.advance(own < std::numeric_limits<Real>::infinity() ? std::max(t, now + own) : t);
+}
 
 /// A vacuum.
 struct NoFluid {
@@ -38,5 +88,6 @@ struct NoFluid {
 
 static_assert(FluidModel<NoFluid>);
 static_assert(!FluidModel<NoParams>);
+static_assert(!AdvancingFluid<NoFluid>);
 
 }  // namespace abrade

@@ -14,6 +14,7 @@ struct Policies {
     static constexpr bool has_bonds = !std::same_as<B, NoBond>;
     static constexpr bool has_wear = !std::same_as<W, NoWear>;
     static constexpr bool has_fluid = !std::same_as<F, NoFluid>;
+    static constexpr bool fluid_advances = AdvancingFluid<F>;
 
     C contact;
     [[no_unique_address]] B bond;

@@ -39,7 +39,8 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
     });
     return out << "wall     " << short_text(sim.wall_seconds_) << " s: contacts " << percent(shares.contacts)
                << ", bonds " << percent(shares.bonds) << ", motion " << percent(shares.motion)
-               << ", neighbour lists " << percent(shares.renewal) << "\n";
+               << ", neighbour lists " << percent(shares.renewal)
+               << (shares.fluid > 0 ? ", fluid " + percent(shares.fluid) : "") << "\n";
 }
 
 }  // namespace abrade

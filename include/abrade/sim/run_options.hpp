@@ -16,7 +16,7 @@ struct RunError : std::runtime_error {
         : std::runtime_error(what), step(step_), time(time_), id(id_) {}
     Index step;  ///< in which it arose
     Real time;   ///< [s]
-    Index id;    ///< of the body
+    Index id;    ///< of the body; -1: it is the fluid
 };
 
 /// How far a run goes, in which steps, and when it is looked at.

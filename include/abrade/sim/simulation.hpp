@@ -139,20 +139,21 @@ public:
     }
     const Snapshot& last_good() const noexcept { return last_good_; }
 
-    /// Shares of wall time [-]: contacts with their wear; bonds; motion with what the fluid does; renewal of
-    /// lists.
+    /// Shares of wall time [-]: contacts with their wear; bonds; motion with what the fluid does to it;
+    /// renewal of lists; a fluid that changes.
     struct Shares {
-        Real contacts = 0, bonds = 0, motion = 0, renewal = 0;
+        Real contacts = 0, bonds = 0, motion = 0, renewal = 0, fluid = 0;
     };
     Shares wall_shares() const noexcept {
         if (!world_) return {};
         const StepSeconds step = world_->timed();
-        const Real renewal = world_->renewal_seconds();
+        const Real renewal = world_->renewal_seconds(), fluid = world_->fluid_seconds();
         // Timed steps stand for all; what is left of the wall time goes by their shares.
         const Real timed = step.contacts + step.bonds + step.motion;
         if (!(timed > 0 && wall_seconds_ > 0)) return {};
-        const Real share = std::max(0.0, wall_seconds_ - renewal) / timed / wall_seconds_;
-        return {share * step.contacts, share * step.bonds, share * step.motion, renewal / wall_seconds_};
+        const Real share = std::max(0.0, wall_seconds_ - renewal - fluid) / timed / wall_seconds_;
+        return {share * step.contacts, share * step.bonds, share * step.motion, renewal / wall_seconds_,
+                fluid / wall_seconds_};
     }
 
     template <class X, class Y, class Z, class U, class V>
@@ -162,7 +163,8 @@ public:
     const C& contact_law() const noexcept { return contact_; }
     const B& bond_law() const noexcept { return bond_; }
     const W& wear_law() const noexcept { return wear_; }
-    const F& fluid_model() const noexcept { return fluid_; }
+    /// As it stands now, where it changes.
+    const F& fluid_model() const noexcept { return world_ ? world_->state().policies.fluid : fluid_; }
     const D& drag_law() const noexcept { return drag_; }
 
 private:
@@ -306,6 +308,7 @@ private:
 
     /// Finds the forces at the start, and what is wrong with it.
     void open() {
+        advance_fluid(time_);  // one that begins earlier settles
         world_->open(time_);
         if (const Trouble trouble = world_->take_trouble(); trouble.cause == Trouble::Cause::overlap) {
             const TroubleText say(*world_, time_step_);
@@ -323,10 +326,19 @@ private:
 
     void do_step(Real t) {
         if (step_ - remembered_ >= steps_between_snapshots) remember();
+        advance_fluid(t + time_step_);
         world_->step(t, time_step_, step_ % steps_between_checks == 0);
         ++step_;
         time_ = t + time_step_;
         look_for_trouble();
+    }
+
+    void advance_fluid(Real t) {
+        try {
+            world_->advance_fluid(t);
+        } catch (const FluidError& error) {
+            raise(std::string(F::name) + ": " + error.what(), -1);
+        }
     }
 
     void look_for_trouble() {
@@ -336,10 +348,14 @@ private:
 
     [[noreturn]] void raise(const Trouble& trouble) {
         world_->publish_places();
-        throw RunError("step " + std::to_string(step_) + " (t = " + short_text(time_) + " s, dt = " +
-                           short_text(time_step_) + " s): " + TroubleText(*world_, time_step_).of(trouble) +
+        raise(TroubleText(*world_, time_step_).of(trouble),
+              particles().id[static_cast<std::size_t>(trouble.body)]);
+    }
+    [[noreturn]] void raise(const std::string& what, Index id) const {
+        throw RunError("step " + std::to_string(step_) + " (t = " + short_text(time_) +
+                           " s, dt = " + short_text(time_step_) + " s): " + what +
                            "; the last good state is that of t = " + short_text(last_good_.time) + " s",
-                       step_, time_, particles().id[static_cast<std::size_t>(trouble.body)]);
+                       step_, time_, id);
     }
 
     void balance() {

@@ -18,6 +18,16 @@ public:
 
     explicit World(State<P> state) : state_(std::move(state)) {}
 
+    /// A fluid that changes goes on to `t` or beyond; may throw FluidError. Here solids will go into it, and
+    /// loads come out.
+    void advance_fluid(Real t) {
+        if constexpr (P::fluid_advances) {
+            Stopwatch watch{state_.policies.fluid.time() < t};
+            bring_fluid_to(state_.policies.fluid, t);
+            watch.lap(fluid_seconds_);
+        }
+    }
+
     /// Lists and forces at the start, over no time; the ledger begins.
     void open(Real t) {
         now_ = t;
@@ -105,6 +115,7 @@ public:
     Real gauge_volume() const noexcept { return state_.gauge_volume; }  ///< solid, net downstream [m3]
     StepSeconds timed() const noexcept { return timed_; }
     Real renewal_seconds() const noexcept { return lists_.seconds(); }
+    Real fluid_seconds() const noexcept { return fluid_seconds_; }
 
     /// Calls `visit(body, other, contact, load)` for each contact that touches, as things were published
     /// last; `other` is negative for a wall. Dashpots act there with velocities half a step old.
@@ -353,6 +364,7 @@ private:
     bool too_deep_ = false;                        ///< some contact may be, as of the last evaluation
     Trouble trouble_;
     StepSeconds timed_;
+    Real fluid_seconds_ = 0;  ///< that a changing fluid took [s]
 };
 
 }  // namespace abrade

@@ -1,0 +1,189 @@
+#pragma once
+// Depth-averaged water, what happens at the ends of its grid: walls, inflow, outflow, periodic space.
+
+#include <abrade/fluid/shallow_water_grid.hpp>
+
+namespace abrade {
+
+/// What stands at one end of an axis.
+struct WaterSide {
+    enum class Kind { wall, inflow, outflow, periodic };
+    Kind kind = Kind::wall;
+    Real discharge = 0;  ///< of an inflow [m3/s]; in one dimension, per width [m2/s]
+    /// Of an inflow, above the lowest bed of that side [m]: for supercritical flow. 0: as high as the water
+    /// that stands before it, at least critical.
+    Real depth = 0;
+
+    static WaterSide wall() { return {}; }
+    static WaterSide inflow(Real discharge, Real depth = 0) { return {Kind::inflow, discharge, depth}; }
+    static WaterSide outflow() { return {Kind::outflow}; }
+    static WaterSide periodic() { return {Kind::periodic}; }
+};
+
+/// Both ends of each axis: {{x low, x high}, {y low, y high}}.
+template <int Dim>
+using WaterSides = std::array<std::array<WaterSide, 2>, Dim>;
+
+/// One end of one axis, of a grid: ghost cells beyond it, water that comes in, and what has passed.
+template <int Dim>
+class ShallowSide {
+public:
+    ShallowSide() = default;
+    ShallowSide(const WaterSide& side, const ShallowGrid<Dim>& grid, int axis, bool high)
+        : side_(side), axis_(axis), high_(high), count_(grid.count(1 - axis)),
+          length_(Dim == 2 ? grid.spacing(1 - axis) : 1), flux(static_cast<std::size_t>(count_), 0.0) {
+        if (!is_inflow()) return;
+        depth.assign(flux.size(), 0.0), speed = bed = interior = depth;
+    }
+
+    bool is_inflow() const noexcept { return side_.kind == WaterSide::Kind::inflow; }
+    bool is_periodic() const noexcept { return side_.kind == WaterSide::Kind::periodic; }
+    bool is_open() const noexcept { return is_inflow() || side_.kind == WaterSide::Kind::outflow; }
+    Index count() const noexcept { return count_; }
+    int axis() const noexcept { return axis_; }
+    bool high() const noexcept { return high_; }
+
+    /// Cell number `deep` inside (0 is the outermost; -1 and -2 are ghosts), `k` along the side.
+    std::size_t cell(const ShallowGrid<Dim>& grid, Index deep, Index k) const noexcept {
+        const Index n = high_ ? grid.count(axis_) - 1 - deep : deep;
+        return axis_ == 0 ? grid.at(n, k) : grid.at(k, n);
+    }
+    std::size_t face(const ShallowGrid<Dim>& grid, Index k) const noexcept {
+        const Index n = high_ ? grid.count(axis_) : 0;
+        return axis_ == 0 ? grid.at(n, k) : grid.at(k, n);
+    }
+    /// The first cells behind it.
+    CellBox first_cells(const ShallowGrid<Dim>& grid) const noexcept {
+        CellBox box = grid.all();
+        const auto a = static_cast<std::size_t>(axis_);
+        (high_ ? box.first : box.last)[a] =
+            high_ ? box.last[a] - ShallowGrid<Dim>::ghosts : ShallowGrid<Dim>::ghosts;
+        return box.within(grid.all());
+    }
+
+    /// Bed of the ghost cells: mirrored in a wall, repeated in periodic space, else carried on in a straight
+    /// line.
+    void extend_bed(const ShallowGrid<Dim>& grid, std::vector<Real>& column) const {
+        for (Index k = 0; k < count_; ++k)
+            for (Index g = 1; g <= ShallowGrid<Dim>::ghosts; ++g) {
+                const Real edge = column[cell(grid, 0, k)];
+                const Real inner = column[cell(grid, std::min<Index>(1, grid.count(axis_) - 1), k)];
+                column[cell(grid, -g, k)] =
+                    is_open() ? edge + g * (edge - inner) : column[source(grid, g, k)];
+            }
+    }
+
+    /// What an inflow with a depth of its own brings, or how high critical flow stands: once the bed is
+    /// known.
+    void settle(const ShallowGrid<Dim>& grid, const ShallowBed<Dim>& on, Real gravity) {
+        if (!is_inflow()) return;
+        Real lowest = std::numeric_limits<Real>::infinity();
+        for (Index k = 0; k < count_; ++k) {
+            bed[at(k)] = on.face[static_cast<std::size_t>(axis_)][face(grid, k)];
+            lowest = std::min(lowest, bed[at(k)]);
+        }
+        if (side_.depth > 0) {
+            set_level(lowest + side_.depth);
+            return;
+        }
+        Real low = lowest, high = lowest + 0.01;
+        while (!is_subcritical(high, gravity)) high = lowest + 2 * (high - lowest);
+        for (int n = 0; n < 100; ++n) {
+            const Real middle = 0.5 * (low + high);
+            (is_subcritical(middle, gravity) ? high : low) = middle;
+        }
+        critical_level_ = high;
+        set_level(high);
+    }
+
+    /// Ghost cells of a state, before its fluxes are taken.
+    void fill(const ShallowGrid<Dim>& grid, const ShallowBed<Dim>& on, ShallowState<Dim>& state) {
+        if (is_inflow() && side_.depth == 0) meet(grid, on, state);
+        const auto a = static_cast<std::size_t>(axis_);
+        const Real inwards = high_ ? -1 : 1;
+        for (Index k = 0; k < count_; ++k)
+            for (Index g = 1; g <= ShallowGrid<Dim>::ghosts; ++g) {
+                const std::size_t ghost = cell(grid, -g, k);
+                if (is_inflow()) {
+                    state.depth[ghost] = depth[at(k)];
+                    for (auto& column : state.speed) column[ghost] = 0;
+                    state.speed[a][ghost] = inwards * speed[at(k)];
+                    continue;
+                }
+                const std::size_t from = source(grid, g, k);
+                state.depth[ghost] = state.depth[from];
+                for (auto& column : state.speed) column[ghost] = column[from];
+                if (side_.kind == WaterSide::Kind::wall) state.speed[a][ghost] = -state.speed[a][from];
+            }
+    }
+
+    /// Of water that comes in: sum over axes of (u + sqrt(g h)) / spacing, the largest [1/s].
+    Real swiftest(Real spacing, Real other_spacing, Real gravity) const noexcept {
+        Real most = 0;
+        for (std::size_t k = 0; k < depth.size(); ++k) {
+            const Real c = std::sqrt(gravity * depth[k]);
+            most = std::max(most, (speed[k] + c) / spacing + (Dim == 2 ? c / other_spacing : 0));
+        }
+        return most;
+    }
+
+    /// Volume that comes in through it over a time of 1 s, as `flux` has it [m3/s].
+    Real rate() const noexcept {
+        Real sum = 0;
+        for (const Real one : flux) sum += one;
+        return (high_ ? -length_ : length_) * sum;
+    }
+
+private:
+    static std::size_t at(Index k) noexcept { return static_cast<std::size_t>(k); }
+
+    /// The cell whose state ghost `g` takes on.
+    std::size_t source(const ShallowGrid<Dim>& grid, Index g, Index k) const noexcept {
+        const Index last = grid.count(axis_) - 1;
+        if (is_periodic()) return cell(grid, std::max<Index>(last + 1 - g, 0), k);
+        return cell(grid, side_.kind == WaterSide::Kind::wall ? std::min(g - 1, last) : 0, k);
+    }
+
+    bool is_subcritical(Real level, Real gravity) const noexcept {
+        Real area = 0, width = 0;
+        for (const Real z : bed)
+            if (level > z) area += length_ * (level - z), width += length_;
+        return square(side_.discharge) * width <= gravity * cube(area);
+    }
+
+    /// Shares the discharge out by what each strip can carry, h^(5/3).
+    void set_level(Real level) {
+        Real carried = 0;
+        for (std::size_t k = 0; k < bed.size(); ++k) {
+            depth[k] = std::max(0.0, level - bed[k]);
+            speed[k] = std::cbrt(square(depth[k]));
+            carried += depth[k] * speed[k] * length_;
+        }
+        for (Real& one : speed) one *= side_.discharge / carried;
+    }
+
+    /// As high as the water that stands before it, at least critical.
+    void meet(const ShallowGrid<Dim>& grid, const ShallowBed<Dim>& on, const ShallowState<Dim>& state) {
+        Real weight = 0, level = 0;
+        for (Index k = 0; k < count_; ++k) {
+            const std::size_t first = cell(grid, 0, k);
+            const Real h = state.depth[first], share = h * std::cbrt(square(h));
+            weight += share, level += share * (h + on.cell[first]);
+        }
+        set_level(weight > 0 ? std::max(level / weight, critical_level_) : critical_level_);
+    }
+
+    WaterSide side_;
+    int axis_ = 0;
+    bool high_ = false;
+    Index count_ = 0;
+    Real length_ = 1;  ///< of a face [m]
+    Real critical_level_ = 0;
+    std::vector<Real> bed, interior;  ///< [m]
+
+public:
+    std::vector<Real> flux;          ///< along the axis, of volume, mean over a step's stages [m2/s]
+    std::vector<Real> depth, speed;  ///< of an inflow: [m], inwards [m/s]
+};
+
+}  // namespace abrade

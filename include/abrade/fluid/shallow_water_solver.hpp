@@ -1,0 +1,268 @@
+#pragma once
+// Depth-averaged water, the state and one step of it.
+
+#include <abrade/core/parallel.hpp>
+#include <abrade/fluid/fluid_model.hpp>
+#include <abrade/fluid/shallow_water_params.hpp>
+#include <abrade/fluid/shallow_water_sweep.hpp>
+
+namespace abrade {
+
+/// Cells, bed, state; steps that are taken whole or not at all.
+template <int Dim>
+class ShallowSolver {
+public:
+    explicit ShallowSolver(const ShallowWaterParams<Dim>& p)
+        : grid_(p.low, p.high, p.cells), forces_{.pressing = -p.gravity.z(),
+                                                 .along = {p.gravity.x(), p.gravity.y()},
+                                                 .gravity_manning2 = p.gravity.norm() * square(p.manning),
+                                                 .dry_depth = p.dry_depth,
+                                                 .fastest = p.fastest},
+          tiles_(grid_), friction_(p.manning > 0 ? grid_.size() : 0, 0.0) {
+        for (std::size_t a = 0; a < Dim; ++a)
+            for (std::size_t end = 0; end < 2; ++end)
+                sides_[a][end] = ShallowSide<Dim>(p.sides[a][end], grid_, static_cast<int>(a), end == 1);
+        lay_bed(p);
+        pour(p);
+    }
+
+    const ShallowGrid<Dim>& grid() const noexcept { return grid_; }
+    const std::vector<Real>& bed() const noexcept { return bed_.cell; }
+    const ShallowState<Dim>& state() const noexcept { return states_[current_]; }
+    Index steps() const noexcept { return steps_; }
+    Index steps_repeated() const noexcept { return repeated_; }
+    Real volume_at_start() const noexcept { return volume_at_start_; }
+    Real volume_in(int axis, bool high) const noexcept {
+        return volume_in_[static_cast<std::size_t>(axis)][high];
+    }
+    template <class Visit>
+    void each_cell(Visit&& visit) const {
+        for (Index j = 0; j < grid_.count(1); ++j)
+            for (Index i = 0; i < grid_.count(0); ++i) visit(i, j);
+    }
+    Real volume() const noexcept {
+        Real sum = 0;
+        for (Index j = 0; j < grid_.count(1); ++j) {
+            Real row = 0;
+            for (Index i = 0; i < grid_.count(0); ++i) row += state().depth[grid_.at(i, j)];
+            sum += row;
+        }
+        return sum * grid_.cell_size();
+    }
+    Index cells_worked_on() const noexcept {
+        Index cells = 0;
+        for (const Index t : tiles_.due) cells += tiles_.list[static_cast<std::size_t>(t)].due().cells();
+        return cells;
+    }
+
+    /// What `courant` allows, with the cell that sets it, counted row by row.
+    FluidStep stable_step(Real courant) const noexcept {
+        FluidStep step;
+        if (swiftest_ > 0) step.lower(courant / swiftest_, "CFL", swiftest_cell());
+        if (const Real inflow = inflow_swiftest(); inflow > 0)
+            step.lower(courant / inflow, "CFL of the inflow");
+        return step;
+    }
+
+    /// One step of at most `dt`; gives back the time that it took: half, a quarter ... of dt where a depth
+    /// would have become negative.
+    Real step(Real dt, Real time) {
+        tiles_.find_reached(periodic_);
+        each_side([&](ShallowSide<Dim>& side) {
+            if (side.is_inflow()) tiles_.add_reached(side.first_cells(grid_));
+        });
+        const std::size_t middle = (current_ + 1) % 3, next = (current_ + 2) % 3;
+        for (int halvings = 0;; ++halvings, dt *= 0.5) {
+            if (const ShallowState<Dim>* wrong = try_step(dt, states_[middle], states_[next])) {
+                if (halvings == most_halvings || !only_negative(*wrong)) fail_step(*wrong, dt, time);
+                ++repeated_;
+                continue;
+            }
+            current_ = next;
+            ++steps_;
+            swiftest_ = 0;
+            for (const Index t : tiles_.due)
+                swiftest_ = std::max(swiftest_, tiles_.list[static_cast<std::size_t>(t)].swiftest);
+            each_side([&](ShallowSide<Dim>& side) {
+                volume_in_[static_cast<std::size_t>(side.axis())][side.high()] += dt * side.rate();
+            });
+            return dt;
+        }
+    }
+
+private:
+    static constexpr int most_halvings = 10;
+
+    static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+    Real at_y(Index j) const noexcept { return Dim == 2 ? grid_.centre(1, j) : 0; }
+    void each_side(auto&& visit) {
+        for (auto& ends : sides_)
+            for (auto& side : ends) visit(side);
+    }
+
+    void lay_bed(const ShallowWaterParams<Dim>& p) {
+        bed_.cell.assign(grid_.size(), 0.0);
+        if (p.bed)
+            each_cell([&](Index i, Index j) {
+                const Real z = p.bed(grid_.centre(0, i), at_y(j));
+                require(std::isfinite(z), {"ShallowWater.bed in " + grid_.name_of(i, j), "finite", "m"}, z);
+                bed_.cell[grid_.at(i, j)] = z;
+            });
+        each_side([&](ShallowSide<Dim>& side) { side.extend_bed(grid_, bed_.cell); });
+        bed_.find_faces(grid_);
+        each_side([&](ShallowSide<Dim>& side) {
+            side.settle(grid_, bed_, forces_.pressing);
+            if (side.is_periodic()) periodic_[static_cast<std::size_t>(side.axis())] = true;
+        });
+    }
+
+    void pour(const ShallowWaterParams<Dim>& p) {
+        ShallowState<Dim> start(grid_.size());
+        if (p.surface)
+            each_cell([&](Index i, Index j) {
+                const std::size_t k = grid_.at(i, j);
+                const Real x = grid_.centre(0, i), y = at_y(j), level = p.surface(x, y);
+                require(std::isfinite(level),
+                        {"ShallowWater.surface in " + grid_.name_of(i, j), "finite", "m"}, level);
+                start.depth[k] = std::max(0.0, level - bed_.cell[k]);
+                if (start.depth[k] <= p.dry_depth) return;
+                for (std::size_t a = 0; a < Dim; ++a) {
+                    if (!p.speed[a]) continue;
+                    const Real u = p.speed[a](x, y);
+                    require(std::abs(u) <= p.fastest,
+                            {"ShallowWater.speed in " + grid_.name_of(i, j),
+                             "within ShallowWater.fastest (" + to_text(p.fastest) + " m/s)", "m/s"},
+                            u);
+                    start.speed[a][k] = u;
+                }
+            });
+        states_.fill(start);
+        volume_at_start_ = volume();
+        for (ShallowTile& tile : tiles_.list) {
+            tile.swiftest = 0;
+            for (Index j = tile.cells.first[1]; j < tile.cells.last[1]; ++j)
+                for (Index i = tile.cells.first[0]; i < tile.cells.last[0]; ++i) {
+                    const Real swift = swiftness(i, j);
+                    if (swift == 0) continue;
+                    tile.wet = tile.wet.with({{i, j}, {i + 1, j + 1}});
+                    tile.swiftest = std::max(tile.swiftest, swift);
+                }
+            swiftest_ = std::max(swiftest_, tile.swiftest);
+        }
+    }
+
+    /// Sum over axes of (|u| + c)/dx [1/s], 0 in a dry cell.
+    Real swiftness(Index i, Index j) const noexcept {
+        const std::size_t k = grid_.at(i, j);
+        const Real h = state().depth[k];
+        if (!(h > forces_.dry_depth)) return 0;
+        Real sum = 0;
+        for (int a = 0; a < Dim; ++a)
+            sum +=
+                (std::abs(state().speed[static_cast<std::size_t>(a)][k]) + std::sqrt(forces_.pressing * h)) /
+                grid_.spacing(a);
+        return sum;
+    }
+    Index swiftest_cell() const noexcept {
+        const ShallowTile* swiftest = &tiles_.list.front();
+        for (const ShallowTile& tile : tiles_.list)
+            if (tile.swiftest > swiftest->swiftest) swiftest = &tile;
+        Index found = -1;
+        Real most = 0;
+        for (Index j = swiftest->cells.first[1]; j < swiftest->cells.last[1]; ++j)
+            for (Index i = swiftest->cells.first[0]; i < swiftest->cells.last[0]; ++i)
+                if (const Real swift = swiftness(i, j); swift > most)
+                    most = swift, found = j * grid_.count(0) + i;
+        return found;
+    }
+    Real inflow_swiftest() const noexcept {
+        Real most = 0;
+        for (int a = 0; a < Dim; ++a)
+            for (const auto& side : sides_[static_cast<std::size_t>(a)])
+                most = std::max(
+                    most, side.swiftest(grid_.spacing(a), grid_.spacing(Dim - 1 - a), forces_.pressing));
+        return most;
+    }
+
+    /// Leaves the present state alone. Gives back the state that went wrong, or nothing.
+    const ShallowState<Dim>* try_step(Real dt, ShallowState<Dim>& middle, ShallowState<Dim>& next) {
+        each_side([](ShallowSide<Dim>& side) { std::fill(side.flux.begin(), side.flux.end(), 0.0); });
+        ShallowState<Dim>& begin = states_[current_];
+        if (!run_stage<false>({&begin, &begin, &middle, friction_.data(), dt}, begin)) return &middle;
+        if (!run_stage<true>({&begin, &middle, &next, friction_.data(), dt}, middle)) return &next;
+        return nullptr;
+    }
+    /// False where a depth or a speed is unsound.
+    template <bool second>
+    bool run_stage(const ShallowStage<Dim>& stage, ShallowState<Dim>& from) {
+        each_side([&](ShallowSide<Dim>& side) { side.fill(grid_, bed_, from); });
+        // A worker's rows are made once for several tiles. Which tiles go together changes no bit.
+        const auto due = static_cast<Index>(tiles_.due.size()), workers = std::min<Index>(due, 16);
+        parallel_tasks(workers, [&](Index worker) {
+            ShallowSweep<Dim> sweep(grid_, bed_, forces_, sides_);
+            for (Index n = worker * due / workers; n < (worker + 1) * due / workers; ++n) {
+                ShallowTile& tile = tiles_.list[at(tiles_.due[at(n)])];
+                tile.unsound = false;
+                sweep.template run<second>(stage, tile);
+            }
+        });
+        return std::none_of(tiles_.due.begin(), tiles_.due.end(),
+                            [&](Index t) { return tiles_.list[at(t)].unsound; });
+    }
+
+    bool only_negative(const ShallowState<Dim>& wrong) const noexcept {
+        bool negative = false, other = false;
+        each_cell([&](Index i, Index j) {
+            const std::size_t k = grid_.at(i, j);
+            negative |= wrong.depth[k] < 0;
+            other |= !std::isfinite(wrong.depth[k]);
+            for (const auto& column : wrong.speed) other |= !(std::abs(column[k]) <= forces_.fastest);
+        });
+        return negative && !other;
+    }
+
+    [[noreturn]] void fail_step(const ShallowState<Dim>& wrong, Real dt, Real time) const {
+        std::string what = "nothing is known of the cause";
+        each_cell([&](Index i, Index j) {
+            const std::size_t k = grid_.at(i, j);
+            const Real h = wrong.depth[k], was = state().depth[k];
+            Real speed2 = 0, was2 = 0;
+            for (std::size_t a = 0; a < Dim; ++a)
+                speed2 += square(wrong.speed[a][k]), was2 += square(state().speed[a][k]);
+            const Real speed = std::sqrt(speed2);
+            std::string cause;
+            if (!std::isfinite(h) || !std::isfinite(speed))
+                cause = "is not finite: look for forces or an inflow beyond all measure";
+            else if (speed > forces_.fastest)
+                cause = "is faster than ShallowWater.fastest, " + short_text(forces_.fastest) +
+                        " m/s: look for a bed that falls off a cliff, or raise it";
+            else if (h < 0)
+                cause =
+                    "has run below its bed, even with a 1024th of the step: take a smaller "
+                    "ShallowWater.courant";
+            else
+                return;
+            what = grid_.name_of(i, j) + " " + cause + "; depth " + short_text(h) + " m, speed " +
+                   short_text(speed) + " m/s, before " + short_text(was) + " m, " +
+                   short_text(std::sqrt(was2)) + " m/s";
+        });
+        throw FluidError(what + "; water is as it was at t = " + short_text(time) + " s, its step " +
+                         std::to_string(steps_) + " of " + short_text(dt) + " s is not taken");
+    }
+
+    ShallowGrid<Dim> grid_;
+    ShallowBed<Dim> bed_;
+    ShallowForces forces_;
+    ShallowTiles<Dim> tiles_;
+    std::array<std::array<ShallowSide<Dim>, 2>, Dim> sides_;
+    std::array<bool, 2> periodic_{};
+    std::array<ShallowState<Dim>, 3> states_;  ///< the present one, and two to work on
+    std::size_t current_ = 0;
+    std::vector<Real> friction_;  ///< its rate as a step begins [1/s]
+    Real swiftest_ = 0;           ///< of all cells [1/s]
+    Real volume_at_start_ = 0;
+    std::array<std::array<Real, 2>, Dim> volume_in_{};
+    Index steps_ = 0, repeated_ = 0;
+};
+
+}  // namespace abrade
