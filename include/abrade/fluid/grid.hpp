@@ -27,9 +27,9 @@ using CellNumber = std::array<int, Dim>;
 using Offset = std::ptrdiff_t;
 
 /// Where cells stand in memory. Planes of constant x follow each other; within a plane rows (of constant z
-/// in 3-D); within a row cells along the second axis, which is y in 3-D and z in 2-D. So a long channel is cut
-/// into many thin planes, several of which stay in cache at once. Around the box stand two layers of ghosts:
-/// limited second-order fluxes reach two cells upstream.
+/// in 3-D); within a row cells along the second axis, which is y in 3-D and z in 2-D. So a long channel is
+/// cut into many thin planes, several of which stay in cache at once. Around the box stand two layers of
+/// ghosts: limited second-order fluxes reach two cells upstream.
 template <int Dim>
 struct Layout {
     static_assert(Dim == 2 || Dim == 3, "fluids are two- or three-dimensional");

@@ -2,53 +2,114 @@
 // Makes a velocity free of divergence, and finds the pressure that does it.
 
 #include <abrade/fluid/multigrid.hpp>
+#include <abrade/fluid/row_value.hpp>
 #include <abrade/fluid/sides.hpp>
+
+#include <cstdint>
 
 namespace abrade {
 
-/// A face at which the pressure is known to be 0: between water and air, or where water leaves the box.
+/// A face at which the pressure is known: between water and air, or where water leaves the box.
 struct OpenFace {
     Offset face = 0;  ///< of the velocity component
     Offset cell = 0;  ///< the wet cell beside it
     int axis = 0;
-    Real slope = 0;  ///< 1 / distance from the cell's centre to where p = 0; negative if that lies at the
-                     ///< upper side [1/m]
+    Real slope =
+        0;  ///< 1 / distance from the cell's centre to the known pressure; negative if that lies above [1/m]
+    Real plain =
+        0;  ///< 1 / distance to the next centre, of the same sign [1/m]; 0: the old pressure has no part
 };
 
-/// Solves  div(grad phi) = div(u)  and takes grad phi from u; phi = p dt / density.
+/// Cells that take part in a projection and what lies between them.
+template <int Dim>
+struct WaterCells {
+    const Field<std::uint8_t>& wet;  ///< 1 where the pressure is unknown, ghosts included
+    const WetRows<Dim>& rows;        ///< hold them, and those of the last time
+    std::span<const OpenFace> open{};
+    const FaceField<Dim>* open_area = nullptr;  ///< share of each face that walls leave open [-]; none: all
+};
+
+/// Solves  div(grad phi) = div(u) - target  and takes grad phi from u; phi = p dt / density.
 ///
 /// Tolerance: root mean square over the wet cells of |div u| dt, the share of its volume that a cell gains or
 /// loses in a step. Solved in single precision by Multigrid; what is left is computed from the velocity
 /// itself in double, and solved for again, so the tolerance means what it says.
 template <int Dim, class State>
 class Projection {
-    static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner;
+    static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner,
+                         vertical = Grid<Dim>::vertical;
 
 public:
+    /// A box full of water.
     Projection(const Grid<Dim>& grid, const Sides<Dim>& sides)
         : grid_(&grid), sides_(sides), multigrid_(grid.layout(), mean_size(grid), periodic_axes(sides)) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
-        fill_box();
-        multigrid_.build();
-        find_rows();
+        Field<std::uint8_t> wet(grid.layout().total, 0);
+        WetRows<Dim> rows(grid.layout());
+        grid.for_each([&](const CellNumber<Dim>&, Offset c) { wet[c] = 1; });
+        for (int plane = 0; plane < grid.layout().planes(); ++plane)
+            for (int row = 0; row < grid.layout().rows_per_plane(); ++row)
+                rows.row(plane, row) = {0, grid.layout().row_length()};
+        const std::vector<OpenFace> open = outflows(wet);
+        set({wet, rows, open});
     }
 
-    /// Faces whose velocity the pressure changes: between two cells that take part.
+    /// Faces of wet cells at sides where water leaves.
+    std::vector<OpenFace> outflows(const Field<std::uint8_t>& wet) const {
+        std::vector<OpenFace> found;
+        for (int a = 0; a < Dim; ++a)
+            for (const int end : {0, 1}) {
+                if (sides_[a][static_cast<std::size_t>(end)] != Side::outflow) continue;
+                for_side(a, end == 1, [&](const CellNumber<Dim>& cell, Offset c) {
+                    if (!wet[c]) return;
+                    const Real slope = 2 / grid_->size(a, cell[a]);
+                    found.push_back(
+                        {end == 0 ? c : c + grid_->layout().stride[a], c, a, end == 0 ? slope : -slope});
+                });
+            }
+        return found;
+    }
+
+    /// Takes over which cells are wet; builds the operator and its coarser ones.
+    void set(const WaterCells<Dim>& water) {
+        open_.assign(water.open.begin(), water.open.end());
+        open_area_ = water.open_area;
+        rows_ = water.rows;
+        Poisson<Dim>& m = multigrid_.matrix();
+        const Layout<Dim>& l = grid_->layout();
+        parallel_tasks(l.planes(), [&](Index plane) {
+            for (int row = 0; row < l.rows_per_plane(); ++row) conduct(water, plane, row);
+        });
+        for (const OpenFace& open : open_)
+            m.dirichlet[open.cell] += static_cast<float>(face_area(open) * std::abs(open.slope));
+        multigrid_.build();
+        find_faces();
+    }
+
+    /// Faces between two wet cells.
     const std::array<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }
+    std::span<const OpenFace> open_faces() const noexcept { return open_; }
     const Multigrid<Dim>& multigrid() const noexcept { return multigrid_; }
+    Index wet_cells() const noexcept { return wet_cells_; }
 
     struct Report {
         int iterations = 0, rounds = 0;
         Real before = 0,
-             after = 0;  ///< share of a cell's volume gained or lost in a step, root mean square [-]
+             after = 0;    ///< share of a cell's volume gained or lost in a step, root mean square [-]
+        Real courant = 0;  ///< largest dt sum |u_a| / h_a over the wet cells [-]
     };
 
-    /// `u`: normal components at the sides set, ghosts not needed. `pressure` over density [m2/s2] grows by
-    /// phi / dt.
-    Report project(FaceField<Dim, State>& u, Field<State>& pressure, Real time_step, Real tolerance) {
+    /// `u`: normal components at the sides set, ghosts not needed. `pressure` over density [m2/s2], 0 in dry
+    /// cells, grows by phi / dt; with `push` its gradient is taken from u first. `surplus`: liquid that a
+    /// cell holds beyond its volume, in shares of it [-], to be driven out in this step; may be none.
+    Report project(FaceField<Dim, State>& u, Field<State>& pressure, Real time_step, Real tolerance,
+                   bool push = false, const Field<Real>* surplus = nullptr) {
+        surplus_ = surplus;
+        step_ = time_step;
         Report report;
-        Real norm = start(u);
-        const Real unit = time_step / (mean_volume() * std::sqrt(static_cast<Real>(wet_cells_)));
+        Real norm = push ? correct(u, pressure, true) : start(u);
+        const Real unit =
+            wet_cells_ > 0 ? time_step / (mean_volume() * std::sqrt(static_cast<Real>(wet_cells_))) : 0;
         report.before = report.after = norm * unit;
         constexpr int most_rounds = 6, most_iterations = 60;
         while (report.after > tolerance && report.rounds < most_rounds) {
@@ -57,10 +118,12 @@ public:
                 multigrid_.solve(std::max(0.5 * tolerance / unit, 1e-5 * norm), most_iterations);
             report.iterations += solved.iterations;
             ++report.rounds;
-            norm = correct(u, pressure, time_step);
+            const Real last = norm;
+            norm = correct(u, pressure, false);
             report.after = norm * unit;
-            if (!(report.after < report.before)) break;
+            if (!(norm < last)) break;
         }
+        for (const Real rate : rates_) report.courant = std::max(report.courant, rate * time_step);
         return report;
     }
 
@@ -76,152 +139,242 @@ private:
         return mean;
     }
     Real mean_volume() const { return mean_size(*grid_).prod(); }
-
-    /// Area of the lower face of a cell of the box along an axis [m2]; [m] in 2-D.
-    Real area(int axis, const CellNumber<Dim>& cell) const noexcept {
+    /// Area of a face along an axis of cells at a level [m2]; [m] in 2-D.
+    Real area(int axis, int level) const noexcept {
         Real product = 1;
         for (int a = 0; a < Dim; ++a)
-            if (a != axis) product *= grid_->size(a, cell[a]);
+            if (a != axis) product *= grid_->size(a, a == vertical ? level : 0);
         return product;
     }
-
-    /// Conductances of a box without walls or surface inside.
-    void fill_box() {
-        Poisson<Dim>& m = multigrid_.matrix();
-        const Layout<Dim>& l = grid_->layout();
-        for (auto& f : m.face) f.fill(0);
-        m.dirichlet.fill(0);
-        open_.clear();
+    static int number(int axis, int plane, int row, int i) noexcept {
+        return axis == outer ? plane : axis == inner ? i : row;
+    }
+    Real face_area(const OpenFace& open) const noexcept {
+        const auto level =
+            static_cast<int>(Dim == 3 ? open.cell % grid_->layout().stride[0] / grid_->layout().stride[2]
+                                      : open.cell % grid_->layout().stride[0]) -
+            Layout<Dim>::ghosts;
+        return area(open.axis, level) * (open_area_ ? (*open_area_)[open.axis][open.face] : 1);
+    }
+    void for_side(int axis, bool high, auto&& body) const {
         grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            for (int a = 0; a < Dim; ++a) {
-                const Real g = area(a, cell);
-                if (cell[a] > 0 || sides_.periodic(a))
-                    m.face[a][c] = static_cast<float>(g / grid_->gap(a, cell[a]));
-                const Real slope = 2 / grid_->size(a, cell[a]);
-                if (cell[a] == 0 && sides_[a][0] == Side::outflow) open_.push_back({c, c, a, slope});
-                if (cell[a] == l.cells[a] - 1 && sides_[a][1] == Side::outflow)
-                    open_.push_back({c + l.stride[a], c, a, -slope});
-                if (!open_.empty() && open_.back().cell == c && open_.back().axis == a)
-                    m.dirichlet[c] += static_cast<float>(g * slope);
-            }
+            if (cell[axis] == (high ? grid_->cells(axis) - 1 : 0)) body(cell, c);
         });
     }
 
-    void find_rows() {
+    /// Conductances of a row's lower faces.
+    void conduct(const WaterCells<Dim>& water, int plane, int row) {
+        Poisson<Dim>& m = multigrid_.matrix();
+        const RowRange r = water.rows.row(plane, row);
+        if (r.empty()) return;
+        const Layout<Dim>& l = grid_->layout();
+        const Offset start = l.row_start(plane, row);
+        const auto neighbours = m.neighbours(plane, row);
+        const std::uint8_t* const wet = water.wet.data() + start;
+        thread_local std::vector<float> room;
+        std::fill(m.dirichlet.data() + start + r.begin, m.dirichlet.data() + start + r.end, 0.0f);
+        for (int a = 0; a < Dim; ++a) {
+            float* const __restrict face = m.face[a].data() + start;
+            const detail::RowValue<Dim, float> g(room, r.begin, r.end, [&](int i) {
+                return area(a, number(vertical, plane, row, i)) / grid_->gap(a, number(a, plane, row, i));
+            });
+            const std::uint8_t* const low = wet + (a == inner ? -1 : neighbours.low[a]);
+            if (!sides_.periodic(a) && number(a, plane, row, 1) == 0 && a != inner) {
+                std::fill(face + r.begin, face + r.end, 0.0f);
+            } else if (water.open_area) {
+                const Real* const open = (*water.open_area)[a].data() + start;
+#pragma omp simd
+                for (int i = r.begin; i < r.end; ++i)
+                    face[i] = (wet[i] & low[i]) != 0 ? g[i] * static_cast<float>(open[i]) : 0.0f;
+            } else {
+#pragma omp simd
+                for (int i = r.begin; i < r.end; ++i) face[i] = (wet[i] & low[i]) != 0 ? g[i] : 0.0f;
+            }
+            if (a == inner && r.begin == 0) {
+                const bool joined = sides_.periodic(a) && wet[0] != 0 && wet[l.row_length() - 1] != 0;
+                const Real open = water.open_area ? (*water.open_area)[a][start] : 1;
+                face[0] = joined ? g[0] * static_cast<float>(open) : 0.0f;
+            }
+            if (a == inner && r.end < l.row_length()) face[r.end] = 0;
+        }
+    }
+
+    void find_faces() {
         const Poisson<Dim>& m = multigrid_.matrix();
-        wet_cells_ = 0;
-        for (int plane = 0; plane < m.layout.planes(); ++plane)
-            for (int row = 0; row < m.layout.rows_per_plane(); ++row) {
-                const Offset start = m.layout.row_start(plane, row);
-                for (int i = 0; i < m.layout.row_length(); ++i)
-                    wet_cells_ += m.inverse_diagonal[start + i] > 0;
+        const Layout<Dim>& l = grid_->layout();
+        std::vector<Index> counts(static_cast<std::size_t>(l.planes()), 0);
+        parallel_tasks(l.planes(), [&](Index plane) {
+            for (int row = 0; row < l.rows_per_plane(); ++row) {
+                const Offset start = l.row_start(plane, row);
+                const RowRange cells = m.range(plane, row);
+                Index count = 0;
+                for (int i = cells.begin; i < cells.end; ++i) count += m.inverse_diagonal[start + i] > 0;
+                counts[static_cast<std::size_t>(plane)] += count;
                 for (int a = 0; a < Dim; ++a) {
-                    RowRange r{m.layout.row_length(), 0};
-                    for (int i = 0; i < m.layout.row_length(); ++i)
-                        if (m.face[a][start + i] > 0) r.begin = std::min(r.begin, i), r.end = i + 1;
-                    faces_[a].row(plane, row) = r.empty() ? RowRange{} : r;
+                    RowRange r = cells;
+                    while (r.begin < r.end && !(m.face[a][start + r.begin] > 0)) ++r.begin;
+                    while (r.begin < r.end && !(m.face[a][start + r.end - 1] > 0)) --r.end;
+                    faces_[a].row(plane, row) = r.begin < r.end ? r : RowRange{};
                 }
             }
+        });
+        wet_cells_ = 0;
+        for (const Index c : counts) wet_cells_ += c;
     }
 
-    struct RowMetric {
-        std::array<State, Dim> area;  ///< of the faces of a row's cells [m2]
-        int plane, row;
-    };
-    RowMetric metric(int plane, int row) const noexcept {
-        CellNumber<Dim> cell{};
-        cell[outer] = plane;
-        if constexpr (Dim == 3) cell[2] = row;
-        RowMetric m;
-        m.plane = plane, m.row = row;
-        for (int a = 0; a < Dim; ++a) m.area[a] = static_cast<State>(area(a, cell));
-        return m;
-    }
-
-    /// b = - net outflow of each cell; returns its square sum over the plane.
+    /// b = - net outflow of each cell, less what it is to lose; returns its square sum over the plane.
     Real diverge(const FaceField<Dim, State>& u, int plane) {
         const Poisson<Dim>& m = multigrid_.matrix();
+        thread_local std::array<std::vector<State>, 2 * Dim + 1> room;
         Real total = 0;
+        State fastest = 0;
         for (int row = 0; row < m.layout.rows_per_plane(); ++row) {
             const RowRange r = m.range(plane, row);
             if (r.empty()) continue;
             const Offset start = m.layout.row_start(plane, row);
-            const RowMetric metrics = metric(plane, row);
-            std::array<const State*, Dim> low, high;
-            for (int a = 0; a < Dim; ++a) low[a] = u[a].data() + start, high[a] = low[a] + m.layout.stride[a];
+            const auto value = [&](int k, auto&& of) {
+                return detail::RowValue<Dim, State>(room[static_cast<std::size_t>(k)], r.begin, r.end, of);
+            };
+            const auto level = [&](int i) { return number(vertical, plane, row, i); };
+            // Flat, not an array: so that loops see plain numbers.
+            const auto area0 = value(0, [&](int i) { return area(0, level(i)); });
+            const auto area1 = value(1, [&](int i) { return area(1, level(i)); });
+            const auto area2 = value(2, [&](int i) { return Dim == 3 ? area(Dim - 1, level(i)) : 0; });
+            const auto per0 = value(3, [&](int i) { return 1 / grid_->size(0, number(0, plane, row, i)); });
+            const auto per1 = value(4, [&](int i) { return 1 / grid_->size(1, number(1, plane, row, i)); });
+            std::array<const State*, 3> low{}, high{};
+            std::array<const Real*, 3> low_open{}, high_open{};
+            for (int a = 0; a < Dim; ++a) {
+                low[a] = u[a].data() + start, high[a] = low[a] + m.layout.stride[a];
+                if (open_area_)
+                    low_open[a] = (*open_area_)[a].data() + start,
+                    high_open[a] = low_open[a] + m.layout.stride[a];
+            }
+            const State per2 = Dim == 3 ? static_cast<State>(1 / grid_->size(Dim - 1, row)) : State(0);
             float* const __restrict b = multigrid_.right_side().data() + start;
             const float* const __restrict inverse = m.inverse_diagonal.data() + start;
             State sum = 0;
-#pragma omp simd reduction(+ : sum)
-            for (int i = r.begin; i < r.end; ++i) {
-                State out = 0;
-                for (int a = 0; a < Dim; ++a) out += metrics.area[a] * (high[a][i] - low[a][i]);
+            const auto finish = [&](int i, State out) {
                 out = inverse[i] > 0 ? out : State(0);
                 b[i] = static_cast<float>(-out);
-                sum += out * out;
+                return out * out;
+            };
+            if (open_area_ || surplus_) {
+                for (int i = r.begin; i < r.end; ++i) {
+                    const auto share = [&](int a, const std::array<const Real*, 3>& side) {
+                        return open_area_ ? static_cast<State>(side[a][i]) : State(1);
+                    };
+                    State out =
+                        area0[i] * (high[0][i] * share(0, high_open) - low[0][i] * share(0, low_open)) +
+                        area1[i] * (high[1][i] * share(1, high_open) - low[1][i] * share(1, low_open));
+                    if constexpr (Dim == 3)
+                        out += area2[i] * (high[2][i] * share(2, high_open) - low[2][i] * share(2, low_open));
+                    if (surplus_)
+                        out -= static_cast<State>((*surplus_)[start + i] / step_) * area0[i] / per0[i];
+                    sum += finish(i, out);
+                    State rate = std::abs(low[0][i]) * per0[i] + std::abs(low[1][i]) * per1[i];
+                    if constexpr (Dim == 3) rate += std::abs(low[2][i]) * per2;
+                    if (inverse[i] > 0) fastest = std::max(fastest, rate);
+                }
+            } else {
+#pragma omp simd reduction(+ : sum) reduction(max : fastest)
+                for (int i = r.begin; i < r.end; ++i) {
+                    State out = area0[i] * (high[0][i] - low[0][i]) + area1[i] * (high[1][i] - low[1][i]);
+                    State rate = std::abs(low[0][i]) * per0[i] + std::abs(low[1][i]) * per1[i];
+                    if constexpr (Dim == 3) {
+                        out += area2[i] * (high[2][i] - low[2][i]);
+                        rate += std::abs(low[2][i]) * per2;
+                    }
+                    out = inverse[i] > 0 ? out : State(0);
+                    b[i] = static_cast<float>(-out);
+                    sum += out * out;
+                    fastest = std::max(fastest, inverse[i] > 0 ? rate : State(0));
+                }
             }
             total += static_cast<Real>(sum);
         }
+        rates_[static_cast<std::size_t>(plane)] = static_cast<Real>(fastest);
         return total;
     }
 
-    Real start(const FaceField<Dim, State>& u) {
-        const int planes = grid_->layout().planes();
-        squares_.assign(static_cast<std::size_t>(planes), 0);
-        detail::wavefront(planes, 1, false, thread_count(), [&](int, int plane) {
+    void make_room() {
+        const auto planes = static_cast<std::size_t>(grid_->layout().planes());
+        squares_.assign(planes, 0);
+        rates_.assign(planes, 0);
+    }
+
+    Real start(FaceField<Dim, State>& u) {
+        make_room();
+        detail::wavefront(grid_->layout().planes(), 1, false, thread_count(), [&](int, int plane) {
+            join_upper_faces(u, plane);
             squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
         });
         return root_of_squares();
     }
 
-    /// u - grad e, p + e / dt, and the divergence of what comes out.
-    Real correct(FaceField<Dim, State>& u, Field<State>& pressure, Real time_step) {
+    /// Takes the gradient of the last solution from u and adds it to the pressure, or (`push`) takes the
+    /// gradient of the pressure itself; then finds the divergence of what comes out.
+    Real correct(FaceField<Dim, State>& u, Field<State>& pressure, bool push) {
+        make_room();
         const Poisson<Dim>& m = multigrid_.matrix();
         const Field<float>& e = multigrid_.solution();
-        const auto rate = static_cast<State>(1 / time_step);
-        const int planes = m.layout.planes();
-        for (const OpenFace& open : open_)
-            u[open.axis][open.face] -= static_cast<State>(open.slope) * static_cast<State>(e[open.cell]);
+        const auto rate = static_cast<State>(1 / step_), dt = static_cast<State>(step_);
+        for (const OpenFace& open : open_) {
+            if (push && open.plain == 0) continue;
+            const State value = push ? dt * pressure[open.cell] : static_cast<State>(e[open.cell]);
+            u[open.axis][open.face] -= static_cast<State>(open.slope) * value;
+        }
         // Stage 1 reads the next plane's lower faces, which stage 0 has corrected.
-        detail::wavefront(planes, 2, sides_.periodic(outer), thread_count(), [&](int stage, int plane) {
-            if (stage == 1) {
-                join_upper_faces(u, plane);
-                squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
-                return;
-            }
-            for (int row = 0; row < m.layout.rows_per_plane(); ++row)
-                correct_row(u, pressure, e, rate, plane, row);
-        });
+        detail::wavefront(m.layout.planes(), 2, sides_.periodic(outer), thread_count(),
+                          [&](int stage, int plane) {
+                              if (stage == 1) {
+                                  join_upper_faces(u, plane);
+                                  squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
+                                  return;
+                              }
+                              for (int row = 0; row < m.layout.rows_per_plane(); ++row) {
+                                  if (push) {
+                                      take_gradient(u, pressure, dt, plane, row);
+                                      continue;
+                                  }
+                                  take_gradient(u, e, State(1), plane, row);
+                                  const RowRange r = m.range(plane, row);
+                                  const Offset start = m.layout.row_start(plane, row);
+                                  const float* const __restrict from = e.data() + start;
+                                  State* const __restrict p = pressure.data() + start;
+                                  const float* const __restrict inverse = m.inverse_diagonal.data() + start;
+#pragma omp simd
+                                  for (int i = r.begin; i < r.end; ++i)
+                                      p[i] += inverse[i] > 0 ? rate * static_cast<State>(from[i]) : State(0);
+                              }
+                          });
         return root_of_squares();
     }
 
-    void correct_row(FaceField<Dim, State>& u, Field<State>& pressure, const Field<float>& e, State rate,
-                     int plane, int row) noexcept {
+    template <class Number>
+    void take_gradient(FaceField<Dim, State>& u, const Field<Number>& of, State factor, int plane, int row) {
         const Poisson<Dim>& m = multigrid_.matrix();
+        thread_local std::vector<State> room;
         const Offset start = m.layout.row_start(plane, row);
-        const float* const __restrict from = e.data() + start;
+        const Number* const __restrict from = of.data() + start;
         const auto neighbours = m.neighbours(plane, row);
         for (int a = 0; a < Dim; ++a) {
-            RowRange r = faces_[a].range(plane, row);
+            RowRange r = faces_[a].row(plane, row);
             if (r.empty()) continue;
-            const auto slope = static_cast<State>(1 / grid_->gap(a, a == inner   ? 0
-                                                                    : a == outer ? plane
-                                                                                 : row));
-            const float* const __restrict low = from + neighbours.low[a];
+            const detail::RowValue<Dim, State> slope(room, r.begin, r.end, [&](int i) {
+                return static_cast<Real>(factor) / grid_->gap(a, number(a, plane, row, i));
+            });
+            const Number* const __restrict low = from + neighbours.low[a];
             State* const __restrict v = u[a].data() + start;
-            if (a == inner && sides_.periodic(a) && r.begin == 0) {
-                v[0] -= slope * static_cast<State>(from[0] - from[m.layout.row_length() - 1]);
+            const float* const __restrict conducts = m.face[a].data() + start;
+            if (a == inner && r.begin == 0) {  // across the periodic side
+                v[0] -= slope[0] * static_cast<State>(from[0] - from[m.layout.row_length() - 1]);
                 ++r.begin;
             }
-            const float* const __restrict conducts = m.face[a].data() + start;
 #pragma omp simd
             for (int i = r.begin; i < r.end; ++i)
-                v[i] -= conducts[i] > 0 ? slope * static_cast<State>(from[i] - low[i]) : State(0);
+                v[i] -= conducts[i] > 0 ? slope[i] * static_cast<State>(from[i] - low[i]) : State(0);
         }
-        const RowRange r = m.range(plane, row);
-        State* const __restrict p = pressure.data() + start;
-#pragma omp simd
-        for (int i = r.begin; i < r.end; ++i) p[i] += rate * static_cast<State>(from[i]);
     }
 
     /// On periodic axes the upper face of the last cell is the lower face of the first.
@@ -254,8 +407,12 @@ private:
     Sides<Dim> sides_;
     Multigrid<Dim> multigrid_;
     std::array<WetRows<Dim>, Dim> faces_;
+    WetRows<Dim> rows_;
     std::vector<OpenFace> open_;
-    std::vector<Real> squares_;
+    const FaceField<Dim>* open_area_ = nullptr;
+    const Field<Real>* surplus_ = nullptr;
+    Real step_ = 1;
+    std::vector<Real> squares_, rates_;
     Index wet_cells_ = 0;
 };
 

@@ -12,8 +12,8 @@ namespace abrade {
 template <int Dim>
 using SideVelocity = std::function<Point<Dim>(const Point<Dim>&, Real)>;
 
-/// Fills ghosts of a staggered velocity, and its normal component on sides that fix it. Tangential ghosts mirror, so
-/// that the mean of both sides of a wall is the wall's velocity.
+/// Fills ghosts of a staggered velocity, and its normal component on sides that fix it. Tangential ghosts
+/// mirror, so that the mean of both sides of a wall is the wall's velocity.
 template <int Dim>
 class VelocitySides {
 public:
@@ -68,12 +68,26 @@ public:
                 }
     }
 
+    /// Calls body(offset, k) for the cells beside a side, ghosts of the other axes included; k counts them.
+    void along_side(int axis, bool high, auto&& body) const {
+        constexpr int g = Layout<Dim>::ghosts;
+        const Plane p = plane_of(axis);
+        CellNumber<Dim> corner;
+        corner.fill(-g);
+        corner[axis] = high ? cells(axis) - 1 : 0;
+        const int first = p.first == axis ? 1 : cells(p.first) + 2 * g, second = cells(p.second) + 2 * g;
+        const Offset from = grid_->layout().at(corner);
+        std::size_t k = 0;
+        for (int i = 0; i < first; ++i) {
+            const Offset line = from + i * step(p.first);
+            for (int j = 0; j < second; ++j) body(line + j * step(p.second), k++);
+        }
+    }
+
 private:
     Offset step(int axis) const noexcept { return grid_->layout().stride[axis]; }
     int cells(int axis) const noexcept { return grid_->cells(axis); }
-    Side kind(int axis, bool high) const noexcept {
-        return sides_[axis][static_cast<std::size_t>(high)];
-    }
+    Side kind(int axis, bool high) const noexcept { return sides_[axis][static_cast<std::size_t>(high)]; }
     std::vector<Real>& table(int a, int b, bool high) noexcept {
         return tables_[static_cast<std::size_t>((a * Dim + b) * 2 + high)];
     }
@@ -90,21 +104,6 @@ private:
         if constexpr (Dim == 2) return {axis, 1 - axis};
         if (axis == outer) return {2, inner};
         return axis == inner ? Plane{outer, 2} : Plane{outer, inner};
-    }
-    /// Calls body(offset, k) for the cells beside a side, ghosts of the other axes included; k counts them.
-    void along_side(int axis, bool high, auto&& body) const {
-        constexpr int g = Layout<Dim>::ghosts;
-        const Plane p = plane_of(axis);
-        CellNumber<Dim> corner;
-        corner.fill(-g);
-        corner[axis] = high ? cells(axis) - 1 : 0;
-        const int first = p.first == axis ? 1 : cells(p.first) + 2 * g, second = cells(p.second) + 2 * g;
-        const Offset from = grid_->layout().at(corner);
-        std::size_t k = 0;
-        for (int i = 0; i < first; ++i) {
-            const Offset line = from + i * step(p.first);
-            for (int j = 0; j < second; ++j) body(line + j * step(p.second), k++);
-        }
     }
     /// The same with the cell's number.
     void for_side(int axis, bool high, auto&& body) const {
