@@ -104,7 +104,11 @@ public:
         }
         // Heun's method is stable for real eigenvalues down to -2/dt; those of friction reach 4 nu sum 1/h^2.
         if (nu() > 0) step.lower(0.5 / (nu() * per_h2), "viscosity");
-        if (fastest_ > 0) step.lower(params_.courant / fastest_, "CFL");
+        // At the end of a step from here gravity may have made the water faster by g dt.
+        Real fall = 0;
+        for (int a = 0; a < Dim; ++a) fall += std::abs(params_.gravity[a]) / smallest;
+        if (fastest_ > 0 || fall > 0)
+            step.lower(2 * params_.courant / (fastest_ + std::sqrt(square(fastest_) + 4 * fall * params_.courant)), "CFL");
         if constexpr (has_surface) {
             step.lower(water_->liquid.stable_step(velocity_), "volume of fluid");
             // A wave of two cells' length, the shortest that the grid knows, must not cross a cell.
