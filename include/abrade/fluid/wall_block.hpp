@@ -1,0 +1,170 @@
+#pragma once
+// What a wall leaves open of the cells and faces of one block of a grid.
+
+#include <abrade/fluid/cut_box.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace abrade::detail {
+
+/// Cells from `low` up to, not including, `high`.
+template <int Dim>
+struct CellRange {
+    CellNumber<Dim> low, high;
+};
+
+/// Calls body(cell) for each, in the order of memory: along the second axis first, the first one last.
+template <int Dim, int Axis = 0>
+void each_cell(const CellRange<Dim>& range, auto&& body, CellNumber<Dim> cell = {}) {
+    if constexpr (Axis == Dim) {
+        body(std::as_const(cell));
+    } else {
+        constexpr std::size_t a = Axis == 0 ? 0 : Dim - Axis;
+        for (cell[a] = range.low[a]; cell[a] < range.high[a]; ++cell[a])
+            each_cell<Dim, Axis + 1>(range, body, cell);
+    }
+}
+
+/// A block of up to 8 cells along each axis. Shares depend on a cell or face alone, never on its block, so a
+/// face between two blocks is the same for both.
+template <int Dim>
+class WallBlock {
+public:
+    static constexpr int side = 8;
+
+    /// Looks at the wall. Where it is further than `margin` [m] from all cells nothing but `content` is set.
+    template <class Shape>
+    WallBlock(const Grid<Dim>& grid, const CellRange<Dim>& cells, Probe<Dim, Shape>& wall,
+              const Subdivision& rule, Real margin)
+        : grid_(grid), cells_(cells) {
+        if (rule.bounded_slope) {
+            const Point<Dim> low = corner(cells.low), high = corner(cells.high);
+            const Real distance = wall(0.5 * (low + high));
+            content_ = distance > 0 ? Content::open : Content::closed;
+            if (std::abs(distance) > 0.5 * (high - low).norm() + margin) return;
+        }
+        content_ = Content::cut;
+        each_cell<Dim>(with_upper_end(-1), [&](const Cell& c) { distance_[at(c)] = wall(corner(c)); });
+        for (int a = 0; a < Dim; ++a)
+            each_cell<Dim>(with_upper_end(a), [&](const Cell& c) { cut_face(a, c, wall, rule); });
+        each_cell<Dim>(cells_, [&](const Cell& c) { cut_cell(c, wall, rule); });
+    }
+
+    /// Closed or open as a whole, or to be looked at cell by cell.
+    Content content() const noexcept { return content_; }
+    Real volume(const CellNumber<Dim>& cell) const noexcept { return volume_[at(cell)]; }
+    Real area(int axis, const CellNumber<Dim>& cell) const noexcept { return face(axis, cell).share; }
+    bool is_cut(const CellNumber<Dim>& cell) const noexcept { return is_cut_[at(cell)]; }
+    /// On the wall, in a cell that is cut [m].
+    const Point<Dim>& point(const CellNumber<Dim>& cell) const noexcept { return point_[at(cell)]; }
+
+private:
+    using Cell = CellNumber<Dim>;
+    struct Face {
+        Real share;
+        bool halved;
+    };
+    static constexpr std::size_t corners_along = side + 1;
+    static constexpr std::size_t corners = corners_along * corners_along * (Dim == 3 ? corners_along : 1);
+
+    std::size_t at(const Cell& cell) const noexcept {
+        std::size_t place = 0;
+        for (std::size_t a = 0; a < Dim; ++a)
+            place = place * corners_along + static_cast<std::size_t>(cell[a] - cells_.low[a]);
+        return place;
+    }
+    const Face& face(int axis, const Cell& cell) const noexcept {
+        return face_[static_cast<std::size_t>(axis)][at(cell)];
+    }
+    /// With the upper end along `axis`, or along all of them (-1).
+    CellRange<Dim> with_upper_end(int axis) const noexcept {
+        CellRange<Dim> range = cells_;
+        for (int a = 0; a < Dim; ++a)
+            if (axis < 0 || a == axis) ++range.high[static_cast<std::size_t>(a)];
+        return range;
+    }
+    Point<Dim> corner(const Cell& cell) const noexcept {
+        Point<Dim> x;
+        for (int a = 0; a < Dim; ++a) x[a] = grid_.face(a, cell[static_cast<std::size_t>(a)]);
+        return x;
+    }
+    /// Along the given axes, from a cell's lower corner.
+    template <int Size>
+    Piece<Dim, Size> piece(const Cell& cell, const std::array<int, Size>& axes) const noexcept {
+        Piece<Dim, Size> box{corner(cell), Point<Dim>::Zero(), axes};
+        for (const int a : axes) box.size[a] = grid_.size(a, cell[static_cast<std::size_t>(a)]);
+        return box;
+    }
+    template <int Size>
+    Corners<Size> distances(const Cell& cell, const std::array<int, Size>& axes) const noexcept {
+        Corners<Size> d;
+        for (std::size_t k = 0; k < d.size(); ++k) {
+            Cell c = cell;
+            for (std::size_t s = 0; s < Size; ++s) c[static_cast<std::size_t>(axes[s])] += (k >> s) & 1;
+            d[k] = distance_[at(c)];
+        }
+        return d;
+    }
+
+    void cut_face(int axis, const Cell& cell, auto& wall, const Subdivision& rule) noexcept {
+        Face& f = face_[static_cast<std::size_t>(axis)][at(cell)];
+        std::array<int, Dim - 1> axes{};
+        for (int a = 0, s = 0; a < Dim; ++a)
+            if (a != axis) axes[static_cast<std::size_t>(s++)] = a;
+        const Corners<Dim - 1> d = distances<Dim - 1>(cell, axes);
+        const auto box = piece<Dim - 1>(cell, axes);
+        f.halved = is_rough(box, d, wall, rule);
+        f.share = f.halved ? halved(box, wall, rule).share : open_share<Dim - 1>(d);
+    }
+
+    void cut_cell(const Cell& cell, auto& wall, const Subdivision& rule) noexcept {
+        const std::size_t here = at(cell);
+        std::array<int, Dim> axes{};
+        for (int a = 0; a < Dim; ++a) axes[static_cast<std::size_t>(a)] = a;
+        const Corners<Dim> d = distances<Dim>(cell, axes);
+        FaceShares<Dim> faces;
+        bool rough = false;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            Cell next = cell;
+            ++next[a];
+            const Face &lower = face_[a][here], &upper = face_[a][at(next)];
+            faces[a] = {lower.share, upper.share};
+            rough = rough || lower.halved || upper.halved;
+        }
+        const auto box = piece<Dim>(cell, axes);
+        const auto in_box = [&](const Point<Dim>& unit) {
+            return Point<Dim>(box.low + unit.cwiseProduct(box.size));
+        };
+        if (rough || is_rough(box, d, wall, rule)) {
+            const Opening<Dim> open = halved(box, wall, rule);
+            volume_[here] = open.share;
+            point_[here] = in_box(open.point);
+            is_cut_[here] = true;
+            return;
+        }
+        const Content inside = detail::content(d);
+        is_cut_[here] = inside == Content::cut;
+        if (is_cut_[here]) {
+            const Point<Dim> crossing = mean_crossing<Dim>(d);
+            volume_[here] = share_within<Dim>(faces, crossing);
+            point_[here] = in_box(crossing);
+        } else {
+            volume_[here] = inside == Content::open ? 1 : 0;
+        }
+    }
+
+    const Grid<Dim>& grid_;
+    CellRange<Dim> cells_;
+    Content content_ = Content::cut;
+    // Where nothing is cut they are never read, so they are not cleared.
+    std::array<Real, corners> distance_;  ///< at lower corners [m]
+    std::array<std::array<Face, corners>, Dim> face_;
+    std::array<Real, corners> volume_;
+    std::array<bool, corners> is_cut_;
+    std::array<Point<Dim>, corners> point_;
+};
+
+}  // namespace abrade::detail
