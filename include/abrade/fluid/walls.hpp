@@ -45,7 +45,7 @@ class Walls {
 public:
     struct Params {
         Real closed_below = 1e-3;   ///< open share up to which a cell or face is closed [-]
-        int levels = 2;             ///< how often cells and faces are halved where the wall is not flat
+        int levels = 1;             ///< how often cells and faces are halved where the wall is not flat
         Real flatness = 0.02;       ///< not flat: the distance at the centre is off by that share of the size
         bool bounded_slope = true;  ///< |w(x) - w(y)| <= |x - y|: cells far from the wall need no look inside
 
@@ -159,8 +159,8 @@ private:
     };
     /// Blocks of one number along the first axis: the work of one thread.
     struct Slab {
-        std::vector<Seed> seeds;  ///< in the order in which cells are visited
-        std::size_t next_seed = 0;
+        std::vector<Range> near;  ///< blocks that the wall may pass through
+        std::vector<Seed> seeds;  ///< in the order in which their cells are visited
         std::vector<WallCell<Dim>> wall_cells;
         Index opened = 0;  ///< cells, less those closed
         bool failed = false;
@@ -198,35 +198,32 @@ private:
     template <class Shape>
     void renew(const Shape& wall, const Cell& from, const Cell& to) {
         const std::span<Slab> slabs(slabs_.data() + from[0], static_cast<std::size_t>(to[0] - from[0] + 1));
-        const auto each_block = [&](auto&& work) {
-            parallel_tasks(static_cast<Index>(slabs.size()), [&](Index n) {
-                Range blocks{from, to};
-                blocks.low[0] = blocks.high[0] = from[0] + n;
-                for (int& end : blocks.high) ++end;
-                Slab& slab = slabs[static_cast<std::size_t>(n)];
-                detail::each_cell<Dim>(blocks, [&](const Cell& block) { work(slab, cells_of(block)); });
-            });
+        const auto each_slab = [&](auto&& work) {
+            parallel_tasks(static_cast<Index>(slabs.size()),
+                           [&](Index n) { work(slabs[static_cast<std::size_t>(n)], from[0] + n); });
         };
-        for (Slab& slab : slabs) {
-            slab.seeds.clear(), slab.wall_cells.clear();
-            slab.next_seed = 0, slab.opened = 0, slab.failed = false;
-        }
-        each_block([&](Slab& slab, const Range& cells) { cut(slab, cells, wall); });
+        each_slab([&](Slab& slab, int number) {
+            slab.near.clear(), slab.seeds.clear(), slab.wall_cells.clear();
+            slab.opened = 0, slab.failed = false;
+            Range blocks{from, to};
+            blocks.low[0] = blocks.high[0] = number;
+            for (int& end : blocks.high) ++end;
+            detail::each_cell<Dim>(blocks, [&](const Cell& block) { cut(slab, cells_of(block), wall); });
+        });
         for (const Slab& slab : slabs)
             if (slab.failed) fail_at(slab.where);
-        each_block([&](Slab&, const Range& cells) { close_faces(cells); });
-        each_block([&](Slab& slab, const Range& cells) { close_cells(slab, cells); });
+        each_slab([&](Slab& slab, int) {
+            for (const Range& cells : slab.near) close_faces(cells);
+        });
+        each_slab([&](Slab& slab, int) {
+            for (const Range& cells : slab.near) close_cells(slab, cells);
+        });
         for (const Slab& slab : slabs) open_cells_ += slab.opened;
         require(open_cells_ > 0,
                 {"Walls: open cells of the grid", "at least 1", "",
                  "is the distance above 0 in the water, and does the grid cover some of it?"},
                 open_cells_);
-        each_block([&](Slab& slab, const Range& cells) { find_wall_cells(slab, cells); });
-        parallel_tasks(static_cast<Index>(slabs.size()), [&](Index n) {
-            auto& found = slabs[static_cast<std::size_t>(n)].wall_cells;
-            std::sort(found.begin(), found.end(),
-                      [](const auto& a, const auto& b) { return a.cell < b.cell; });
-        });
+        each_slab([&](Slab& slab, int) { find_wall_cells(slab); });
         merge(from, to, slabs);
     }
 
@@ -245,16 +242,28 @@ private:
         detail::Probe<Dim, Shape> distance(wall);
         const Block block(grid_, cells, distance, {params_.levels, params_.flatness, params_.bounded_slope},
                           cell_diagonal_);
-        const bool whole = block.content() != detail::Content::cut;
-        const Real all = block.content() == detail::Content::open ? 1 : 0;
-        detail::each_cell<Dim>(cells, [&](const Cell& c) {
+        const auto put = [&](const Cell& c, Real volume, auto&& area) {
             const Offset cell = grid_.layout().at(c);
             if (inside(c)) slab.opened -= volume_[cell] > 0;
-            volume_[cell] = whole ? all : block.volume(c);
-            for (int a = 0; a < Dim; ++a) area_[at(a)][cell] = whole ? all : block.area(a, c);
-            too_small_[cell] = volume_[cell] <= params_.closed_below;
-            if (!whole && block.is_cut(c)) slab.seeds.push_back({cell, block.point(c)});
-        });
+            volume_[cell] = volume;
+            too_small_[cell] = volume <= params_.closed_below;
+            for (int a = 0; a < Dim; ++a) area_[at(a)][cell] = area(a);
+            return cell;
+        };
+        if (block.content() == detail::Content::cut) {
+            slab.near.push_back(cells);
+            detail::each_cell<Dim>(cells, [&](const Cell& c) {
+                const Offset cell = put(c, block.volume(c), [&](int a) { return block.area(a, c); });
+                if (block.is_cut(c)) slab.seeds.push_back({cell, block.point(c)});
+            });
+        } else {
+            const bool open = block.content() == detail::Content::open;
+            const Real all = open ? 1 : 0;
+            detail::each_cell<Dim>(cells, [&](const Cell& c) {
+                put(c, all, [&](int) { return all; });
+                if (open && inside(c)) ++slab.opened;
+            });
+        }
         if (distance.failed() && !slab.failed) slab.failed = true, slab.where = distance.where();
     }
 
@@ -286,14 +295,18 @@ private:
         });
     }
 
-    void find_wall_cells(Slab& slab, const Range& cells) {
-        detail::each_cell<Dim>(cells, [&](const Cell& c) {
-            const Offset cell = grid_.layout().at(c);
-            const bool seeded = slab.next_seed < slab.seeds.size() && slab.seeds[slab.next_seed].cell == cell;
-            if (inside(c) && volume_[cell] > 0)
-                add_wall_cell(slab, c, cell, seeded ? slab.seeds[slab.next_seed].point : grid_.centre(c));
-            slab.next_seed += seeded;
-        });
+    void find_wall_cells(Slab& slab) {
+        auto seed = slab.seeds.cbegin();
+        for (const Range& cells : slab.near)
+            detail::each_cell<Dim>(cells, [&](const Cell& c) {
+                const Offset cell = grid_.layout().at(c);
+                const bool seeded = seed != slab.seeds.cend() && seed->cell == cell;
+                if (inside(c) && volume_[cell] > 0)
+                    add_wall_cell(slab, c, cell, seeded ? seed->point : grid_.centre(c));
+                seed += seeded;
+            });
+        std::sort(slab.wall_cells.begin(), slab.wall_cells.end(),
+                  [](const auto& a, const auto& b) { return a.cell < b.cell; });
     }
 
     /// `near` is on the wall, or at least in the cell.
