@@ -17,15 +17,22 @@ struct CellRange {
     CellNumber<Dim> low, high;
 };
 
-/// Calls body(cell) for each, in the order of memory: along the second axis first, the first one last.
-template <int Dim, int Axis = 0>
+/// Axes from the one across planes to the one along rows.
+template <int Dim>
+constexpr std::size_t axis_in_memory(int n) noexcept {
+    const int middle = 2;
+    return static_cast<std::size_t>(n == 0 ? Layout<Dim>::outer : n == Dim - 1 ? Layout<Dim>::inner : middle);
+}
+
+/// Calls body(cell) for each, in the order of memory.
+template <int Dim, int Level = 0>
 void each_cell(const CellRange<Dim>& range, auto&& body, CellNumber<Dim> cell = {}) {
-    if constexpr (Axis == Dim) {
+    if constexpr (Level == Dim) {
         body(std::as_const(cell));
     } else {
-        constexpr std::size_t a = Axis == 0 ? 0 : Dim - Axis;
+        constexpr std::size_t a = axis_in_memory<Dim>(Level);
         for (cell[a] = range.low[a]; cell[a] < range.high[a]; ++cell[a])
-            each_cell<Dim, Axis + 1>(range, body, cell);
+            each_cell<Dim, Level + 1>(range, body, cell);
     }
 }
 

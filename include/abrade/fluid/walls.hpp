@@ -87,7 +87,7 @@ public:
             cell_diagonal_ += square(largest);
         }
         cell_diagonal_ = std::sqrt(cell_diagonal_);
-        slabs_.resize(static_cast<std::size_t>(blocks_[0]));
+        slabs_.resize(static_cast<std::size_t>(blocks_[outer]));
         CellNumber<Dim> last;
         for (int a = 0; a < Dim; ++a) last[at(a)] = blocks_[at(a)] - 1;
         renew(wall, {}, last);
@@ -135,12 +135,13 @@ public:
     Real total_volume() const {
         const Layout<Dim>& layout = grid_.layout();
         const Index rows = layout.rows_per_plane();
+        constexpr std::size_t inner = Layout<Dim>::inner;
         return parallel_sum<Real>(layout.planes() * rows, [&](Index n) {
             CellNumber<Dim> cell{};
-            cell[0] = n / rows;
+            cell[outer] = n / rows;
             if constexpr (Dim == 3) cell[2] = n % rows;
             Real sum = 0;
-            for (cell[1] = 0; cell[1] < layout.row_length(); ++cell[1])
+            for (cell[inner] = 0; cell[inner] < layout.row_length(); ++cell[inner])
                 sum += volume_[layout.at(cell)] * grid_.volume(cell);
             return sum;
         });
@@ -151,13 +152,14 @@ private:
     using Block = detail::WallBlock<Dim>;
     using Range = detail::CellRange<Dim>;
     static constexpr int ghosts = Layout<Dim>::ghosts;
+    static constexpr std::size_t outer = Layout<Dim>::outer;
 
     /// A point of the wall, until areas are known.
     struct Seed {
         Offset cell;
         Point<Dim> point;
     };
-    /// Blocks of one number along the first axis: the work of one thread.
+    /// Blocks of one number along the outer axis: the work of one thread.
     struct Slab {
         std::vector<Range> near;  ///< blocks that the wall may pass through
         std::vector<Seed> seeds;  ///< in the order in which their cells are visited
@@ -197,16 +199,17 @@ private:
     /// then what wall is left. Each step reads what its neighbours left in the one before.
     template <class Shape>
     void renew(const Shape& wall, const Cell& from, const Cell& to) {
-        const std::span<Slab> slabs(slabs_.data() + from[0], static_cast<std::size_t>(to[0] - from[0] + 1));
+        const std::span<Slab> slabs(slabs_.data() + from[outer],
+                                    static_cast<std::size_t>(to[outer] - from[outer] + 1));
         const auto each_slab = [&](auto&& work) {
             parallel_tasks(static_cast<Index>(slabs.size()),
-                           [&](Index n) { work(slabs[static_cast<std::size_t>(n)], from[0] + n); });
+                           [&](Index n) { work(slabs[static_cast<std::size_t>(n)], from[outer] + n); });
         };
         each_slab([&](Slab& slab, int number) {
             slab.near.clear(), slab.seeds.clear(), slab.wall_cells.clear();
             slab.opened = 0, slab.failed = false;
             Range blocks{from, to};
-            blocks.low[0] = blocks.high[0] = number;
+            blocks.low[outer] = blocks.high[outer] = number;
             for (int& end : blocks.high) ++end;
             detail::each_cell<Dim>(blocks, [&](const Cell& block) { cut(slab, cells_of(block), wall); });
         });
@@ -337,7 +340,7 @@ private:
         const Layout<Dim>& layout = grid_.layout();
         const auto renewed = [&](Offset cell) {
             for (int n = 0; n < Dim; ++n) {
-                const std::size_t a = n == 0 ? 0 : at(Dim - n);  // by decreasing stride
+                const std::size_t a = detail::axis_in_memory<Dim>(n);  // by decreasing stride
                 const auto number = static_cast<int>(cell / layout.stride[a]) - ghosts;
                 if (number < low[a] || number >= high[a]) return false;
                 cell %= layout.stride[a];
