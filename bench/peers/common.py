@@ -185,8 +185,8 @@ def run_set(set_name, description, unit, heading, cases, peers, make_scene, run_
             case, [p for p in usable if p in cases[case]], options, run_code)
         results[case] = row_of(unit, peers, medians)
         if about:
-            print(f"  ours: {about['compiler']}, {about['instruction_set']}, ledger residual "
-                  f"{about['ledger_residual_relative']:.1e}")
+            closes = f", ledger residual {about['ledger_residual_relative']:.1e}" if "ledger_residual_relative" in about else ""
+            print(f"  ours: {about['compiler']}, {about['instruction_set']}{closes}")
     table(heading, peers, results, contacts, failures)
     threads = "" if options.threads == 1 else f"_{options.threads}_threads"
     out = root / "out" / "bench" / f"peers_{set_name}{threads}.json"

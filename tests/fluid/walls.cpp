@@ -323,9 +323,9 @@ TEST_CASE("cells far from a wall need no look inside: the same bits with and wit
     const Shape<3> packing = SpherePacking(heap(30, 6));
     for (const int levels : {0, 2}) {
         auto params = all_of_it<3>(levels);
-        const Walls<3> skipping(unit_box<3>(31), packing, params);
+        const Walls<3> skipping(unit_box<3>(23), packing, params);
         params.bounded_slope = false;
-        CHECK(same(skipping, Walls<3>(unit_box<3>(31), packing, params)));
+        CHECK(same(skipping, Walls<3>(unit_box<3>(23), packing, params)));
     }
 }
 
@@ -335,7 +335,7 @@ TEST_CASE_TEMPLATE("an update is what building anew gives, bit by bit, and takes
     std::vector<Sphere> spheres = heap(80, 7);
     if (Dim == 2)
         for (Sphere& sphere : spheres) sphere.centre.y() = 0;
-    const Grid<Dim> grid = unit_box<Dim>(Dim == 2 ? 90 : 45);
+    const Grid<Dim> grid = unit_box<Dim>(Dim == 2 ? 90 : 30);
     SpherePacking packing(spheres);
     const Shape<Dim> shape = [&](const Point<Dim>& x) { return packing(x); };
     Walls<Dim> walls(grid, shape);
@@ -408,9 +408,9 @@ TEST_CASE("the same bits with one thread and with two") {
     const Shape<3> packing = SpherePacking(heap(60, 9));
     const int threads = thread_count();
     set_thread_count(1);
-    const Walls<3> one(unit_box<3>(40), packing);
+    const Walls<3> one(unit_box<3>(30), packing);
     set_thread_count(2);
-    const Walls<3> two(unit_box<3>(40), packing);
+    const Walls<3> two(unit_box<3>(30), packing);
     CHECK(one.total_volume() == two.total_volume());
     set_thread_count(threads);
     CHECK(same(one, two));

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 namespace abrade::detail {
 
@@ -117,6 +118,7 @@ public:
         if (std::isnan(d) && !failed_) failed_ = true, where_ = x;
         return d > 0 ? far : -far;
     }
+    const Wall& shape() const noexcept { return wall_; }
     bool failed() const noexcept { return failed_; }
     const Point<Dim>& where() const noexcept { return where_; }
 
@@ -241,6 +243,19 @@ Opening<Size> halved(const Piece<Dim, Size>& piece, Probe<Dim, Wall>& wall, Subd
     sum.share /= static_cast<Real>(parts);
     sum.point = sum.weight > 0 ? Point<Size>(sum.point / sum.weight) : Point<Size>::Constant(0.5);
     return sum;
+}
+
+/// Asks only what of a shape is near, where it can tell.
+template <int Dim, int Size, class Wall>
+Opening<Size> halved_nearby(const Piece<Dim, Size>& piece, Probe<Dim, Wall>& wall,
+                            const Subdivision& rule) noexcept {
+    if constexpr (requires(const Wall& w, const Point<Dim>& x) { w.nearby(x, Real{}); }) {
+        const auto few = wall.shape().nearby(piece.at(Point<Size>::Constant(0.5)), piece.half_diagonal());
+        Probe<Dim, std::remove_const_t<decltype(few)>> probe(few);
+        return halved(piece, probe, rule);
+    } else {
+        return halved(piece, wall, rule);
+    }
 }
 
 }  // namespace abrade::detail

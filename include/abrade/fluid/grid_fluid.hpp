@@ -7,6 +7,7 @@
 #include <abrade/fluid/velocity_extension.hpp>
 #include <abrade/fluid/velocity_sides.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/wall_friction.hpp>
 #include <abrade/fluid/walls.hpp>
 
 #include <optional>
@@ -37,6 +38,7 @@ public:
         Sides<Dim> sides{};
         SideVelocity<Dim> side_velocity{};        ///< none: walls at rest
         bool steady_sides = true;                 ///< side_velocity does not depend on time
+        WallLaw wall_law{};                       ///< of walls inside, and of sides that are walls
         Real density = 1000;                      ///< [kg/m3]
         Real viscosity = 1.31e-3;                 ///< dynamic [Pa s]
         Point<Dim> gravity = Point<Dim>::Zero();  ///< [m/s2]
@@ -50,7 +52,22 @@ public:
           sides_(grid_, params_.sides, params_.side_velocity), projection_(grid_, params_.sides),
           velocity_(face_field<Dim, State>(grid_.layout())), stage_(velocity_),
           pressure_(grid_.layout().total) {
-        if constexpr (has_surface) water_.emplace(grid_, params_.sides);
+        if constexpr (has_surface) water_.emplace(grid_, params_.sides, params_.wall_law);
+    }
+
+    /// Puts walls into the box, or new ones in the place of the old: a shape by its distance [m] (WallShape).
+    /// Liquid that was set before stays, as a share of what is open.
+    template <WallShape<Dim> Shape>
+    void set_walls(const Shape& shape, typename Walls<Dim>::Params how = {}) requires has_surface {
+        Water& w = *water_;
+        w.walls.emplace(grid_, shape, how);
+        w.liquid.set_walls(&w.walls->open_area(), &w.walls->open_volume());
+        w.friction = WallFriction<Dim>(grid_, params_.sides, params_.wall_law, &*w.walls);
+        w.liquid.prepare();
+        find_water();
+    }
+    const Walls<Dim>* walls() const noexcept requires has_surface {
+        return water_->walls ? &*water_->walls : nullptr;
     }
 
     const Params& params() const noexcept { return params_; }
@@ -81,6 +98,7 @@ public:
         Field<Real>& f = water_->liquid.fraction();
         grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) { f[c] = share(cell); });
         water_->liquid.prepare();
+        water_->hold();
         find_water();
     }
 
@@ -108,7 +126,9 @@ public:
         Real fall = 0;
         for (int a = 0; a < Dim; ++a) fall += std::abs(params_.gravity[a]) / smallest;
         if (fastest_ > 0 || fall > 0)
-            step.lower(2 * params_.courant / (fastest_ + std::sqrt(square(fastest_) + 4 * fall * params_.courant)), "CFL");
+            step.lower(
+                2 * params_.courant / (fastest_ + std::sqrt(square(fastest_) + 4 * fall * params_.courant)),
+                "CFL");
         if constexpr (has_surface) {
             step.lower(water_->liquid.stable_step(velocity_), "volume of fluid");
             // A wave of two cells' length, the shortest that the grid knows, must not cross a cell.
@@ -146,6 +166,14 @@ public:
 
 private:
     using Stage = MomentumStage<Dim, State>;
+    /// Sides whose friction is added apart let the water glide.
+    static Sides<Dim> without_friction(Sides<Dim> sides, const WallLaw& law) {
+        if (law.kind == WallLaw::Kind::no_slip) return sides;
+        for (auto& ends : sides.kind)
+            for (Side& side : ends)
+                if (side == Side::wall) side = Side::slip;
+        return sides;
+    }
     Real nu() const noexcept { return params_.viscosity / params_.density; }
 
     void step_full(Real dt) {
@@ -167,31 +195,33 @@ private:
 
     void step_below_surface(Real dt) {
         Water& w = *water_;
-        w.before = w.liquid.fraction();
+        w.before = w.held();
         w.rows_before = w.rows;
         w.moved = w.liquid.advance(velocity_, dt);
         find_rows();
+        w.hold();
         FaceField<Dim>& carrier = w.carrier;
         carrier = w.liquid.moved();
-        advance_momentum<Scheme>(grid_, w.faces,
-                                 Stage{velocity_, carrier, velocity_, stage_, pressure_, dt, 0, -dt, nu(),
-                                       params_.gravity, dt, &w.before, &w.liquid.fraction()});
+        Stage stage{velocity_, carrier, velocity_,       stage_, pressure_, dt,        0,
+                    -dt,       nu(),    params_.gravity, dt,     &w.before, &w.held(), w.open_area()};
+        advance_momentum<Scheme>(grid_, w.faces, stage);
         push_open_faces(stage_, -dt);
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         leave(stage_);
-        w.extension.extend(stage_, w.wet, w.rows, w.liquid.fraction(), nullptr);
+        w.extension.extend(stage_, w.wet, w.rows, w.held(), w.open_area());
         sides_.fill(stage_);
         // In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
         take_stage_where_full(carrier, dt);
         advance_momentum<Scheme>(grid_, w.faces,
                                  Stage{stage_, carrier, velocity_, velocity_, pressure_, dt, 0.5, 0.5 * dt,
-                                       nu(), params_.gravity, dt, &w.before, &w.liquid.fraction()});
+                                       nu(), params_.gravity, dt, &w.before, &w.held(), w.open_area()});
         push_open_faces(velocity_, 0.5 * dt);
+        w.friction.apply(velocity_, dt, nu());
         leave(velocity_);
         find_water();
         sides_.fill(velocity_);
         report_ = projection_.project(velocity_, pressure_, dt, params_.tolerance, true, &w.liquid.surplus());
-        w.extension.extend(velocity_, w.wet, w.rows, w.liquid.fraction(), nullptr);
+        w.extension.extend(velocity_, w.wet, w.rows, w.held(), w.open_area());
         sides_.fill(velocity_);
     }
 
@@ -216,13 +246,15 @@ private:
                 Real* const __restrict c = carrier[a].data() + start;
                 const Real* const __restrict u = velocity_[a].data() + start;
                 const Real* const __restrict v = stage_[a].data() + start;
-                const Real* const f = water_->liquid.fraction().data() + start;
+                const Real* const f = water_->held().data() + start;
                 const Real* const g = water_->before.data() + start;
+                const Real* const o = water_->walls ? water_->walls->open_area()[a].data() + start : nullptr;
                 const Offset back = l.stride[a];
                 for (int i = r.begin; i < r.end; ++i) {
                     const Real area = swept[static_cast<std::size_t>(Dim == 3 ? row : i)];
                     const bool full = f[i] == 1 && f[i - back] == 1 && g[i] == 1 && g[i - back] == 1;
-                    c[i] = full ? c[i] + (v[i] - u[i]) * area : c[i];
+                    const Real open = o ? o[i] : 1;
+                    c[i] = full ? c[i] + (v[i] - u[i]) * (area * open) : c[i];
                 }
             });
         }
@@ -262,6 +294,7 @@ private:
     void find_water() {
         Water& w = *water_;
         find_rows();
+        w.hold();
         const Layout<Dim>& l = grid_.layout();
         WetRows<Dim> rows = w.rows;
         rows.include(w.rows_before);
@@ -270,7 +303,7 @@ private:
         rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = l.row_start(plane, row);
             for (int i = r.begin; i < r.end; ++i) {
-                const bool is = f[start + i] >= 0.5;
+                const bool is = f[start + i] >= 0.5 && w.is_open(start + i);
                 w.wet[start + i] = is;
                 if (!is) pressure_[start + i] = 0;
             }
@@ -281,11 +314,12 @@ private:
                 const RowRange r = w.rows.row(plane, row);
                 const Offset start = l.row_start(plane, row);
                 for (int i = r.begin; i < r.end; ++i)
-                    if (w.wet[start + i] == 0) add_open_faces(start + i, plane, row, i);
+                    if (w.wet[start + i] == 0 && w.is_open(start + i))
+                        add_open_faces(start + i, plane, row, i);
             }
         auto leaving = projection_.outflows(w.wet);
         w.open.insert(w.open.end(), leaving.begin(), leaving.end());
-        projection_.set({w.wet, rows, w.open, nullptr});
+        projection_.set({w.wet, rows, w.open, w.open_area()});
     }
 
     void copy_wet_around() {
@@ -329,17 +363,31 @@ private:
     }
 
     struct Water {
-        explicit Water(const Grid<Dim>& grid, const Sides<Dim>& sides)
-            : liquid(grid, sides), before(grid.layout().total), carrier(face_field<Dim>(grid.layout())),
-              wet(grid.layout().total), rows(grid.layout()), rows_before(grid.layout()),
-              extension(grid.layout()) {
+        Water(const Grid<Dim>& grid, const Sides<Dim>& sides, const WallLaw& law)
+            : liquid(grid, sides), friction(grid, sides, law, nullptr), before(grid.layout().total),
+              carrier(face_field<Dim>(grid.layout())), wet(grid.layout().total), rows(grid.layout()),
+              rows_before(grid.layout()), extension(grid.layout()) {
             for (auto& f : faces) f = WetRows<Dim>(grid.layout());
             // The projection begins with a full box.
             for (int plane = 0; plane < grid.layout().planes(); ++plane)
                 for (int row = 0; row < grid.layout().rows_per_plane(); ++row)
                     rows_before.row(plane, row) = {0, grid.layout().row_length()};
         }
+        /// Liquid in each cell, as a share of the whole cell [-].
+        const Field<Real>& held() const noexcept { return walls ? held_in_open : liquid.fraction(); }
+        void hold() {
+            if (!walls) return;
+            if (held_in_open.size() == 0) held_in_open = Field<Real>(liquid.fraction().size());
+            const Field<Real>&f = liquid.fraction(), &v = walls->open_volume();
+            for (Offset c = 0; c < f.size(); ++c) held_in_open[c] = f[c] * v[c];
+        }
+        const FaceField<Dim>* open_area() const noexcept { return walls ? &walls->open_area() : nullptr; }
+        bool is_open(Offset c) const noexcept { return !walls || walls->open_volume()[c] > 0; }
+
         VolumeOfFluid<Dim> liquid;
+        std::optional<Walls<Dim>> walls;
+        WallFriction<Dim> friction;
+        Field<Real> held_in_open;
         Field<Real> before;      ///< liquid share at the beginning of the step
         FaceField<Dim> carrier;  ///< what carries momentum in the stage at work [m3]
         Field<std::uint8_t> wet;

@@ -113,6 +113,20 @@ private:
         const RowValue<Dim, State> friction(values_[2], r.begin, r.end, [&](int i) {
             return s_.viscosity / (a == b ? grid_.size(a, cell(a, i) - 1) : grid_.gap(b, cell(b, i)));
         });
+        if (s_.open_area) {  // friction acts on what is open; the wall's own is added apart
+            const Real* const __restrict open = (*s_.open_area)[b].data() + start;
+            for (int i = r.begin; i < r.end; ++i) {
+                const State carried = upper[i] * w[i] + lower[i] * w[i - back];
+                const State far_low = u[i - 2 * across], low = u[i - across], high = u[i],
+                            far_high = u[i + across];
+                const bool rising = carried > 0;
+                const State value =
+                    Scheme::at_face(rising ? far_low : far_high, rising ? low : high, rising ? high : low);
+                const auto share = static_cast<State>(0.5 * (open[i] + open[i - back]));
+                out[i] = carried * value - share * friction[i] * (high - low);
+            }
+            return;
+        }
 #pragma omp simd
         for (int i = r.begin; i < r.end; ++i) {
             const State carried = upper[i] * w[i] + lower[i] * w[i - back];
@@ -183,6 +197,10 @@ private:
                 mass > State(least_mass) ? std::min(most, std::max(least, carried)) + gravity : State(0);
             result[i] = kept * velocity[i] + fresh * moved + push[i] * (p[i] - p[i - back]);
         }
+        if (!s_.open_area) return;
+        const Real* const __restrict open = (*s_.open_area)[a].data() + start;
+#pragma omp simd
+        for (int i = r.begin; i < r.end; ++i) result[i] = open[i] > 0 ? result[i] : State(0);
     }
 
     const Grid<Dim>& grid_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace abrade::detail {
@@ -16,35 +17,45 @@ struct CellRange {
     CellNumber<Dim> low, high;
 };
 
-/// Calls body(cell) for each, in the order of memory: along the second axis first, the first one last.
-template <int Dim, int Axis = 0>
+/// Axes from the one across planes to the one along rows.
+template <int Dim>
+constexpr std::size_t axis_in_memory(int n) noexcept {
+    const int middle = 2;
+    return static_cast<std::size_t>(n == 0 ? Layout<Dim>::outer : n == Dim - 1 ? Layout<Dim>::inner : middle);
+}
+
+/// Calls body(cell) for each, in the order of memory.
+template <int Dim, int Level = 0>
 void each_cell(const CellRange<Dim>& range, auto&& body, CellNumber<Dim> cell = {}) {
-    if constexpr (Axis == Dim) {
+    if constexpr (Level == Dim) {
         body(std::as_const(cell));
     } else {
-        constexpr std::size_t a = Axis == 0 ? 0 : Dim - Axis;
+        constexpr std::size_t a = axis_in_memory<Dim>(Level);
         for (cell[a] = range.low[a]; cell[a] < range.high[a]; ++cell[a])
-            each_cell<Dim, Axis + 1>(range, body, cell);
+            each_cell<Dim, Level + 1>(range, body, cell);
     }
 }
 
-/// A block of up to 8 cells along each axis. Shares depend on a cell or face alone, never on its block, so a
+/// A block of up to 4 cells along each axis. Shares depend on a cell or face alone, never on its block, so a
 /// face between two blocks is the same for both.
 template <int Dim>
 class WallBlock {
 public:
-    static constexpr int side = 8;
+    static constexpr int side = 4;
 
-    /// Looks at the wall. Where it is further than `margin` [m] from all cells nothing but `content` is set.
+    /// Looks at the wall. Where it is far from all cells nothing but `content` is set.
     template <class Shape>
     WallBlock(const Grid<Dim>& grid, const CellRange<Dim>& cells, Probe<Dim, Shape>& wall,
-              const Subdivision& rule, Real margin)
-        : grid_(grid), cells_(cells) {
+              const Subdivision& rule, Real cell_diagonal)
+        : grid_(grid), cells_(cells),
+          far_(rule.bounded_slope ? cell_diagonal : std::numeric_limits<Real>::infinity()) {
         if (rule.bounded_slope) {
             const Point<Dim> low = corner(cells.low), high = corner(cells.high);
             const Real distance = wall(0.5 * (low + high));
             content_ = distance > 0 ? Content::open : Content::closed;
-            if (std::abs(distance) > 0.5 * (high - low).norm() + margin) return;
+            // A little further: a neighbouring cell that is closed for being small closes faces of this
+            // block.
+            if (std::abs(distance) > 0.5 * (high - low).norm() + 0.1 * cell_diagonal) return;
         }
         content_ = Content::cut;
         each_cell<Dim>(with_upper_end(-1), [&](const Cell& c) { distance_[at(c)] = wall(corner(c)); });
@@ -111,17 +122,26 @@ private:
 
     void cut_face(int axis, const Cell& cell, auto& wall, const Subdivision& rule) noexcept {
         Face& f = face_[static_cast<std::size_t>(axis)][at(cell)];
+        if (const Real here = distance_[at(cell)]; std::abs(here) > far_) {
+            f = {here > 0 ? 1.0 : 0.0, false};
+            return;
+        }
         std::array<int, Dim - 1> axes{};
         for (int a = 0, s = 0; a < Dim; ++a)
             if (a != axis) axes[static_cast<std::size_t>(s++)] = a;
         const Corners<Dim - 1> d = distances<Dim - 1>(cell, axes);
         const auto box = piece<Dim - 1>(cell, axes);
         f.halved = is_rough(box, d, wall, rule);
-        f.share = f.halved ? halved(box, wall, rule).share : open_share<Dim - 1>(d);
+        f.share = f.halved ? halved_nearby(box, wall, rule).share : open_share<Dim - 1>(d);
     }
 
     void cut_cell(const Cell& cell, auto& wall, const Subdivision& rule) noexcept {
         const std::size_t here = at(cell);
+        if (std::abs(distance_[here]) > far_) {
+            volume_[here] = distance_[here] > 0 ? 1 : 0;
+            is_cut_[here] = false;
+            return;
+        }
         std::array<int, Dim> axes{};
         for (int a = 0; a < Dim; ++a) axes[static_cast<std::size_t>(a)] = a;
         const Corners<Dim> d = distances<Dim>(cell, axes);
@@ -139,7 +159,7 @@ private:
             return Point<Dim>(box.low + unit.cwiseProduct(box.size));
         };
         if (rough || is_rough(box, d, wall, rule)) {
-            const Opening<Dim> open = halved(box, wall, rule);
+            const Opening<Dim> open = halved_nearby(box, wall, rule);
             volume_[here] = open.share;
             point_[here] = in_box(open.point);
             is_cut_[here] = true;
@@ -158,6 +178,7 @@ private:
 
     const Grid<Dim>& grid_;
     CellRange<Dim> cells_;
+    Real far_;  ///< from a corner at that distance a wall cannot reach into the cell [m]
     Content content_ = Content::cut;
     // Where nothing is cut they are never read, so they are not cleared.
     std::array<Real, corners> distance_;  ///< at lower corners [m]

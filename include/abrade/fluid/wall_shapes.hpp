@@ -8,8 +8,11 @@
 #include <abrade/geometry/solid_moments.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
+#include <functional>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <string>
@@ -62,13 +65,15 @@ public:
 
 private:
     Real distance(Real y, Real z) const noexcept {
-        return std::min(half_width_ - std::abs(y), radius_ - std::hypot(y, std::min(z - radius_, 0.0)));
+        return std::min(half_width_ - std::abs(y),
+                        radius_ - std::sqrt(square(y) + square(std::min(z - radius_, 0.0))));
     }
     Real half_width_, radius_;
 };
 
 /// Solid spheres, as concrete is made of: the distance from the nearest. In two dimensions a point is
-/// (x, z): a section along y = 0. Inside the solid it is the depth in one sphere, not in their union.
+/// (x, z): a section along y = 0. Inside the solid it is the depth in one sphere, not in their union; in
+/// the water it is cut short at two of the largest radii: take cells whose diagonal is no longer.
 ///
 /// Spheres can be worn or taken out; Walls::update then renews the cells about them.
 class SpherePacking {
@@ -106,25 +111,66 @@ public:
     }
     void remove(std::size_t n) noexcept { radii_[n] = -std::numeric_limits<Real>::infinity(); }
 
-    Real operator()(const Point<2>& x) const noexcept { return (*this)(Vec3(x[0], 0, x[1])); }
-    /// Beyond a diameter of the largest sphere: no more than the distance from the box about all of them,
-    /// which costs no search.
+    Real operator()(const Point<2>& x) const noexcept { return (*this)(in_space(x)); }
+    /// Beyond the reach: no more than the distance from the box about all of them, which costs no search.
     Real operator()(const Vec3& x) const noexcept {
         const Real beyond = (low_ - x).cwiseMax(x - high_).cwiseMax(0.0).norm();
-        const Real reach = 2 * largest_;
-        Real nearest = std::max(reach, beyond);
-        if (beyond >= reach || centres_.empty()) return nearest;
-        grid_.each_about(x, nearest + largest_, [&](Index i) {
-            const auto n = static_cast<std::size_t>(i);
-            const Real most = nearest + radii_[n];
-            const Real apart2 = (x - centres_[n]).squaredNorm();
-            if (most > 0 && apart2 < square(most)) nearest = std::sqrt(apart2) - radii_[n];
-        });
+        Real nearest = std::max(reach_, beyond);
+        if (beyond < reach_)
+            grid_.each_about(x, reach_ + largest_, [&](Index i) {
+                const auto n = static_cast<std::size_t>(i);
+                nearest = nearer(nearest, x, centres_[n], radii_[n]);
+            });
         return nearest;
     }
 
+    /// The same within `radius` of a place, from the few spheres that can be nearest there.
+    class Few {
+    public:
+        Real operator()(const Point<2>& x) const noexcept { return (*this)(in_space(x)); }
+        Real operator()(const Vec3& x) const noexcept {
+            Real nearest = all_->reach_;
+            for (std::size_t n = 0; n < count_; ++n)
+                nearest = nearer(nearest, x, spheres_[n].centre, spheres_[n].radius);
+            return too_many_ || nearest >= all_->reach_ ? (*all_)(x) : nearest;
+        }
+
+    private:
+        friend SpherePacking;
+        const SpherePacking* all_;
+        bool too_many_ = false;
+        std::size_t count_ = 0;
+        std::array<Sphere, 32> spheres_;
+
+        explicit Few(const SpherePacking* all) : all_(all) {}
+    };
+    Few nearby(const Point<2>& x, Real radius) const noexcept { return nearby(in_space(x), radius); }
+    Few nearby(const Vec3& x, Real radius) const noexcept {
+        Few few(this);
+        const Real furthest = (*this)(x) + 2 * radius;  // of the surface nearest to any point about x
+        grid_.each_about(x, furthest + largest_, [&](Index i) {
+            const auto n = static_cast<std::size_t>(i);
+            const Real most = furthest + radii_[n];
+            if (most < 0 || (x - centres_[n]).squaredNorm() > square(most) * rounding) return;
+            few.too_many_ = few.too_many_ || few.count_ == few.spheres_.size();
+            if (!few.too_many_) few.spheres_[few.count_++] = {centres_[n], radii_[n]};
+        });
+        return few;
+    }
+
 private:
+    static constexpr Real rounding = 1 + 1e-12;  // so that no nearest is missed by it, in whatever order
+
+    static Vec3 in_space(const Point<2>& x) noexcept { return {x[0], 0, x[1]}; }
+    static Real nearer(Real nearest, const Vec3& x, const Vec3& centre, Real radius) noexcept {
+        const Real most = nearest + radius;
+        const Real apart2 = (x - centre).squaredNorm();
+        if (most < 0 || apart2 > square(most) * rounding) return nearest;
+        return std::min(nearest, std::sqrt(apart2) - radius);
+    }
+
     void build() {
+        reach_ = 2 * largest_;
         grid_ = PointGrid(centres_, 2 * largest_);
         low_ = Vec3::Constant(std::numeric_limits<Real>::infinity()), high_ = -low_;
         for (const Vec3& x : centres_) low_ = low_.cwiseMin(x), high_ = high_.cwiseMax(x);
@@ -134,6 +180,7 @@ private:
     std::vector<Vec3> centres_;  ///< [sphere] [m]
     std::vector<Real> radii_;    ///< [sphere] [m]; minus infinity: gone
     Real largest_ = 0;           ///< [m]
+    Real reach_ = 0;             ///< distances beyond are cut short [m]
     Vec3 low_, high_;            ///< of the box about them [m]
     PointGrid grid_;
 };
@@ -150,7 +197,24 @@ public:
                           shapes_);
     }
 
+    /// For the same walls near a place (SpherePacking::nearby).
+    auto nearby(const auto& x, Real radius) const noexcept {
+        return std::apply(
+            [&](const auto&... shape) {
+                return WallUnion<decltype(few(shape, x, radius))...>(few(shape, x, radius)...);
+            },
+            shapes_);
+    }
+
 private:
+    template <class Shape>
+    static auto few(const Shape& shape, const auto& x, Real radius) noexcept {
+        if constexpr (requires { shape.nearby(x, radius); }) {
+            return shape.nearby(x, radius);
+        } else {
+            return std::cref(shape);
+        }
+    }
     /// NaN where any is NaN: an error must not hide behind another wall.
     static Real smallest(std::initializer_list<Real> distances) noexcept {
         Real least = std::numeric_limits<Real>::infinity();

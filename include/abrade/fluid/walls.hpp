@@ -2,8 +2,8 @@
 // Solid walls of any shape on a grid: how much of each cell and of each face they leave open.
 
 #include <abrade/core/parallel.hpp>
-#include <abrade/fluid/wall_block.hpp>
 #include <abrade/fluid/wall_shapes.hpp>
+#include <abrade/fluid/wall_slab.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,15 +15,6 @@
 #include <vector>
 
 namespace abrade {
-
-/// The wall in one cell.
-template <int Dim>
-struct WallCell {
-    Offset cell = 0;
-    Real area = 0;                           ///< [m2]; in two dimensions [m]
-    Point<Dim> normal = Point<Dim>::Zero();  ///< into the water, of unit length
-    Point<Dim> point = Point<Dim>::Zero();   ///< on the wall [m]
-};
 
 /// Open shares of the cells and faces of a grid.
 ///
@@ -45,7 +36,7 @@ class Walls {
 public:
     struct Params {
         Real closed_below = 1e-3;   ///< open share up to which a cell or face is closed [-]
-        int levels = 2;             ///< how often cells and faces are halved where the wall is not flat
+        int levels = 1;             ///< how often cells and faces are halved where the wall is not flat
         Real flatness = 0.02;       ///< not flat: the distance at the centre is off by that share of the size
         bool bounded_slope = true;  ///< |w(x) - w(y)| <= |x - y|: cells far from the wall need no look inside
 
@@ -63,10 +54,10 @@ public:
 
     /// No walls: all is open.
     explicit Walls(const Grid<Dim>& grid)
-        : grid_(grid), volume_(grid.layout().total), area_(face_field<Dim>(grid.layout())) {
+        : grid_(grid), shares_{Field<Real>(grid.layout().total), face_field<Dim>(grid.layout()), {}} {
         const auto open = [&](const CellNumber<Dim>&, Offset at) {
-            volume_[at] = 1;
-            for (auto& axis : area_) axis[at] = 1;
+            shares_.volume[at] = 1;
+            for (auto& axis : shares_.area) axis[at] = 1;
         };
         grid_.for_each(open, ghosts);
         open_cells_ = grid_.layout().cell_count();
@@ -77,19 +68,19 @@ public:
     Walls(const Grid<Dim>& grid, const Shape& wall) : Walls(grid, wall, Params()) {}
     template <WallShape<Dim> Shape>
     Walls(const Grid<Dim>& grid, const Shape& wall, Params params)
-        : params_((params.validate(), params)), grid_(grid), volume_(grid.layout().total),
-          area_(face_field<Dim>(grid.layout())), too_small_(grid.layout().total, 1) {
+        : params_((params.validate(), params)),
+          grid_(grid), shares_{Field<Real>(grid.layout().total), face_field<Dim>(grid.layout()),
+                               Field<std::uint8_t>(grid.layout().total, 1)} {
+        CellNumber<Dim> last;
         for (int a = 0; a < Dim; ++a) {
-            blocks_[at(a)] = (grid_.cells(a) + 2 * ghosts + Block::side - 1) / Block::side;
+            last[at(a)] = (grid_.cells(a) + 2 * ghosts - 1) / side;
             Real largest = 0;
             for (int i = -ghosts; i < grid_.cells(a) + ghosts; ++i)
                 largest = std::max(largest, grid_.size(a, i));
             cell_diagonal_ += square(largest);
         }
         cell_diagonal_ = std::sqrt(cell_diagonal_);
-        slabs_.resize(static_cast<std::size_t>(blocks_[0]));
-        CellNumber<Dim> last;
-        for (int a = 0; a < Dim; ++a) last[at(a)] = blocks_[at(a)] - 1;
+        slabs_.resize(static_cast<std::size_t>(last[outer]) + 1);
         renew(wall, {}, last);
     }
 
@@ -109,8 +100,8 @@ public:
             const Real margin = 2 * cell_diagonal_;
             const int first = cell_at(a, low[a] - margin) - 1, last = cell_at(a, high[a] + margin) + 1;
             if (last < -ghosts || first >= grid_.cells(a) + ghosts) return;
-            from[at(a)] = (std::max(first, -ghosts) + ghosts) / Block::side;
-            to[at(a)] = (std::min(last, grid_.cells(a) + ghosts - 1) + ghosts) / Block::side;
+            from[at(a)] = (std::max(first, -ghosts) + ghosts) / side;
+            to[at(a)] = (std::min(last, grid_.cells(a) + ghosts - 1) + ghosts) / side;
         }
         renew(wall, from, to);
     }
@@ -118,9 +109,9 @@ public:
     const Params& params() const noexcept { return params_; }
     const Grid<Dim>& grid() const noexcept { return grid_; }
     /// Of each cell, ghosts included [-].
-    const Field<Real>& open_volume() const noexcept { return volume_; }
+    const Field<Real>& open_volume() const noexcept { return shares_.volume; }
     /// Of each lower face [-].
-    const FaceField<Dim>& open_area() const noexcept { return area_; }
+    const FaceField<Dim>& open_area() const noexcept { return shares_.area; }
     /// Inside the box, in the order of memory.
     std::span<const WallCell<Dim>> wall_cells() const noexcept { return wall_cells_; }
     /// Those of `count` cells from `first` on, a row for instance.
@@ -135,37 +126,24 @@ public:
     Real total_volume() const {
         const Layout<Dim>& layout = grid_.layout();
         const Index rows = layout.rows_per_plane();
+        constexpr std::size_t inner = Layout<Dim>::inner;
         return parallel_sum<Real>(layout.planes() * rows, [&](Index n) {
             CellNumber<Dim> cell{};
-            cell[0] = n / rows;
+            cell[outer] = n / rows;
             if constexpr (Dim == 3) cell[2] = n % rows;
             Real sum = 0;
-            for (cell[1] = 0; cell[1] < layout.row_length(); ++cell[1])
-                sum += volume_[layout.at(cell)] * grid_.volume(cell);
+            for (cell[inner] = 0; cell[inner] < layout.row_length(); ++cell[inner])
+                sum += shares_.volume[layout.at(cell)] * grid_.volume(cell);
             return sum;
         });
     }
 
 private:
     using Cell = CellNumber<Dim>;
-    using Block = detail::WallBlock<Dim>;
-    using Range = detail::CellRange<Dim>;
+    using Slab = detail::WallSlab<Dim>;
+    static constexpr int side = detail::WallBlock<Dim>::side;
     static constexpr int ghosts = Layout<Dim>::ghosts;
-
-    /// A point of the wall, until areas are known.
-    struct Seed {
-        Offset cell;
-        Point<Dim> point;
-    };
-    /// Blocks of one number along the first axis: the work of one thread.
-    struct Slab {
-        std::vector<Seed> seeds;  ///< in the order in which cells are visited
-        std::size_t next_seed = 0;
-        std::vector<WallCell<Dim>> wall_cells;
-        Index opened = 0;  ///< cells, less those closed
-        bool failed = false;
-        Point<Dim> where;  ///< [m]
-    };
+    static constexpr std::size_t outer = Layout<Dim>::outer;
 
     static std::size_t at(int axis) noexcept { return static_cast<std::size_t>(axis); }
 
@@ -179,152 +157,32 @@ private:
         return low;
     }
 
-    Range cells_of(const Cell& block) const noexcept {
-        Range range;
-        for (int a = 0; a < Dim; ++a) {
-            range.low[at(a)] = block[at(a)] * Block::side - ghosts;
-            range.high[at(a)] = std::min(range.low[at(a)] + Block::side, grid_.cells(a) + ghosts);
-        }
-        return range;
-    }
-    bool inside(const Cell& cell) const noexcept {
-        for (int a = 0; a < Dim; ++a)
-            if (cell[at(a)] < 0 || cell[at(a)] >= grid_.cells(a)) return false;
-        return true;
-    }
-
-    /// Cells of blocks `from` to `to`: shares as the wall cuts them, then faces that are closed, then cells,
-    /// then what wall is left. Each step reads what its neighbours left in the one before.
+    /// Cells of blocks `from` to `to`.
     template <class Shape>
     void renew(const Shape& wall, const Cell& from, const Cell& to) {
-        const std::span<Slab> slabs(slabs_.data() + from[0], static_cast<std::size_t>(to[0] - from[0] + 1));
-        const auto each_block = [&](auto&& work) {
-            parallel_tasks(static_cast<Index>(slabs.size()), [&](Index n) {
-                Range blocks{from, to};
-                blocks.low[0] = blocks.high[0] = from[0] + n;
-                for (int& end : blocks.high) ++end;
-                Slab& slab = slabs[static_cast<std::size_t>(n)];
-                detail::each_cell<Dim>(blocks, [&](const Cell& block) { work(slab, cells_of(block)); });
-            });
-        };
-        for (Slab& slab : slabs) {
-            slab.seeds.clear(), slab.wall_cells.clear();
-            slab.next_seed = 0, slab.opened = 0, slab.failed = false;
-        }
-        each_block([&](Slab& slab, const Range& cells) { cut(slab, cells, wall); });
-        for (const Slab& slab : slabs)
-            if (slab.failed) fail_at(slab.where);
-        each_block([&](Slab&, const Range& cells) { close_faces(cells); });
-        each_block([&](Slab& slab, const Range& cells) { close_cells(slab, cells); });
-        for (const Slab& slab : slabs) open_cells_ += slab.opened;
+        const std::span<Slab> slabs(slabs_.data() + from[outer],
+                                    static_cast<std::size_t>(to[outer] - from[outer] + 1));
+        const detail::WallRenewal<Dim> renewal{grid_,
+                                               shares_,
+                                               params_.closed_below,
+                                               {params_.levels, params_.flatness, params_.bounded_slope},
+                                               cell_diagonal_};
+        open_cells_ += renewal.run(wall, from, to, slabs);
         require(open_cells_ > 0,
                 {"Walls: open cells of the grid", "at least 1", "",
                  "is the distance above 0 in the water, and does the grid cover some of it?"},
                 open_cells_);
-        each_block([&](Slab& slab, const Range& cells) { find_wall_cells(slab, cells); });
-        parallel_tasks(static_cast<Index>(slabs.size()), [&](Index n) {
-            auto& found = slabs[static_cast<std::size_t>(n)].wall_cells;
-            std::sort(found.begin(), found.end(),
-                      [](const auto& a, const auto& b) { return a.cell < b.cell; });
-        });
         merge(from, to, slabs);
-    }
-
-    [[noreturn]] static void fail_at(const Point<Dim>& x) {
-        std::string place;
-        for (int a = 0; a < Dim; ++a)
-            place +=
-                std::string(a > 0 ? ", " : "") + Grid<Dim>::axis_name(a) + " = " + short_text(x[a]) + " m";
-        fail({"Walls: distance at " + place, "a number", "m",
-              "look for a division by 0 or the root of a negative number in the shape"},
-             "nan");
-    }
-
-    template <class Shape>
-    void cut(Slab& slab, const Range& cells, const Shape& wall) {
-        detail::Probe<Dim, Shape> distance(wall);
-        const Block block(grid_, cells, distance, {params_.levels, params_.flatness, params_.bounded_slope},
-                          cell_diagonal_);
-        const bool whole = block.content() != detail::Content::cut;
-        const Real all = block.content() == detail::Content::open ? 1 : 0;
-        detail::each_cell<Dim>(cells, [&](const Cell& c) {
-            const Offset cell = grid_.layout().at(c);
-            if (inside(c)) slab.opened -= volume_[cell] > 0;
-            volume_[cell] = whole ? all : block.volume(c);
-            for (int a = 0; a < Dim; ++a) area_[at(a)][cell] = whole ? all : block.area(a, c);
-            too_small_[cell] = volume_[cell] <= params_.closed_below;
-            if (!whole && block.is_cut(c)) slab.seeds.push_back({cell, block.point(c)});
-        });
-        if (distance.failed() && !slab.failed) slab.failed = true, slab.where = distance.where();
-    }
-
-    void close_faces(const Range& cells) noexcept {
-        const Layout<Dim>& layout = grid_.layout();
-        detail::each_cell<Dim>(cells, [&](const Cell& c) {
-            const Offset cell = layout.at(c);
-            for (int a = 0; a < Dim; ++a) {
-                Real& share = area_[at(a)][cell];
-                const bool neighbour_closed = c[at(a)] > -ghosts && too_small_[cell - layout.stride[at(a)]];
-                if (share <= params_.closed_below || too_small_[cell] || neighbour_closed) share = 0;
-            }
-        });
-    }
-
-    void close_cells(Slab& slab, const Range& cells) noexcept {
-        const Layout<Dim>& layout = grid_.layout();
-        detail::each_cell<Dim>(cells, [&](const Cell& c) {
-            const Offset cell = layout.at(c);
-            bool open = false;
-            for (int a = 0; a < Dim; ++a) {
-                // Faces beyond the last ghosts are not stored, and count as open.
-                const bool has_upper = c[at(a)] + 1 < grid_.cells(a) + ghosts;
-                open = open || area_[at(a)][cell] > 0 || !has_upper ||
-                       area_[at(a)][cell + layout.stride[at(a)]] > 0;
-            }
-            if (too_small_[cell] || !open) volume_[cell] = 0;
-            if (inside(c)) slab.opened += volume_[cell] > 0;
-        });
-    }
-
-    void find_wall_cells(Slab& slab, const Range& cells) {
-        detail::each_cell<Dim>(cells, [&](const Cell& c) {
-            const Offset cell = grid_.layout().at(c);
-            const bool seeded = slab.next_seed < slab.seeds.size() && slab.seeds[slab.next_seed].cell == cell;
-            if (inside(c) && volume_[cell] > 0)
-                add_wall_cell(slab, c, cell, seeded ? slab.seeds[slab.next_seed].point : grid_.centre(c));
-            slab.next_seed += seeded;
-        });
-    }
-
-    /// `near` is on the wall, or at least in the cell.
-    void add_wall_cell(Slab& slab, const Cell& c, Offset cell, const Point<Dim>& near) {
-        const Point<Dim> centre = grid_.centre(c);
-        const Real whole = grid_.volume(c);
-        Point<Dim> area;                                        // of the wall, by its components [m2]
-        Real moment = -Dim * volume_[cell] * whole, faces = 0;  // of faces about the centre, less Dim V [m3]
-        for (int a = 0; a < Dim; ++a) {
-            const Real size = grid_.size(a, c[at(a)]), face = whole / size;
-            const Real lower = area_[at(a)][cell], upper = area_[at(a)][cell + grid_.layout().stride[at(a)]];
-            area[a] = face * (upper - lower);
-            moment += 0.5 * size * face * (upper + lower);
-            faces = std::max(faces, face);
-        }
-        const Real total = area.norm();
-        if (total < 1e-15 * faces) return;
-        const Point<Dim> normal = area / total;
-        Point<Dim> point = near + (moment / total - normal.dot(near - centre)) * normal;
-        for (int a = 0; a < Dim; ++a)  // walls that turn within the cell
-            point[a] = std::clamp(point[a], grid_.face(a, c[at(a)]), grid_.face(a, c[at(a)] + 1));
-        slab.wall_cells.push_back({cell, total, normal, point});
     }
 
     /// Puts the wall cells of slabs in the place of those that stood in blocks `from` to `to`.
     void merge(const Cell& from, const Cell& to, std::span<const Slab> slabs) {
-        const Cell low = cells_of(from).low, high = cells_of(to).high;
+        const Cell low = detail::cells_of_block<Dim>(grid_, from).low,
+                   high = detail::cells_of_block<Dim>(grid_, to).high;
         const Layout<Dim>& layout = grid_.layout();
         const auto renewed = [&](Offset cell) {
             for (int n = 0; n < Dim; ++n) {
-                const std::size_t a = n == 0 ? 0 : at(Dim - n);  // by decreasing stride
+                const std::size_t a = detail::axis_in_memory<Dim>(n);  // by decreasing stride
                 const auto number = static_cast<int>(cell / layout.stride[a]) - ghosts;
                 if (number < low[a] || number >= high[a]) return false;
                 cell %= layout.stride[a];
@@ -345,12 +203,9 @@ private:
 
     Params params_;
     Grid<Dim> grid_;
-    Field<Real> volume_;
-    FaceField<Dim> area_;
-    Field<std::uint8_t> too_small_;  ///< no more than `closed_below` is open
+    detail::WallShares<Dim> shares_;
     std::vector<WallCell<Dim>> wall_cells_, merged_;
     std::vector<Slab> slabs_;
-    Cell blocks_{};           ///< along each axis
     Real cell_diagonal_ = 0;  ///< of the largest cell [m]
     Index open_cells_ = 0;
 };

@@ -1,0 +1,101 @@
+// One flow of bench/peers, timed: peers_water --case NAME. Prints JSON.
+
+#include <abrade/core/simd.hpp>
+#include <abrade/fluid/grid_fluid.hpp>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <iostream>
+#include <numeric>
+
+using namespace abrade;
+
+namespace {
+
+struct Options {
+    std::string scene = "cavity";
+    int warm = 10, steps = 20, rounds = 10, threads = 1;
+    Real tolerance = 1e-8;  ///< share of a cell's volume gained or lost in a step, root mean square [-]
+};
+
+/// Mean of |div u| dt, as OpenFOAM's "sum local" of continuity errors.
+Real divergence(const auto& fluid, Real dt) {
+    const Grid<3>& grid = fluid.grid();
+    const auto& stride = grid.layout().stride;
+    Real sum = 0;
+    grid.for_each([&](const CellNumber<3>& cell, Offset c) {
+        Real rate = 0;
+        for (std::size_t a = 0; a < 3; ++a)
+            rate += (fluid.velocity()[a][c + stride[a]] - fluid.velocity()[a][c]) /
+                    grid.size(static_cast<int>(a), cell[a]);
+        sum += std::abs(rate) * dt;
+    });
+    return sum / grid.layout().cell_count();
+}
+
+/// 64^3 cells, a lid of speed 1 on top along x, Re 1000.
+auto cavity(const Options& o) {
+    using Fluid = GridFluid<3>;
+    const int n = 64;
+    return Fluid({.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(1.0 / n)},
+                  .side_velocity = [](const Vec3& x, Real) { return Vec3(x.z() >= 1 ? 1 : 0, 0, 0); },
+                  .density = 1,
+                  .viscosity = 1e-3,
+                  .tolerance = o.tolerance});
+}
+
+/// Cells that hold water count as wet; those of the box count whether they do or not.
+void measure(const Options& o, Real dt, auto&& make, auto&& wet_cells) {
+    Real seconds = 0, wet_steps = 0, left = 0;
+    Index box = 0;
+    for (int round = 0; round < o.rounds; ++round) {
+        auto fluid = make();
+        box = fluid.grid().layout().cell_count();
+        for (int step = 0; step < o.warm; ++step) fluid.step(dt);
+        const auto start = std::chrono::steady_clock::now();
+        for (int step = 0; step < o.steps; ++step) fluid.step(dt);
+        seconds += std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
+        wet_steps += static_cast<Real>(wet_cells(fluid)) * o.steps;
+        left = std::max(left, divergence(fluid, dt));
+    }
+    const Real box_steps = static_cast<Real>(box) * o.steps * o.rounds;
+    const nlohmann::json result{{"case", o.scene},
+                                {"wet_cell_steps_per_s", wet_steps / seconds},
+                                {"box_cell_steps_per_s", box_steps / seconds},
+                                {"divergence_dt_mean", left},
+                                {"instruction_set", instruction_set},
+                                {"compiler", ABRADE_COMPILER}};
+    std::cout << result.dump() << "\n";
+}
+
+void run(const Options& o) {
+    if (o.scene == "cavity") {
+        const auto all = [](const auto& fluid) { return fluid.grid().layout().cell_count(); };
+        return measure(
+            o, 0.005, [&] { return cavity(o); }, all);
+    }
+    throw std::runtime_error(o.scene + " needs a free surface, which GridFluid does not have yet");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App app{"Times the flows that bench/peers/run compares."};
+    app.add_option("--case", options.scene)->check(CLI::IsMember({"cavity", "dam_break"}));
+    app.add_option("--steps", options.steps, "timed, in each round")->check(CLI::PositiveNumber);
+    app.add_option("--warm", options.warm, "steps before")->check(CLI::PositiveNumber);
+    app.add_option("--rounds", options.rounds, "from the beginning each")->check(CLI::PositiveNumber);
+    app.add_option("--tolerance", options.tolerance)->check(CLI::PositiveNumber);
+    app.add_option("--threads", options.threads)->check(CLI::PositiveNumber);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        set_thread_count(options.threads);
+        run(options);
+    } catch (const std::exception& problem) {
+        std::cerr << "error: " << problem.what() << "\n";
+        return 1;
+    }
+}

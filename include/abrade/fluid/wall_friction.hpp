@@ -1,0 +1,150 @@
+#pragma once
+// What walls do to water that flows along them.
+
+#include <abrade/fluid/sides.hpp>
+#include <abrade/fluid/walls.hpp>
+
+#include <algorithm>
+
+namespace abrade {
+
+/// How water is held by walls.
+struct WallLaw {
+    enum class Kind {
+        no_slip,      ///< shear nu u / d: the wall's layer is resolved
+        slip,         ///< none
+        logarithmic,  ///< rho u*^2, u* = kappa u / ln(30 d / k_s): rough walls whose layer is below a cell
+    };
+    Kind kind = Kind::no_slip;
+    Real roughness = 0;  ///< k_s, equivalent sand roughness of a logarithmic wall [m]
+
+    void validate() const {
+        if (kind == Kind::logarithmic)
+            require_positive(roughness, "WallLaw.roughness", "m",
+                             "k_s = (26 n)^6 by Strickler: 3.5e-3 m for Manning's n = 0.015");
+    }
+};
+
+/// Friction of walls inside cells, and at sides of the box where they are logarithmic: the velocity u at
+/// distance d from a wall of area A loses
+///   du/dt = - C u A / V,   C = nu / d or (kappa / ln(30 d / k_s))^2 |u|,
+/// V the open volume about the face. Taken implicitly, so thin cells do not rule the step. A wall's area is
+/// shared out among the faces of its cell; what flows into the wall is 0 anyway, so each component is held
+/// alone.
+template <int Dim>
+class WallFriction {
+public:
+    static constexpr Real karman = 0.41;
+
+    WallFriction(const Grid<Dim>& grid, const Sides<Dim>& sides, const WallLaw& law, const Walls<Dim>* walls)
+        : layout_(grid.layout()), law_(law) {
+        law_.validate();
+        if (law_.kind == WallLaw::Kind::slip) return;
+        if (walls)
+            for (const WallCell<Dim>& w : walls->wall_cells()) add(grid, *walls, w);
+        if (law_.kind == WallLaw::Kind::logarithmic) add_sides(grid, sides, walls);
+        for (auto& list : held_) merge(list);
+    }
+
+    bool empty() const noexcept {
+        return std::all_of(held_.begin(), held_.end(), [](const auto& list) { return list.empty(); });
+    }
+
+    /// Slows `u` down over a step [s]; `viscosity` is kinematic [m2/s].
+    void apply(FaceField<Dim>& u, Real step, Real viscosity) const {
+        std::array<std::vector<Real>, Dim> slower;  // of what they are now, all components
+        for (int a = 0; a < Dim; ++a) {
+            slower[a].reserve(held_[a].size());
+            for (const Held& h : held_[a]) {
+                const Real rate =
+                    law_.kind == WallLaw::Kind::no_slip
+                        ? viscosity / h.distance
+                        : square(karman / std::log(30 * std::max(h.distance / law_.roughness, 0.5))) *
+                              speed(u, a, h.face);
+                slower[a].push_back(1 / (1 + step * rate * h.per_volume));
+            }
+        }
+        for (int a = 0; a < Dim; ++a)
+            for (std::size_t k = 0; k < held_[a].size(); ++k) u[a][held_[a][k].face] *= slower[a][k];
+    }
+
+private:
+    struct Held {
+        Offset face = 0;
+        Real distance = 0;    ///< of the face's centre from the wall [m]
+        Real per_volume = 0;  ///< wall area over open volume [1/m]
+    };
+
+    /// At a face: its own component, and the mean of the four around it of each other one.
+    Real speed(const FaceField<Dim>& u, int a, Offset face) const noexcept {
+        Real sum = square(u[a][face]);
+        for (int b = 0; b < Dim; ++b) {
+            if (b == a) continue;
+            const Offset up = layout_.stride[b], back = layout_.stride[a];
+            sum += square(0.25 * (u[b][face] + u[b][face + up] + u[b][face - back] + u[b][face + up - back]));
+        }
+        return std::sqrt(sum);
+    }
+
+    CellNumber<Dim> number_of(Offset c) const noexcept {
+        CellNumber<Dim> cell{};
+        constexpr int g = Layout<Dim>::ghosts;
+        cell[0] = static_cast<int>(c / layout_.stride[0]) - g;
+        Offset rest = c % layout_.stride[0];
+        if constexpr (Dim == 3) {
+            cell[2] = static_cast<int>(rest / layout_.stride[2]) - g;
+            rest %= layout_.stride[2];
+        }
+        cell[1] = static_cast<int>(rest) - g;
+        return cell;
+    }
+
+    void add(const Grid<Dim>& grid, const Walls<Dim>& walls, const WallCell<Dim>& wall) {
+        const CellNumber<Dim> cell = number_of(wall.cell);
+        for (int a = 0; a < Dim; ++a)
+            for (const bool upper : {false, true}) {
+                CellNumber<Dim> of = cell;
+                if (upper) ++of[a];
+                const Offset face = layout_.at(of), back = layout_.stride[a];
+                if (walls.open_area()[a][face] == 0) continue;
+                const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
+                const Real distance = wall.normal.dot(grid.face_centre(a, of) - wall.point);
+                held_[a].push_back({face, std::max(distance, 0.05 * grid.size(a, cell[a])),
+                                    0.5 * wall.area / (std::max(open, 0.01) * grid.volume(cell))});
+            }
+    }
+
+    void add_sides(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>* walls) {
+        for (int b = 0; b < Dim; ++b)
+            for (const int end : {0, 1}) {
+                if (sides[b][static_cast<std::size_t>(end)] != Side::wall) continue;
+                grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
+                    if (cell[b] != (end == 0 ? 0 : grid.cells(b) - 1)) return;
+                    for (int a = 0; a < Dim; ++a)
+                        if (a != b && (!walls || walls->open_area()[a][c] > 0))
+                            held_[a].push_back({c, 0.5 * grid.size(b, cell[b]), 1 / grid.size(b, cell[b])});
+                });
+            }
+    }
+
+    /// One entry per face: areas add up, the nearest wall counts.
+    static void merge(std::vector<Held>& list) {
+        std::stable_sort(list.begin(), list.end(),
+                         [](const Held& x, const Held& y) { return x.face < y.face; });
+        std::size_t last = 0;
+        for (std::size_t k = 1; k < list.size(); ++k)
+            if (list[k].face == list[last].face) {
+                list[last].per_volume += list[k].per_volume;
+                list[last].distance = std::min(list[last].distance, list[k].distance);
+            } else {
+                list[++last] = list[k];
+            }
+        if (!list.empty()) list.resize(last + 1);
+    }
+
+    Layout<Dim> layout_;
+    WallLaw law_;
+    std::array<std::vector<Held>, Dim> held_;
+};
+
+}  // namespace abrade

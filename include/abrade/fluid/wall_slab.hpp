@@ -1,0 +1,226 @@
+#pragma once
+// What a wall leaves open of a grid, slab by slab, and the wall in the cells that it cuts.
+
+#include <abrade/core/parallel.hpp>
+#include <abrade/fluid/wall_block.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace abrade {
+
+/// The wall in one cell.
+template <int Dim>
+struct WallCell {
+    Offset cell = 0;
+    Real area = 0;                           ///< [m2]; in two dimensions [m]
+    Point<Dim> normal = Point<Dim>::Zero();  ///< into the water, of unit length
+    Point<Dim> point = Point<Dim>::Zero();   ///< on the wall [m]
+};
+
+namespace detail {
+
+/// Open shares of cells and of their lower faces.
+template <int Dim>
+struct WallShares {
+    Field<Real> volume;
+    FaceField<Dim> area;
+    Field<std::uint8_t> too_small;  ///< no more than `closed_below` is open
+};
+
+/// Blocks of one number along the outer axis: the work of one thread.
+template <int Dim>
+struct WallSlab {
+    /// A point of the wall, until areas are known.
+    struct Seed {
+        Offset cell;
+        Point<Dim> point;
+    };
+    std::vector<CellRange<Dim>> near;  ///< blocks that the wall may pass through
+    std::vector<Seed> seeds;           ///< in the order in which their cells are visited
+    std::vector<WallCell<Dim>> wall_cells;
+    Index opened = 0;  ///< cells, less those closed
+    bool failed = false;
+    Point<Dim> where;  ///< [m]
+};
+
+/// Cells of a block, ghosts of the grid included.
+template <int Dim>
+CellRange<Dim> cells_of_block(const Grid<Dim>& grid, const CellNumber<Dim>& block) noexcept {
+    constexpr int side = WallBlock<Dim>::side, ghosts = Layout<Dim>::ghosts;
+    CellRange<Dim> range;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        range.low[a] = block[a] * side - ghosts;
+        range.high[a] = std::min(range.low[a] + side, grid.cells(static_cast<int>(a)) + ghosts);
+    }
+    return range;
+}
+
+/// Renews the shares of a range of blocks.
+template <int Dim>
+struct WallRenewal {
+    using Cell = CellNumber<Dim>;
+    using Range = CellRange<Dim>;
+    using Slab = WallSlab<Dim>;
+    static constexpr int ghosts = Layout<Dim>::ghosts;
+    static constexpr std::size_t outer = Layout<Dim>::outer;
+
+    const Grid<Dim>& grid;
+    WallShares<Dim>& shares;
+    Real closed_below;  ///< [-]
+    Subdivision rule;
+    Real cell_diagonal;  ///< of the largest cell [m]
+
+    /// Cells of blocks `from` to `to`: shares as the wall cuts them, then faces that are closed, then cells,
+    /// then what wall is left. Each step reads what its neighbours left in the one before.
+    /// Returns by how many more cells of the box are open. Throws InputError where the distance is NaN.
+    template <class Shape>
+    Index run(const Shape& wall, const Cell& from, const Cell& to, std::span<Slab> slabs) const {
+        const auto each_slab = [&](auto&& work) {
+            parallel_tasks(static_cast<Index>(slabs.size()),
+                           [&](Index n) { work(slabs[static_cast<std::size_t>(n)], from[outer] + n); });
+        };
+        each_slab([&](Slab& slab, int number) {
+            slab.near.clear(), slab.seeds.clear(), slab.wall_cells.clear();
+            slab.opened = 0, slab.failed = false;
+            Range blocks{from, to};
+            blocks.low[outer] = blocks.high[outer] = number;
+            for (int& end : blocks.high) ++end;
+            each_cell<Dim>(blocks,
+                           [&](const Cell& block) { cut(slab, cells_of_block<Dim>(grid, block), wall); });
+        });
+        for (const Slab& slab : slabs)
+            if (slab.failed) fail_at(slab.where);
+        each_slab([&](Slab& slab, int) {
+            for (const Range& cells : slab.near) close_faces(cells);
+        });
+        each_slab([&](Slab& slab, int) {
+            for (const Range& cells : slab.near) close_cells(slab, cells);
+        });
+        each_slab([&](Slab& slab, int) { find_wall_cells(slab); });
+        Index opened = 0;
+        for (const Slab& slab : slabs) opened += slab.opened;
+        return opened;
+    }
+
+private:
+    static std::size_t at(int axis) noexcept { return static_cast<std::size_t>(axis); }
+    bool inside(const Cell& cell) const noexcept {
+        for (int a = 0; a < Dim; ++a)
+            if (cell[at(a)] < 0 || cell[at(a)] >= grid.cells(a)) return false;
+        return true;
+    }
+
+    [[noreturn]] static void fail_at(const Point<Dim>& x) {
+        std::string place;
+        for (int a = 0; a < Dim; ++a)
+            place +=
+                std::string(a > 0 ? ", " : "") + Grid<Dim>::axis_name(a) + " = " + short_text(x[a]) + " m";
+        fail({"Walls: distance at " + place, "a number", "m",
+              "look for a division by 0 or the root of a negative number in the shape"},
+             "nan");
+    }
+
+    template <class Shape>
+    void cut(Slab& slab, const Range& cells, const Shape& wall) const {
+        Probe<Dim, Shape> distance(wall);
+        const WallBlock<Dim> block(grid, cells, distance, rule, cell_diagonal);
+        const auto put = [&](const Cell& c, Real volume, auto&& area) {
+            const Offset cell = grid.layout().at(c);
+            if (inside(c)) slab.opened -= shares.volume[cell] > 0;
+            shares.volume[cell] = volume;
+            shares.too_small[cell] = volume <= closed_below;
+            for (int a = 0; a < Dim; ++a) shares.area[at(a)][cell] = area(a);
+            return cell;
+        };
+        if (block.content() == Content::cut) {
+            slab.near.push_back(cells);
+            each_cell<Dim>(cells, [&](const Cell& c) {
+                const Offset cell = put(c, block.volume(c), [&](int a) { return block.area(a, c); });
+                if (block.is_cut(c)) slab.seeds.push_back({cell, block.point(c)});
+            });
+        } else {
+            const bool open = block.content() == Content::open;
+            const Real all = open ? 1 : 0;
+            each_cell<Dim>(cells, [&](const Cell& c) {
+                put(c, all, [&](int) { return all; });
+                if (open && inside(c)) ++slab.opened;
+            });
+        }
+        if (distance.failed() && !slab.failed) slab.failed = true, slab.where = distance.where();
+    }
+
+    void close_faces(const Range& cells) const noexcept {
+        const Layout<Dim>& layout = grid.layout();
+        each_cell<Dim>(cells, [&](const Cell& c) {
+            const Offset cell = layout.at(c);
+            for (int a = 0; a < Dim; ++a) {
+                Real& share = shares.area[at(a)][cell];
+                const bool neighbour_closed =
+                    c[at(a)] > -ghosts && shares.too_small[cell - layout.stride[at(a)]];
+                if (share <= closed_below || shares.too_small[cell] || neighbour_closed) share = 0;
+            }
+        });
+    }
+
+    void close_cells(Slab& slab, const Range& cells) const noexcept {
+        const Layout<Dim>& layout = grid.layout();
+        each_cell<Dim>(cells, [&](const Cell& c) {
+            const Offset cell = layout.at(c);
+            bool open = false;
+            for (int a = 0; a < Dim; ++a) {
+                // Faces beyond the last ghosts are not stored, and count as open.
+                const bool has_upper = c[at(a)] + 1 < grid.cells(a) + ghosts;
+                open = open || shares.area[at(a)][cell] > 0 || !has_upper ||
+                       shares.area[at(a)][cell + layout.stride[at(a)]] > 0;
+            }
+            if (shares.too_small[cell] || !open) shares.volume[cell] = 0;
+            if (inside(c)) slab.opened += shares.volume[cell] > 0;
+        });
+    }
+
+    void find_wall_cells(Slab& slab) const {
+        auto seed = slab.seeds.cbegin();
+        for (const Range& cells : slab.near)
+            each_cell<Dim>(cells, [&](const Cell& c) {
+                const Offset cell = grid.layout().at(c);
+                const bool seeded = seed != slab.seeds.cend() && seed->cell == cell;
+                if (inside(c) && shares.volume[cell] > 0)
+                    add_wall_cell(slab, c, cell, seeded ? seed->point : grid.centre(c));
+                seed += seeded;
+            });
+        std::sort(slab.wall_cells.begin(), slab.wall_cells.end(),
+                  [](const auto& a, const auto& b) { return a.cell < b.cell; });
+    }
+
+    /// `near` is on the wall, or at least in the cell.
+    void add_wall_cell(Slab& slab, const Cell& c, Offset cell, const Point<Dim>& near) const {
+        const Point<Dim> centre = grid.centre(c);
+        const Real whole = grid.volume(c);
+        Point<Dim> area;  // of the wall, by its components [m2]
+        Real moment = -Dim * shares.volume[cell] * whole,
+             faces = 0;  // of faces about the centre, less Dim V [m3]
+        for (int a = 0; a < Dim; ++a) {
+            const Real size = grid.size(a, c[at(a)]), face = whole / size;
+            const Real lower = shares.area[at(a)][cell],
+                       upper = shares.area[at(a)][cell + grid.layout().stride[at(a)]];
+            area[a] = face * (upper - lower);
+            moment += 0.5 * size * face * (upper + lower);
+            faces = std::max(faces, face);
+        }
+        const Real total = area.norm();
+        if (total < 1e-15 * faces) return;
+        const Point<Dim> normal = area / total;
+        Point<Dim> point = near + (moment / total - normal.dot(near - centre)) * normal;
+        for (int a = 0; a < Dim; ++a)  // walls that turn within the cell
+            point[a] = std::clamp(point[a], grid.face(a, c[at(a)]), grid.face(a, c[at(a)] + 1));
+        slab.wall_cells.push_back({cell, total, normal, point});
+    }
+};
+
+}  // namespace detail
+}  // namespace abrade
