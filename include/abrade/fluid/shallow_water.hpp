@@ -15,8 +15,8 @@ namespace abrade {
 /// water is deep.
 ///
 /// Finite volumes: limited linear profiles of surface and speed (van Leer 1977), hydrostatic reconstruction
-/// (Audusse et al. 2004), HLLC fluxes (Toro 2001), two Runge-Kutta stages (Gottlieb, Shu 1998), friction
-/// implicit. Of second order where water is smooth; lakes stay at rest over any bed, depths stay positive,
+/// (Audusse et al. 2004), HLLC fluxes (Toro 2001), half a step of prediction (van Leer 1984), implicit
+/// friction. Of second order where water is smooth; lakes stay at rest over any bed, depths stay positive,
 /// volume is kept to round-off, uniform flow down a slope is exact. Works only where water is and may come in
 /// the next step. A step that would make a depth negative is repeated at half its length.
 template <int Dim>

@@ -103,22 +103,27 @@ struct ShallowState {
 /// Comput. 25 (2004) 2050, doi:10.1137/S1064827503431090), with profiles that do not change in time.
 template <int Dim>
 struct ShallowBed {
-    std::vector<Real> cell;                   ///< [m]
+    std::vector<Real> cell;                          ///< [m]
+    std::array<std::vector<Real>, Dim> half_change;  ///< across a cell along that axis, limited [m]
     std::array<std::vector<Real>, Dim> face;  ///< between a cell and the one before it along that axis [m]
 
     /// Of cells, ghosts among them.
     void find_faces(const ShallowGrid<Dim>& grid) {
         for (std::size_t a = 0; a < Dim; ++a) {
-            face[a].assign(grid.size(), 0.0);
+            half_change[a].assign(grid.size(), 0.0), face[a].assign(grid.size(), 0.0);
             const std::size_t step = a == 0 ? 1 : static_cast<std::size_t>(grid.stride());
-            const auto reach = [&](std::size_t k, Real side) {
-                return cell[k] +
-                       side * 0.5 * limited_slope(cell[k] - cell[k - step], cell[k + step] - cell[k]);
-            };
-            for (Index j = 0; j < grid.count(1) + (a == 1); ++j)
-                for (Index i = 0; i < grid.count(0) + (a == 0); ++i) {
+            const Index x = a == 0, y = a == 1,
+                        beyond = Dim == 2;  // one row of ghosts along the axis, and beside it
+            for (Index j = -beyond; j < grid.count(1) + beyond; ++j)
+                for (Index i = -1; i <= grid.count(0); ++i) {
                     const std::size_t k = grid.at(i, j);
-                    face[a][k] = std::max(reach(k - step, 1), reach(k, -1));
+                    half_change[a][k] =
+                        limited_half_change(cell[k] - cell[k - step], cell[k + step] - cell[k]);
+                }
+            for (Index j = 0; j < grid.count(1) + y; ++j)
+                for (Index i = 0; i < grid.count(0) + x; ++i) {
+                    const std::size_t k = grid.at(i, j), before = k - step;
+                    face[a][k] = std::max(cell[before] + half_change[a][before], cell[k] - half_change[a][k]);
                 }
         }
     }
@@ -156,7 +161,7 @@ public:
             }
     }
 
-    /// Where water may come in the next step: two cells a step, one in each stage. `periodic` says along
+    /// Where water may come in the next step: one cell further. `periodic` says along
     /// which axes the grid meets itself.
     void find_reached(const std::array<bool, 2>& periodic) {
         due.clear();
@@ -193,7 +198,7 @@ private:
             return;
         const CellBox& wet = list[static_cast<std::size_t>(q * across_ + p)].wet;
         if (wet.empty()) return;
-        const CellBox near = wet.moved(x, y).grown(ShallowGrid<Dim>::ghosts).within(tile.cells);
+        const CellBox near = wet.moved(x, y).grown(1).within(tile.cells);
         if (!near.empty()) tile.reached = tile.reached.with(near);
     }
     static bool wrap(Index& tile, Index& shift, Index tiles, Index cells, bool periodic) noexcept {

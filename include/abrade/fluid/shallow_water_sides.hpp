@@ -37,6 +37,7 @@ public:
     }
 
     bool is_inflow() const noexcept { return side_.kind == WaterSide::Kind::inflow; }
+    bool is_wall() const noexcept { return side_.kind == WaterSide::Kind::wall; }
     bool is_periodic() const noexcept { return side_.kind == WaterSide::Kind::periodic; }
     bool is_open() const noexcept { return is_inflow() || side_.kind == WaterSide::Kind::outflow; }
     Index count() const noexcept { return count_; }
@@ -64,7 +65,7 @@ public:
     /// Bed of the ghost cells: mirrored in a wall, repeated in periodic space, else carried on in a straight
     /// line.
     void extend_bed(const ShallowGrid<Dim>& grid, std::vector<Real>& column) const {
-        for (Index k = 0; k < count_; ++k)
+        for (Index k = -corner(); k < count_ + corner(); ++k)
             for (Index g = 1; g <= ShallowGrid<Dim>::ghosts; ++g) {
                 const Real edge = column[cell(grid, 0, k)];
                 const Real inner = column[cell(grid, std::min<Index>(1, grid.count(axis_) - 1), k)];
@@ -101,19 +102,20 @@ public:
         if (is_inflow() && side_.depth == 0) meet(grid, on, state);
         const auto a = static_cast<std::size_t>(axis_);
         const Real inwards = high_ ? -1 : 1;
-        for (Index k = 0; k < count_; ++k)
+        for (Index k = -corner(); k < count_ + corner(); ++k)
             for (Index g = 1; g <= ShallowGrid<Dim>::ghosts; ++g) {
                 const std::size_t ghost = cell(grid, -g, k);
                 if (is_inflow()) {
-                    state.depth[ghost] = depth[at(k)];
+                    const std::size_t s = at(std::clamp<Index>(k, 0, count_ - 1));
+                    state.depth[ghost] = depth[s];
                     for (auto& column : state.speed) column[ghost] = 0;
-                    state.speed[a][ghost] = inwards * speed[at(k)];
+                    state.speed[a][ghost] = inwards * speed[s];
                     continue;
                 }
                 const std::size_t from = source(grid, g, k);
                 state.depth[ghost] = state.depth[from];
                 for (auto& column : state.speed) column[ghost] = column[from];
-                if (side_.kind == WaterSide::Kind::wall) state.speed[a][ghost] = -state.speed[a][from];
+                if (is_wall()) state.speed[a][ghost] = -state.speed[a][from];
             }
     }
 
@@ -137,11 +139,14 @@ public:
 private:
     static std::size_t at(Index k) noexcept { return static_cast<std::size_t>(k); }
 
+    /// Cells of the corners beyond both ends that this side fills: the sides along y do, after those along x.
+    Index corner() const noexcept { return axis_ == 1 ? ShallowGrid<Dim>::ghosts : 0; }
+
     /// The cell whose state ghost `g` takes on.
     std::size_t source(const ShallowGrid<Dim>& grid, Index g, Index k) const noexcept {
         const Index last = grid.count(axis_) - 1;
         if (is_periodic()) return cell(grid, std::max<Index>(last + 1 - g, 0), k);
-        return cell(grid, side_.kind == WaterSide::Kind::wall ? std::min(g - 1, last) : 0, k);
+        return cell(grid, is_wall() ? std::min(g - 1, last) : 0, k);
     }
 
     bool is_subcritical(Real level, Real gravity) const noexcept {
@@ -182,7 +187,7 @@ private:
     std::vector<Real> bed, interior;  ///< [m]
 
 public:
-    std::vector<Real> flux;          ///< along the axis, of volume, mean over a step's stages [m2/s]
+    std::vector<Real> flux;          ///< along the axis, of volume, in the last step [m2/s]
     std::vector<Real> depth, speed;  ///< of an inflow: [m], inwards [m/s]
 };
 

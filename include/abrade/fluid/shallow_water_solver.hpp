@@ -18,7 +18,7 @@ public:
                                                  .gravity_manning2 = p.gravity.norm() * square(p.manning),
                                                  .dry_depth = p.dry_depth,
                                                  .fastest = p.fastest},
-          tiles_(grid_), friction_(p.manning > 0 ? grid_.size() : 0, 0.0) {
+          tiles_(grid_) {
         for (std::size_t a = 0; a < Dim; ++a)
             for (std::size_t end = 0; end < 2; ++end)
                 sides_[a][end] = ShallowSide<Dim>(p.sides[a][end], grid_, static_cast<int>(a), end == 1);
@@ -71,14 +71,15 @@ public:
         each_side([&](ShallowSide<Dim>& side) {
             if (side.is_inflow()) tiles_.add_reached(side.first_cells(grid_));
         });
-        const std::size_t middle = (current_ + 1) % 3, next = (current_ + 2) % 3;
+        ShallowState<Dim>&present = states_[current_], &next = states_[1 - current_];
+        each_side([&](ShallowSide<Dim>& side) { side.fill(grid_, bed_, present); });
         for (int halvings = 0;; ++halvings, dt *= 0.5) {
-            if (const ShallowState<Dim>* wrong = try_step(dt, states_[middle], states_[next])) {
-                if (halvings == most_halvings || !only_negative(*wrong)) fail_step(*wrong, dt, time);
+            if (!try_step(present, next, dt)) {
+                if (halvings == most_halvings || !only_negative(next)) fail_step(next, dt, time);
                 ++repeated_;
                 continue;
             }
-            current_ = next;
+            current_ = 1 - current_;
             ++steps_;
             swiftest_ = 0;
             for (const Index t : tiles_.due)
@@ -105,7 +106,7 @@ private:
         if (p.bed)
             each_cell([&](Index i, Index j) {
                 const Real z = p.bed(grid_.centre(0, i), at_y(j));
-                require(std::isfinite(z), {"ShallowWater.bed in " + grid_.name_of(i, j), "finite", "m"}, z);
+                if (!std::isfinite(z)) require_finite(z, "ShallowWater.bed in " + grid_.name_of(i, j), "m");
                 bed_.cell[grid_.at(i, j)] = z;
             });
         each_side([&](ShallowSide<Dim>& side) { side.extend_bed(grid_, bed_.cell); });
@@ -122,17 +123,18 @@ private:
             each_cell([&](Index i, Index j) {
                 const std::size_t k = grid_.at(i, j);
                 const Real x = grid_.centre(0, i), y = at_y(j), level = p.surface(x, y);
-                require(std::isfinite(level),
-                        {"ShallowWater.surface in " + grid_.name_of(i, j), "finite", "m"}, level);
+                if (!std::isfinite(level))
+                    require_finite(level, "ShallowWater.surface in " + grid_.name_of(i, j), "m");
                 start.depth[k] = std::max(0.0, level - bed_.cell[k]);
                 if (start.depth[k] <= p.dry_depth) return;
                 for (std::size_t a = 0; a < Dim; ++a) {
                     if (!p.speed[a]) continue;
                     const Real u = p.speed[a](x, y);
-                    require(std::abs(u) <= p.fastest,
-                            {"ShallowWater.speed in " + grid_.name_of(i, j),
-                             "within ShallowWater.fastest (" + to_text(p.fastest) + " m/s)", "m/s"},
-                            u);
+                    if (!(std::abs(u) <= p.fastest))
+                        require(false,
+                                {"ShallowWater.speed in " + grid_.name_of(i, j),
+                                 "within ShallowWater.fastest (" + to_text(p.fastest) + " m/s)", "m/s"},
+                                u);
                     start.speed[a][k] = u;
                 }
             });
@@ -184,27 +186,15 @@ private:
         return most;
     }
 
-    /// Leaves the present state alone. Gives back the state that went wrong, or nothing.
-    const ShallowState<Dim>* try_step(Real dt, ShallowState<Dim>& middle, ShallowState<Dim>& next) {
+    /// False where a depth or a speed is unsound. Leaves the present state alone.
+    bool try_step(const ShallowState<Dim>& present, ShallowState<Dim>& next, Real dt) {
         each_side([](ShallowSide<Dim>& side) { std::fill(side.flux.begin(), side.flux.end(), 0.0); });
-        ShallowState<Dim>& begin = states_[current_];
-        if (!run_stage<false>({&begin, &begin, &middle, friction_.data(), dt}, begin)) return &middle;
-        if (!run_stage<true>({&begin, &middle, &next, friction_.data(), dt}, middle)) return &next;
-        return nullptr;
-    }
-    /// False where a depth or a speed is unsound.
-    template <bool second>
-    bool run_stage(const ShallowStage<Dim>& stage, ShallowState<Dim>& from) {
-        each_side([&](ShallowSide<Dim>& side) { side.fill(grid_, bed_, from); });
         // A worker's rows are made once for several tiles. Which tiles go together changes no bit.
         const auto due = static_cast<Index>(tiles_.due.size()), workers = std::min<Index>(due, 16);
         parallel_tasks(workers, [&](Index worker) {
             ShallowSweep<Dim> sweep(grid_, bed_, forces_, sides_);
-            for (Index n = worker * due / workers; n < (worker + 1) * due / workers; ++n) {
-                ShallowTile& tile = tiles_.list[at(tiles_.due[at(n)])];
-                tile.unsound = false;
-                sweep.template run<second>(stage, tile);
-            }
+            for (Index n = worker * due / workers; n < (worker + 1) * due / workers; ++n)
+                sweep.run(present, next, dt, tiles_.list[at(tiles_.due[at(n)])]);
         });
         return std::none_of(tiles_.due.begin(), tiles_.due.end(),
                             [&](Index t) { return tiles_.list[at(t)].unsound; });
@@ -256,10 +246,9 @@ private:
     ShallowTiles<Dim> tiles_;
     std::array<std::array<ShallowSide<Dim>, 2>, Dim> sides_;
     std::array<bool, 2> periodic_{};
-    std::array<ShallowState<Dim>, 3> states_;  ///< the present one, and two to work on
+    std::array<ShallowState<Dim>, 2> states_;  ///< the present one, and the next
     std::size_t current_ = 0;
-    std::vector<Real> friction_;  ///< its rate as a step begins [1/s]
-    Real swiftest_ = 0;           ///< of all cells [1/s]
+    Real swiftest_ = 0;  ///< of all cells [1/s]
     Real volume_at_start_ = 0;
     std::array<std::array<Real, 2>, Dim> volume_in_{};
     Index steps_ = 0, repeated_ = 0;

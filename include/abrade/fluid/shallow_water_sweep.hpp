@@ -1,5 +1,5 @@
 #pragma once
-// Depth-averaged water, one stage of a step over one tile: slopes, fluxes and new states, row by row while
+// Depth-averaged water, one step of one tile: slopes, prediction, fluxes and new states, row by row while
 // they are in cache.
 
 #include <abrade/fluid/shallow_water_sides.hpp>
@@ -15,18 +15,12 @@ struct ShallowForces {
     Real fastest = 100;                ///< beyond it a run is wrong [m/s]
 };
 
-/// One stage of a step of second order (S. Gottlieb, C.-W. Shu, Math. Comput. 67 (1998) 73,
-/// doi:10.1090/S0025-5718-98-00913-2): U' = U + dt L(U), then (U + U' + dt L(U'))/2.
-template <int Dim>
-struct ShallowStage {
-    const ShallowState<Dim>* begin = nullptr;  ///< U
-    const ShallowState<Dim>* from = nullptr;   ///< U in the first stage, U' in the second
-    ShallowState<Dim>* to = nullptr;
-    Real* friction = nullptr;  ///< rate at the begin [1/s]: written in the first stage, read in the second
-    Real dt = 0;               ///< [s]
-};
-
-/// Works on a tile. Numbers are packs; what stands in ghost lanes behind a row's end means nothing.
+/// A step of second order by one flux for each face (MUSCL-Hancock: B. van Leer, SIAM J. Sci. Stat. Comput. 5
+/// (1984) 1, doi:10.1137/0905001): limited linear profiles of surface and speed, moved on by half a step by
+/// what they do within their cell, meet at the faces. Two Runge-Kutta stages would need twice the fluxes for
+/// the same order.
+///
+/// Numbers are packs; what stands in lanes behind a row's end means nothing.
 template <int Dim>
 class ShallowSweep {
 public:
@@ -34,40 +28,47 @@ public:
                  std::array<std::array<ShallowSide<Dim>, 2>, Dim>& sides) noexcept
         : grid_(grid), bed_(bed), forces_(forces), sides_(sides) {}
 
-    /// The second stage also finds which cells are wet and how swift they are.
-    template <bool second>
-    void run(const ShallowStage<Dim>& stage, ShallowTile& tile) noexcept {
-        stage_ = &stage;
+    /// Takes the tile's cells from one state to the next. Also finds which are wet, how swift they are, and
+    /// whether all is sound.
+    [[gnu::flatten]] void run(const ShallowState<Dim>& from, ShallowState<Dim>& to, Real dt,
+                              ShallowTile& tile) noexcept {
+        from_ = &from, to_ = &to, dt_ = dt;
         const CellBox box = tile.due();
         first_ = box.first[0], last_ = box.last[0];
-        if constexpr (second) tile.wet = {}, tile.swiftest = 0;
-        unsound_ = false;
+        tile.wet = {}, tile.swiftest = 0, tile.unsound = false;
         if constexpr (Dim == 2) {
-            for (Index j = box.first[1] - 2; j <= box.first[1] + 1; ++j) prepare(j);
-            slope_across(box.first[1] - 1), slope_across(box.first[1]);
+            level(box.first[1] - 2), level(box.first[1] - 1);
+            predict_row(box.first[1] - 1), predict_row(box.first[1]);
             flux_across(box.first[1] - 1);
         }
         for (Index j = box.first[1]; j < box.last[1]; ++j) {
             if constexpr (Dim == 2)
-                prepare(j + 2), slope_across(j + 1), flux_across(j);
+                predict_row(j + 1), flux_across(j);
             else
-                prepare(j);
-            slope_along(j), flux_along(j);
+                predict_row(j);
+            flux_along(j);
             if (forces_.gravity_manning2 > 0)
-                update<second, true>(j, tile);
+                update<true>(j, tile);
             else
-                update<second, false>(j, tile);
+                update<false>(j, tile);
         }
-        tile.unsound |= unsound_;
     }
 
 private:
     static constexpr Index room = ShallowTiles<Dim>::width + 2 * ShallowGrid<Dim>::margin;
-    static constexpr std::size_t slopes = Dim + 1;  ///< of surface, speed along x, along y
     static constexpr int lanes = pack_lanes;
+    static constexpr std::size_t rows = Dim;  ///< that are needed at a time
     using Row = std::array<Real, static_cast<std::size_t>(room)>;
+    /// A row of cells half a step on, with half the changes across each cell.
+    struct Predicted {
+        Row surface{};                                         ///< [m]
+        Row most{};                                            ///< depth that may be shown to a face [m]
+        std::array<Row, Dim> speed{};                          ///< [m/s]
+        std::array<Row, Dim> surface_change{};                 ///< [axis] [m]
+        std::array<std::array<Row, Dim>, Dim> speed_change{};  ///< [axis][of which speed] [m/s]
+    };
     struct Fluxes {
-        Row mass, low, high, along;
+        Row mass{}, low{}, high{}, along{};
     };
 
     static Pack load(const Real* from) noexcept { return detail::load<Pack>(from); }
@@ -75,139 +76,145 @@ private:
     std::size_t here(Index i) const noexcept {
         return static_cast<std::size_t>(i - first_ + ShallowGrid<Dim>::margin);
     }
-    static std::size_t ring(Index j) noexcept { return static_cast<std::size_t>(j + 8) % 4; }
-    static std::size_t pair(Index j) noexcept { return static_cast<std::size_t>(j + 8) % 2; }
+    std::size_t cell(Index i, Index j) const noexcept { return grid_.at(i, j); }
+    Row& surface(Index j) noexcept { return surface_[static_cast<std::size_t>(j + 8) % 4]; }
+    Predicted& predicted(Index j) noexcept { return predicted_[static_cast<std::size_t>(j + 8) % rows]; }
+    Fluxes& across(Index j) noexcept { return across_[static_cast<std::size_t>(j + 8) % rows]; }
 
-    /// Surface, and the most depth that a cell may show.
-    void prepare(Index j) noexcept {
-        Row &surface = surface_[ring(j)], &most = most_[ring(j)];
-        const std::size_t row = grid_.at(0, j);
+    /// The surface of a row.
+    void level(Index j) noexcept {
+        Row& to = surface(j);
         for (Index i = first_ - ShallowGrid<Dim>::block; i < last_ + ShallowGrid<Dim>::block; i += lanes) {
-            const std::size_t k = row + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i));
-            const Pack h = load(&stage_->from->depth[k]);
-            detail::put(&surface[here(i)], h + load(&bed_.cell[k]));
-            detail::put(&most[here(i)], select(h > Pack(forces_.dry_depth), h + h, Pack(0)));
+            const std::size_t k = cell(i, j);
+            detail::put(&to[here(i)], load(&from_->depth[k]) + load(&bed_.cell[k]));
         }
     }
 
-    void slope_along(Index j) noexcept {
-        const std::size_t row = grid_.at(0, j);
-        const Row& surface = surface_[ring(j)];
+    void predict_row(Index j) noexcept {
+        level(Dim == 2 ? j + 1 : j);
+        if (forces_.gravity_manning2 > 0)
+            predict<true>(j);
+        else
+            predict<false>(j);
+    }
+
+    /// Half a step on, with what happens within a cell:
+    ///   h_t = -(h u_x + u h_x) - (h v_y + v h_y),  u_t = -u u_x - v u_y - g eta_x + g_x - k u,  likewise v.
+    template <bool rough>
+    void predict(Index j) noexcept {
+        const Row& middle = surface(j);
+        Predicted& to = predicted(j);
+        const std::size_t stride = static_cast<std::size_t>(grid_.stride());
+        const Pack dry(forces_.dry_depth), half_step(0.5 * dt_), press(forces_.pressing);
+        const std::array<Pack, 2> per{Pack(dt_ / grid_.spacing(0)), Pack(dt_ / grid_.spacing(Dim - 1))};
         for (Index i = first_ - 1; i <= last_; i += lanes) {
-            const std::size_t b = here(i), k = row + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i));
-            const auto slope = [&](const Real* at) {
-                const Pack middle = load(at);
-                return limited_slope(middle - load(at - 1), load(at + 1) - middle);
-            };
-            detail::put(&slope_x_[0][b], slope(&surface[b]));
+            const std::size_t b = here(i), k = cell(i, j);
+            const Pack depth = load(&from_->depth[k]), level = load(&middle[b]);
+            std::array<Pack, Dim> speed;
+            for (std::size_t c = 0; c < Dim; ++c) speed[c] = load(&from_->speed[c][k]);
+            Pack rise(0);
+            std::array<Pack, Dim> gain;
+            for (std::size_t c = 0; c < Dim; ++c) gain[c] = half_step * Pack(forces_.along[c]);
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const std::size_t step = a == 0 ? 1 : stride;
+                const Real* before = a == 0 ? &middle[b - 1] : &surface(j - 1)[b];
+                const Real* after = a == 0 ? &middle[b + 1] : &surface(j + 1)[b];
+                const Pack change = limited_half_change(level - load(before), load(after) - level);
+                detail::put(&to.surface_change[a][b], change);
+                std::array<Pack, Dim> speed_change;
+                for (std::size_t c = 0; c < Dim; ++c) {
+                    const Real* of = &from_->speed[c][k];
+                    speed_change[c] =
+                        limited_half_change(speed[c] - load(of - step), load(of + step) - speed[c]);
+                    detail::put(&to.speed_change[a][c][b], speed_change[c]);
+                    gain[c] -= per[a] * speed[a] * speed_change[c];
+                }
+                gain[a] -= per[a] * press * change;
+                rise -=
+                    per[a] * (depth * speed_change[a] + speed[a] * (change - load(&bed_.half_change[a][k])));
+            }
+            const PackMask flows = depth > dry;
+            Pack held(1);
+            if constexpr (rough) held = reciprocal(Pack(1) + half_step * friction(max(depth, dry), speed));
             for (std::size_t c = 0; c < Dim; ++c)
-                detail::put(&slope_x_[c + 1][b], slope(&stage_->from->speed[c][k]));
+                detail::put(&to.speed[c][b], select(flows, (speed[c] + gain[c]) * held, Pack(0)));
+            // A thin sheet may not run dry within half a step.
+            detail::put(&to.surface[b], level + select(flows, max(rise, Pack(-0.5) * depth), Pack(0)));
+            detail::put(&to.most[b], select(flows, depth + depth, Pack(0)));
         }
     }
 
-    void slope_across(Index j) noexcept {
-        const std::size_t row = grid_.at(0, j), step = static_cast<std::size_t>(grid_.stride());
-        auto& slopes_of = slope_y_[pair(j)];
-        const Row &below = surface_[ring(j - 1)], &middle = surface_[ring(j)], &above = surface_[ring(j + 1)];
-        for (Index i = first_; i < last_; i += lanes) {
-            const std::size_t b = here(i), k = row + static_cast<std::size_t>(i);
-            const Pack h = load(&middle[b]);
-            detail::put(&slopes_of[0][b], limited_slope(h - load(&below[b]), load(&above[b]) - h));
-            for (std::size_t c = 0; c < Dim; ++c) {
-                const Real* speed = &stage_->from->speed[c][k];
-                const Pack u = load(speed);
-                detail::put(&slopes_of[c + 1][b],
-                            limited_slope(u - load(speed - step), load(speed + step) - u));
-            }
-        }
+    Pack friction(Pack depth, const std::array<Pack, Dim>& speed) const noexcept {
+        Pack swift2 = speed[0] * speed[0];
+        if constexpr (Dim == 2) swift2 += speed[1] * speed[1];
+        return friction_rate(depth, swift2 * rsqrt(max(swift2, Pack(1e-200))), forces_.gravity_manning2);
+    }
+
+    /// What a row's cell shows to the face at its high end along an axis (turn = 1), or at its low end (-1).
+    WaterBeside<Pack> shown(const Predicted& row, std::size_t b, std::size_t axis, Pack turn,
+                            Pack bed) const noexcept {
+        const std::size_t other = Dim - 1 - axis;
+        WaterBeside<Pack> water;
+        water.depth = depth_at_face(load(&row.surface[b]) + turn * load(&row.surface_change[axis][b]), bed,
+                                    load(&row.most[b]));
+        water.through = load(&row.speed[axis][b]) + turn * load(&row.speed_change[axis][axis][b]);
+        water.along =
+            Dim == 2 ? load(&row.speed[other][b]) + turn * load(&row.speed_change[axis][other][b]) : Pack(0);
+        return water;
     }
 
     /// Fluxes through the faces between each cell of row j and the one before it.
     void flux_along(Index j) noexcept {
-        const std::size_t row = grid_.at(0, j);
-        const Row &surface = surface_[ring(j)], &most = most_[ring(j)];
-        const auto& from = *stage_->from;
+        const Predicted& row = predicted(j);
         for (Index i = first_; i <= last_; i += lanes) {
-            const std::size_t b = here(i), k = row + static_cast<std::size_t>(i);
-            const Pack bed = load(&bed_.face[0][k]), half(0.5);
-            WaterBeside<Pack> low, high;
-            low.depth = depth_at_face(load(&surface[b - 1]) + half * load(&slope_x_[0][b - 1]), bed,
-                                      load(&most[b - 1]));
-            high.depth = depth_at_face(load(&surface[b]) - half * load(&slope_x_[0][b]), bed, load(&most[b]));
-            low.through = load(&from.speed[0][k - 1]) + half * load(&slope_x_[1][b - 1]);
-            high.through = load(&from.speed[0][k]) - half * load(&slope_x_[1][b]);
-            if constexpr (Dim == 2) {
-                low.along = load(&from.speed[1][k - 1]) + half * load(&slope_x_[2][b - 1]);
-                high.along = load(&from.speed[1][k]) - half * load(&slope_x_[2][b]);
-            } else {
-                low.along = high.along = Pack(0);
-            }
-            put(flux_x_, b, water_flux(low, high, forces_.pressing));
+            const std::size_t b = here(i);
+            const Pack bed = load(&bed_.face[0][cell(i, j)]);
+            put(along_, b,
+                water_flux(shown(row, b - 1, 0, 1, bed), shown(row, b, 0, -1, bed), forces_.pressing));
         }
-        const auto at_end = [&](ShallowSide<Dim>& side, Index i) {
-            const std::size_t b = here(i), inner = side.high() ? b - 1 : b;
-            const Real turn = side.high() ? 0.5 : -0.5;
-            const Real shown = depth_at_face(surface[inner] + turn * slope_x_[0][inner],
-                                             bed_.face[0][row + static_cast<std::size_t>(i)], most[inner]);
-            pass_side(side, j, shown, flux_x_, b);
-        };
-        if (first_ == 0) at_end(sides_[0][0], 0);
-        if (last_ == grid_.count(0)) at_end(sides_[0][1], last_);
+        if (first_ == 0) pass_side(sides_[0][0], j, row, here(0), along_, here(0), cell(0, j));
+        if (last_ == grid_.count(0))
+            pass_side(sides_[0][1], j, row, here(last_ - 1), along_, here(last_), cell(last_, j));
     }
 
     /// Fluxes through the faces between rows j and j + 1.
     void flux_across(Index j) noexcept {
         if constexpr (Dim == 2) {
-            const std::size_t row = grid_.at(0, j), step = static_cast<std::size_t>(grid_.stride());
-            const Row &low_surface = surface_[ring(j)], &low_most = most_[ring(j)];
-            const Row &high_surface = surface_[ring(j + 1)], &high_most = most_[ring(j + 1)];
-            const auto &low_slope = slope_y_[pair(j)], &high_slope = slope_y_[pair(j + 1)];
-            Fluxes& fluxes = flux_y_[pair(j)];
-            const auto& from = *stage_->from;
+            const Predicted &low = predicted(j), &high = predicted(j + 1);
+            Fluxes& fluxes = across(j);
             for (Index i = first_; i < last_; i += lanes) {
-                const std::size_t b = here(i), k = row + static_cast<std::size_t>(i);
-                const Pack bed = load(&bed_.face[1][k + step]), half(0.5);
-                WaterBeside<Pack> low, high;
-                low.depth = depth_at_face(load(&low_surface[b]) + half * load(&low_slope[0][b]), bed,
-                                          load(&low_most[b]));
-                high.depth = depth_at_face(load(&high_surface[b]) - half * load(&high_slope[0][b]), bed,
-                                           load(&high_most[b]));
-                low.through = load(&from.speed[1][k]) + half * load(&low_slope[2][b]);
-                high.through = load(&from.speed[1][k + step]) - half * load(&high_slope[2][b]);
-                low.along = load(&from.speed[0][k]) + half * load(&low_slope[1][b]);
-                high.along = load(&from.speed[0][k + step]) - half * load(&high_slope[1][b]);
-                put(fluxes, b, water_flux(low, high, forces_.pressing));
+                const std::size_t b = here(i);
+                const Pack bed = load(&bed_.face[1][cell(i, j + 1)]);
+                put(fluxes, b,
+                    water_flux(shown(low, b, 1, 1, bed), shown(high, b, 1, -1, bed), forces_.pressing));
             }
-            const auto at_end = [&](ShallowSide<Dim>& side) {
-                const Row& surface = side.high() ? low_surface : high_surface;
-                const Row& most = side.high() ? low_most : high_most;
-                const auto& slope = side.high() ? low_slope[0] : high_slope[0];
-                const Real turn = side.high() ? 0.5 : -0.5;
-                for (Index i = first_; i < std::min(last_, grid_.count(0)); ++i) {
-                    const std::size_t b = here(i);
-                    const Real shown =
-                        depth_at_face(surface[b] + turn * slope[b],
-                                      bed_.face[1][row + step + static_cast<std::size_t>(i)], most[b]);
-                    pass_side(side, i, shown, fluxes, b);
-                }
+            const auto at_end = [&](ShallowSide<Dim>& side, const Predicted& row) {
+                for (Index i = first_; i < std::min(last_, grid_.count(0)); ++i)
+                    pass_side(side, i, row, here(i), fluxes, here(i), cell(i, j + 1));
             };
-            if (j == -1) at_end(sides_[1][0]);
-            if (j == grid_.count(1) - 1) at_end(sides_[1][1]);
+            if (j == -1) at_end(sides_[1][0], high);
+            if (j == grid_.count(1) - 1) at_end(sides_[1][1], low);
         }
     }
 
-    /// At an end of the grid: an inflow brings what it must, and what passes is written down. The cell inside
-    /// shows the depth `shown`.
-    void pass_side(ShallowSide<Dim>& side, Index k, Real shown, Fluxes& fluxes, std::size_t b) noexcept {
-        const auto s = static_cast<std::size_t>(k);
+    /// At an end of the grid: walls let nothing through, an inflow brings what it must, what passes is
+    /// written down. `inner` is the cell inside, of `row`.
+    void pass_side(ShallowSide<Dim>& side, Index k, const Predicted& row, std::size_t inner, Fluxes& fluxes,
+                   std::size_t b, std::size_t face) noexcept {
+        const auto s = static_cast<std::size_t>(k), axis = static_cast<std::size_t>(side.axis());
         if (side.is_inflow()) {
-            const Real h = side.depth[s], u = side.speed[s], turn = side.high() ? -1 : 1;
-            fluxes.mass[b] = turn * h * u;
-            const Real pushed = h * u * u + 0.5 * forces_.pressing * (h - shown) * (h + shown);
-            (side.high() ? fluxes.low : fluxes.high)[b] = pushed;
+            const Real h = side.depth[s], u = side.speed[s], turn = side.high() ? 1 : -1;
+            const Real shown = depth_at_face(row.surface[inner] + turn * row.surface_change[axis][inner],
+                                             bed_.face[axis][face], row.most[inner]);
+            fluxes.mass[b] = -turn * h * u;
+            (side.high() ? fluxes.low : fluxes.high)[b] =
+                h * u * u + 0.5 * forces_.pressing * (h - shown) * (h + shown);
+            fluxes.along[b] = 0;
+        } else if (side.is_wall()) {
+            fluxes.mass[b] = 0;  // not to round-off only
             fluxes.along[b] = 0;
         }
-        side.flux[s] += 0.5 * fluxes.mass[b];  // each stage is half of a step
+        side.flux[s] = fluxes.mass[b];
     }
 
     static void put(Fluxes& fluxes, std::size_t b, const WaterFlux<Pack>& flux) noexcept {
@@ -216,99 +223,66 @@ private:
         if constexpr (Dim == 2) detail::put(&fluxes.along[b], flux.along);
     }
 
-    template <bool second, bool rough>
+    template <bool rough>
     void update(Index j, ShallowTile& tile) noexcept {
-        const std::size_t row = grid_.at(0, j);
-        const Pack dry(forces_.dry_depth), dt(stage_->dt), half(0.5);
-        const Pack per_x(stage_->dt / grid_.spacing(0)), per_y(Dim == 2 ? stage_->dt / grid_.spacing(1) : 0);
-        const Pack press(forces_.pressing);
-        const auto &from = *stage_->from, &begin = *stage_->begin;
-        auto& to = *stage_->to;
-        const Fluxes &y_low = flux_y_[pair(j - 1)], &y_high = flux_y_[pair(j)];
-        const auto& slope_y = slope_y_[pair(j)];
+        const Predicted& row = predicted(j);
+        const Pack dry(forces_.dry_depth), dt(dt_), press(forces_.pressing);
+        const Pack per_x(dt_ / grid_.spacing(0)), per_y(dt_ / grid_.spacing(Dim - 1));
+        const Pack each_x(1 / grid_.spacing(0)), each_y(1 / grid_.spacing(Dim - 1));
+        const Fluxes &y_low = across(j - 1), &y_high = across(j);
         Pack swiftest(0);
         Index wet_first = last_, wet_last = first_;
         for (Index i = first_; i < last_; i += lanes) {
-            const std::size_t b = here(i), k = row + static_cast<std::size_t>(i);
-            const Pack h = load(&from.depth[k]);
-            Pack grown = per_x * (load(&flux_x_.mass[b]) - load(&flux_x_.mass[b + 1]));
-            std::array<Pack, Dim> speed, momentum;  // momentum gained in the step
-            speed[0] = load(&from.speed[0][k]);
-            const Pack pushed = press * h;
-            momentum[0] =
-                per_x * (load(&flux_x_.high[b]) - load(&flux_x_.low[b + 1]) - pushed * load(&slope_x_[0][b]));
+            const std::size_t b = here(i), k = cell(i, j);
+            const Pack h = load(&from_->depth[k]);
+            const Pack h_half = max(load(&row.surface[b]) - load(&bed_.cell[k]), Pack(0));
+            const Pack pushed = (press + press) * h_half;  // by twice half the change of the surface
+            Pack grown = per_x * (load(&along_.mass[b]) - load(&along_.mass[b + 1]));
+            std::array<Pack, Dim> gain;  // of momentum
+            gain[0] = per_x * (load(&along_.high[b]) - load(&along_.low[b + 1]) -
+                               pushed * load(&row.surface_change[0][b]));
             if constexpr (Dim == 2) {
-                speed[1] = load(&from.speed[1][k]);
                 grown += per_y * (load(&y_low.mass[b]) - load(&y_high.mass[b]));
-                momentum[0] += per_y * (load(&y_low.along[b]) - load(&y_high.along[b]));
-                momentum[1] =
-                    per_y * (load(&y_low.high[b]) - load(&y_high.low[b]) - pushed * load(&slope_y[0][b])) +
-                    per_x * (load(&flux_x_.along[b]) - load(&flux_x_.along[b + 1]));
+                gain[0] += per_y * (load(&y_low.along[b]) - load(&y_high.along[b]));
+                gain[1] = per_y * (load(&y_low.high[b]) - load(&y_high.low[b]) -
+                                   pushed * load(&row.surface_change[1][b])) +
+                          per_x * (load(&along_.along[b]) - load(&along_.along[b + 1]));
             }
-            for (std::size_t c = 0; c < Dim; ++c) momentum[c] += dt * Pack(forces_.along[c]) * h;
-
-            // Friction is implicit. What it does is of second order in dt, and nothing at the speed at which
-            // it holds the drive: q = (q_0 + dt L (1 + r/2)) / (1 + r + r^2/2), r = dt (k + k')/2 and L = (L
-            // + L')/2.
-            Pack rate(0);
+            const Pack depth = h + grown;
+            // Friction is implicit: q' = (q + dt L (1 + r/2)) / (1 + r + r^2/2), r = dt k of half a step on.
+            // Of second order in dt, and exact where it holds the drive: dt L = r q.
+            Pack more(1), held(1);
             if constexpr (rough) {
-                Pack swift2 = speed[0] * speed[0];
-                if constexpr (Dim == 2) swift2 += speed[1] * speed[1];
-                rate = friction_rate(max(h, dry), root(swift2), forces_.gravity_manning2);
-                rate = select(h > dry, rate, Pack(0));
-            }
-            Pack depth;
-            std::array<Pack, Dim> flow;  // depth times speed
-            if constexpr (!second) {
-                depth = h + grown;
-                const Pack held = rough ? reciprocal(Pack(1) + dt * rate) : Pack(1);
-                for (std::size_t c = 0; c < Dim; ++c) flow[c] = (h * speed[c] + momentum[c]) * held;
-                if constexpr (rough) detail::put(&stage_->friction[k], rate);
-            } else {
-                const Pack h0 = load(&begin.depth[k]);
-                depth = half * (h0 + (h + grown));
-                if constexpr (rough) {
-                    const Pack rate0 = load(&stage_->friction[k]), r = half * dt * (rate0 + rate);
-                    const Pack more = Pack(1) + half * r, held = reciprocal(Pack(1) + r * more);
-                    for (std::size_t c = 0; c < Dim; ++c) {
-                        const Pack q0 = h0 * load(&begin.speed[c][k]);
-                        const Pack first = h * speed[c] * (Pack(1) + dt * rate0) - q0;  // of the first stage
-                        flow[c] = (q0 + half * (first + momentum[c]) * more) * held;
-                    }
-                } else {
-                    for (std::size_t c = 0; c < Dim; ++c)
-                        flow[c] = half * (h0 * load(&begin.speed[c][k]) + (h * speed[c] + momentum[c]));
-                }
+                std::array<Pack, Dim> speed_half;
+                for (std::size_t c = 0; c < Dim; ++c) speed_half[c] = load(&row.speed[c][b]);
+                const Pack r = dt * friction(max(h_half, dry), speed_half);
+                more = Pack(1) + Pack(0.5) * r;
+                held = reciprocal(Pack(1) + r * more);
             }
             const PackMask flows = depth > dry;
-            const Pack thin = reciprocal(max(depth, dry));
-            for (std::size_t c = 0; c < Dim; ++c) {
-                speed[c] = select(flows, flow[c] * thin, Pack(0));
-                detail::put(&to.speed[c][k], speed[c]);
-            }
-            detail::put(&to.depth[k], depth);
-
-            PackMask inside = Pack(0) <= Pack(0);
-            if (i + lanes > grid_.count(0)) inside = inside_row(i);
+            const Pack thin = reciprocal(max(depth, dry)) * held,
+                       wave = wave_speed(max(depth, dry), forces_.pressing);
+            Pack swift = wave * (Dim == 2 ? each_x + each_y : each_x);
             PackMask sound = depth >= Pack(0);
-            for (std::size_t c = 0; c < Dim; ++c)
-                sound = sound & (max(speed[c], -speed[c]) <= Pack(forces_.fastest));
-            unsound_ |= any(inside & !sound);
-            if constexpr (second) {
-                const Pack wave = root(press * depth);
-                Pack swift = (max(speed[0], -speed[0]) + wave) * Pack(1 / grid_.spacing(0));
-                if constexpr (Dim == 2)
-                    swift += (max(speed[1], -speed[1]) + wave) * Pack(1 / grid_.spacing(1));
-                const PackMask counts = inside & flows;
-                swiftest = max(swiftest, select(counts, swift, Pack(0)));
-                if (any(counts)) wet_first = std::min(wet_first, i), wet_last = i + lanes;
+            for (std::size_t c = 0; c < Dim; ++c) {
+                const Pack flow =
+                    h * load(&from_->speed[c][k]) + more * (gain[c] + dt * Pack(forces_.along[c]) * h_half);
+                const Pack speed = select(flows, flow * thin, Pack(0)), size = max(speed, -speed);
+                detail::put(&to_->speed[c][k], speed);
+                sound = sound & (size <= Pack(forces_.fastest));
+                swift += size * (c == 0 ? each_x : each_y);
             }
+            detail::put(&to_->depth[k], depth);
+            PackMask counts = flows, unsound = !sound;
+            if (i + lanes > grid_.count(0))
+                counts = counts & inside_row(i), unsound = unsound & inside_row(i);
+            tile.unsound |= any(unsound);
+            swiftest = max(swiftest, select(counts, swift, Pack(0)));
+            if (any(counts)) wet_first = std::min(wet_first, i), wet_last = i + lanes;
         }
-        if constexpr (second) {
-            tile.swiftest = std::max(tile.swiftest, largest(swiftest));
-            if (wet_first < wet_last)
-                tile.wet = tile.wet.with({{wet_first, j}, {std::min(wet_last, grid_.count(0)), j + 1}});
-        }
+        tile.swiftest = std::max(tile.swiftest, largest(swiftest));
+        if (wet_first < wet_last)
+            tile.wet = tile.wet.with({{wet_first, j}, {std::min(wet_last, grid_.count(0)), j + 1}});
     }
 
     /// Lanes from cell i on that belong to the row.
@@ -322,14 +296,14 @@ private:
     const ShallowBed<Dim>& bed_;
     const ShallowForces& forces_;
     std::array<std::array<ShallowSide<Dim>, 2>, Dim>& sides_;
-    const ShallowStage<Dim>* stage_ = nullptr;
-    Index first_ = 0, last_ = 0;  ///< cells of each row that are worked on
-    bool unsound_ = false;
-    std::array<Row, 4> surface_{}, most_{};                            ///< [row % 4] [m]
-    std::array<Row, slopes> slope_x_{};                                ///< changes across a cell
-    std::array<std::array<Row, slopes>, Dim == 2 ? 2 : 1> slope_y_{};  ///< [row % 2]
-    Fluxes flux_x_{};
-    std::array<Fluxes, Dim == 2 ? 2 : 1> flux_y_{};  ///< [row % 2], through the face above it
+    const ShallowState<Dim>* from_ = nullptr;
+    ShallowState<Dim>* to_ = nullptr;
+    Real dt_ = 0;                              ///< [s]
+    Index first_ = 0, last_ = 0;               ///< cells of each row that are worked on
+    std::array<Row, 4> surface_{};             ///< [row % 4] [m]
+    std::array<Predicted, rows> predicted_{};  ///< [row % 2]
+    Fluxes along_{};
+    std::array<Fluxes, rows> across_{};  ///< [row % 2], through the face above it
 };
 
 }  // namespace abrade
