@@ -319,7 +319,7 @@ private:
             }
         auto leaving = projection_.outflows(w.wet);
         w.open.insert(w.open.end(), leaving.begin(), leaving.end());
-        projection_.set({w.wet, rows, w.open, w.open_area()});
+        projection_.set({w.wet, rows, w.open, w.walls ? &w.walls->open_volume() : nullptr, w.open_area()});
     }
 
     void copy_wet_around() {

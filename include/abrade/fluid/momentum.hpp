@@ -30,6 +30,7 @@ struct MomentumStage {
     const Field<State>* held_before =
         nullptr;                         ///< liquid in a cell at the step's beginning, share of the whole [-]
     const Field<State>* held = nullptr;  ///< at its end; none: all cells are full
+    const FaceField<Dim>* open_area = nullptr;  ///< share of each face that walls leave open [-]; none: all
 };
 
 namespace detail {

@@ -26,6 +26,7 @@ struct WaterCells {
     const Field<std::uint8_t>& wet;  ///< 1 where the pressure is unknown, ghosts included
     const WetRows<Dim>& rows;        ///< hold them, and those of the last time
     std::span<const OpenFace> open{};
+    const Field<Real>* open_volume = nullptr;   ///< share of each cell that walls leave open [-]; none: all
     const FaceField<Dim>* open_area = nullptr;  ///< share of each face that walls leave open [-]; none: all
 };
 
@@ -74,6 +75,7 @@ public:
     void set(const WaterCells<Dim>& water) {
         open_.assign(water.open.begin(), water.open.end());
         open_area_ = water.open_area;
+        open_volume_ = water.open_volume;
         rows_ = water.rows;
         Poisson<Dim>& m = multigrid_.matrix();
         const Layout<Dim>& l = grid_->layout();
@@ -269,7 +271,10 @@ private:
                         area1[i] * (high[1][i] * share(1, high_open) - low[1][i] * share(1, low_open));
                     if constexpr (Dim == 3)
                         out += area2[i] * (high[2][i] * share(2, high_open) - low[2][i] * share(2, low_open));
-                    if (surplus_)
+                    if (surplus_ && open_volume_)
+                        out -= static_cast<State>((*surplus_)[start + i] * (*open_volume_)[start + i] / step_) *
+                               area0[i] / per0[i];
+                    else if (surplus_)
                         out -= static_cast<State>((*surplus_)[start + i] / step_) * area0[i] / per0[i];
                     sum += finish(i, out);
                     State rate = std::abs(low[0][i]) * per0[i] + std::abs(low[1][i]) * per1[i];
@@ -410,6 +415,7 @@ private:
     WetRows<Dim> rows_;
     std::vector<OpenFace> open_;
     const FaceField<Dim>* open_area_ = nullptr;
+    const Field<Real>* open_volume_ = nullptr;
     const Field<Real>* surplus_ = nullptr;
     Real step_ = 1;
     std::vector<Real> squares_, rates_;
