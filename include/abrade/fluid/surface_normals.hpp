@@ -88,8 +88,7 @@ private:
         void sort(Index first, Index last) noexcept {
             List regular;
             for (Index i = first; i < last; ++i)
-                (marks[planes.cell[static_cast<std::size_t>(i)]] & cell_mark::regular ? regular : rest)
-                    .add(i);
+                (marks[planes.cell[static_cast<std::size_t>(i)]] & cell_mark::ringed ? regular : rest).add(i);
             for (int i = 0; i < regular.count; i += pack_lanes) {
                 const auto item = items(regular, i);
                 const PackCells cell = cells(item);
@@ -107,7 +106,8 @@ private:
                     int axis = vertical;  // where all are alike
                     for (int a = 0; a < Dim; ++a)
                         if (std::abs(g[at(a)][lane]) > std::abs(g[at(axis)][lane])) axis = a;
-                    ways[at(2 * axis + (g[at(axis)][lane] <= 0))].add(item[at(lane)]);
+                    const bool deep = (marks[cell[at(lane)]] & cell_mark::deep(axis)) != 0;
+                    (deep ? ways[at(2 * axis + (g[at(axis)][lane] <= 0))] : rest).add(item[at(lane)]);
                 }
             }
         }

@@ -14,10 +14,12 @@ namespace abrade {
 
 /// What is known of a cell before anything flows.
 namespace cell_mark {
-inline constexpr std::uint8_t whole = 1;    ///< not cut: its fraction tells of a plane in the full cell
-inline constexpr std::uint8_t regular = 2;  ///< all cells within 3 of it are whole
-inline constexpr std::uint8_t open = 4;     ///< fluid may be in it
-inline constexpr std::uint8_t inside = 8;   ///< no ghost
+inline constexpr std::uint8_t whole = 1;   ///< not cut: its fraction tells of a plane in the full cell
+inline constexpr std::uint8_t open = 2;    ///< fluid may be in it
+inline constexpr std::uint8_t inside = 4;  ///< no ghost
+inline constexpr std::uint8_t ringed = 8;  ///< all cells around it are whole
+/// All cells within 3 of it along an axis are whole, and those beside them.
+constexpr std::uint8_t deep(int axis) noexcept { return static_cast<std::uint8_t>(16 << axis); }
 }  // namespace cell_mark
 
 /// Planes of the cells that are neither full nor dry, in order of the cells in memory.

@@ -23,6 +23,7 @@ public:
                                   const detail::PackCells& cells,
                                   const detail::PackCells& levels) const noexcept {
         Problem problem{};
+        problem.stretched = !sizes_.uniform();
         for (int k = 0; k < size; ++k) {
             const auto i = static_cast<std::size_t>(k);
             problem.fraction[i] = detail::gather(fraction, cells, stencil_.step[i]);
@@ -56,6 +57,7 @@ private:
 
     struct Problem {
         std::array<Pack, size> fraction, weight;
+        bool stretched;
         std::array<Pack, 3> ratio, shift;  ///< of the levels below, at and above: edge, centre; in own edges
     };
     struct Misfit {
@@ -90,11 +92,12 @@ private:
         Misfit result;
         result.squares = Pack(0);
         const Pack distance = plane_distance<Dim>(normal, problem.fraction[own]);
+        detail::SortedNormal<Pack> m{};
         for (int v = 0; v < 3; ++v) {
             const auto i = static_cast<std::size_t>(v);
             Normal scaled = normal;
             scaled[vertical] = scaled[vertical] * problem.ratio[i];
-            const auto m = detail::sorted<Dim>(scaled);
+            if (v == 0 || problem.stretched) m = detail::sorted<Dim>(scaled);
             for (int k = 0; k < size; ++k) {
                 if (detail::Stencil<Dim>::along(vertical, k) != v - 1) continue;
                 Pack d = distance - normal[vertical] * problem.shift[i];
