@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,14 @@ Pack gather(const Number* values, const PackCells& cells, Offset step = 0) noexc
         return Pack(Pack::Native{static_cast<Real>(values[cells[L] + step])...});
     }
     (std::make_index_sequence<pack_lanes>{});
+}
+
+/// Four neighbours along a row, from the one `step` away: result[n] stands n cells further.
+inline QuadColumns gather_row(const Real* values, const PackCells& cells, Offset step) noexcept {
+    QuadRows rows;
+    for (std::size_t lane = 0; lane < rows.size(); ++lane)
+        std::memcpy(&rows[lane], values + cells[lane] + step, sizeof(Quad));
+    return columns(rows);
 }
 
 /// The 3^Dim cells around one: steps in memory and along the axes; the cell itself is number `own`.

@@ -18,9 +18,10 @@ public:
     VolumeFit() = default;
     VolumeFit(const Layout<Dim>& layout, const CellSizes<Dim>& sizes) : stencil_(layout), sizes_(sizes) {}
 
-    /// Normals (of any length) for a pack of cells.
-    std::array<Pack, Dim> normals(const Real* fraction, const std::uint8_t* marks, std::uint8_t asked,
-                                  const detail::PackCells& cells,
+    /// Normals (of any length) for a pack of cells. Without any attempts: against the gradient of the
+    /// fractions, which is of first order.
+    std::array<Pack, Dim> normals(int attempts, const Real* fraction, const std::uint8_t* marks,
+                                  std::uint8_t asked, const detail::PackCells& cells,
                                   const detail::PackCells& levels) const noexcept {
         Problem problem{};
         problem.stretched = !sizes_.uniform();
@@ -45,14 +46,13 @@ public:
                                          v == 0 ? -sizes_.gap(level) / edge : sizes_.gap(level + 1) / edge);
             }
         }
-        return solve(problem);
+        return solve(problem, attempts);
     }
 
 private:
     static constexpr int size = detail::Stencil<Dim>::size, own = detail::Stencil<Dim>::own;
     static constexpr int vertical = Grid<Dim>::vertical;
     static constexpr int unknowns = Dim - 1;
-    static constexpr int attempts = 10;
     using Normal = std::array<Pack, Dim>;
 
     struct Problem {
@@ -116,7 +116,7 @@ private:
         return result;
     }
 
-    static Normal solve(const Problem& problem) noexcept {
+    static Normal solve(const Problem& problem, int attempts) noexcept {
         const Normal g = gradient(problem);
         // The largest component is held at +-1, the others are the unknowns.
         std::array<Pack, Dim> size_of;
@@ -136,6 +136,8 @@ private:
         Normal normal;
         for (std::size_t a = 0; a < Dim; ++a)
             normal[a] = select(none, Pack(Real(a == vertical)), -g[a] / max(largest_one, Pack(1e-30)));
+
+        if (attempts == 0) return normal;
 
         const auto moved = [&](const Normal& from, const std::array<Pack, unknowns>& by) {
             Normal to = from;
