@@ -51,8 +51,8 @@ TEST_CASE("a plane against the sums of cubes") {
         const std::array<Real, 3> n{part(random), part(random), part(random)};
         const Real all = n[0] + n[1] + n[2], alpha = all * (part(random) - 0.1) / 0.9;
         // long double loses 1e-19 / (6 a b c).
-        CHECK(std::abs(fraction_below<3>(n, alpha, {1, 1, 1}) -
-                       static_cast<Real>(sum_of_cubes(n, alpha))) < 1e-15);
+        CHECK(std::abs(fraction_below<3>(n, alpha, {1, 1, 1}) - static_cast<Real>(sum_of_cubes(n, alpha))) <
+              1e-15);
     }
 }
 
@@ -81,8 +81,8 @@ TEST_CASE("the inverse, to 1e-14") {
 
 TEST_CASE("a box that is not a cube") {
     // z = 0.3 + 0.5 x in a box 2 x 3 x 1: mean height 0.3 + 0.5.
-    CHECK(fraction_below<3>({-0.5, 0, 1}, 0.3, {2, 3, 1}) == doctest::Approx(0.8 - 0.5 * 0.3 * 0.6 / 2)
-                                                                  .epsilon(1e-14));
+    CHECK(fraction_below<3>({-0.5, 0, 1}, 0.3, {2, 3, 1}) ==
+          doctest::Approx(0.8 - 0.5 * 0.3 * 0.6 / 2).epsilon(1e-14));
     CHECK(plane_constant<3>({0, 0, 2}, 0.25, {2, 3, 1}) == doctest::Approx(0.5).epsilon(1e-14));
     CHECK(plane_constant<2>({1, 1}, 0.125, {1, 1}) == doctest::Approx(0.5).epsilon(1e-14));
 }

@@ -34,9 +34,15 @@ public:
         searched_ = rows;
         rows.for_each_row([&](int plane, int r, const RowRange& range) {
             const Offset start = layout_.row_start(plane, r);
-            for (Offset c = start + range.begin; c < start + range.end; ++c)
-                air_[c] = static_cast<std::uint8_t>((fraction[c] < 1 - smallest_void) &
-                                                    ((marks[c] & cell_mark::open) != 0));
+            const Real* f = fraction.data() + start;
+            const std::uint8_t* mark = marks.data() + start;
+            std::uint8_t* air = air_.data() + start;
+#if defined(_OPENMP)
+#pragma omp simd
+#endif
+            for (int i = range.begin; i < range.end; ++i)
+                air[i] = static_cast<std::uint8_t>((f[i] < 1 - smallest_void) &
+                                                   ((mark[i] & cell_mark::open) != 0));
         });
         fill_periodic(air_, layout_, sides);
         for_each_inflow_cell(sides, [&](Offset ghost, Offset) {
@@ -44,13 +50,18 @@ public:
         });
         rows.for_each_row([&](int plane, int r, const RowRange& range) {
             const Offset start = layout_.row_start(plane, r);
-            const std::uint8_t* air = air_.data();
-            for (Offset c = start + range.begin; c < start + range.end; ++c) {
-                std::uint8_t near = air[c];
-                for (const Offset s : layout_.stride)
-                    near = static_cast<std::uint8_t>(near | air[c - s] | air[c + s]);
-                edge_[c] =
-                    static_cast<std::uint8_t>(near & (fraction[c] > 0) & ((marks[c] & cell_mark::open) != 0));
+            const Real* f = fraction.data() + start;
+            const std::uint8_t* mark = marks.data() + start;
+            const std::uint8_t* air = air_.data() + start;
+            std::uint8_t* edge = edge_.data() + start;
+            const std::array<Offset, Dim> s = layout_.stride;
+#if defined(_OPENMP)
+#pragma omp simd
+#endif
+            for (int i = range.begin; i < range.end; ++i) {
+                int near = air[i] | air[i - s[0]] | air[i + s[0]] | air[i - s[1]] | air[i + s[1]];
+                if constexpr (Dim == 3) near |= air[i - s[2]] | air[i + s[2]];
+                edge[i] = static_cast<std::uint8_t>(near & (f[i] > 0) & ((mark[i] & cell_mark::open) != 0));
             }
         });
         fill_periodic(edge_, layout_, sides);
@@ -105,12 +116,20 @@ private:
                                                 (Dim == 3 ? (k / 3 - 1) * layout_.stride[Dim - 1] : 0);
         rows.for_each_row([&](int plane, int r, const RowRange& range) {
             const Offset start = layout_.row_start(plane, r);
-            const std::uint8_t* edge = edge_.data();
-            for (Offset c = start + range.begin; c < start + range.end; ++c) {
-                unsigned near = 0;
-                for (const Offset s : step)
-                    near |= static_cast<unsigned>(edge[c + s - 1] | edge[c + s] | edge[c + s + 1]);
-                band_[c] = static_cast<std::uint8_t>(near & ((marks[c] & cell_mark::open) != 0));
+            const std::uint8_t* edge = edge_.data() + start;
+            const std::uint8_t* mark = marks.data() + start;
+            std::uint8_t* band = band_.data() + start;
+            const auto steps = step;
+#if defined(_OPENMP)
+#pragma omp simd
+#endif
+            for (int i = range.begin; i < range.end; ++i) {
+                std::uint8_t near = 0;
+                for (std::size_t k = 0; k < around; ++k) {
+                    const std::uint8_t* row = edge + steps[k] + i;
+                    near = static_cast<std::uint8_t>(near | row[-1] | row[0] | row[1]);
+                }
+                band[i] = static_cast<std::uint8_t>(near & ((mark[i] & cell_mark::open) != 0));
             }
         });
     }

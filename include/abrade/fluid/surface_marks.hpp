@@ -11,27 +11,32 @@ inline constexpr Real smallest_open_volume = 1e-6;
 
 namespace detail {
 
-/// A cell is regular where it and the three before and behind it along every axis, diagonals included, are.
+/// Marks `mark` where all cells within reach[axis] along the axes are whole.
 template <int Dim>
-void mark_regular(Field<std::uint8_t>& marks, const Grid<Dim>& grid) {
-    constexpr int reach = 3;
+void mark_surrounded(Field<std::uint8_t>& marks, const Grid<Dim>& grid,
+                     const std::type_identity_t<CellNumber<Dim>>& reach, std::uint8_t mark) {
     const Layout<Dim>& layout = grid.layout();
     Field<std::uint8_t> now(layout.total, 0), next(layout.total, 0);
-    grid.for_each([&](const CellNumber<Dim>&, Offset c) { now[c] = marks[c] & cell_mark::whole; });
+    grid.for_each([&](const CellNumber<Dim>&, Offset c) { now[c] = marks[c] & cell_mark::whole; },
+                  Layout<Dim>::ghosts);
     for (int a = 0; a < Dim; ++a) {
         const auto axis = static_cast<std::size_t>(a);
         const Offset step = layout.stride[axis];
+        const int far = reach[axis], edge = Layout<Dim>::ghosts - far;  // no farther than the ghosts
         next.fill(0);
-        grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            if (cell[axis] < reach || cell[axis] >= layout.cells[axis] - reach) return;
-            std::uint8_t all = 1;
-            for (int k = -reach; k <= reach; ++k) all = static_cast<std::uint8_t>(all & now[c + k * step]);
-            next[c] = all;
-        });
+        // Cells beyond other sides are looked at later, along their axes.
+        grid.for_each(
+            [&](const CellNumber<Dim>& cell, Offset c) {
+                if (cell[axis] < -edge || cell[axis] >= layout.cells[axis] + edge) return;
+                std::uint8_t all = 1;
+                for (int k = -far; k <= far; ++k) all = static_cast<std::uint8_t>(all & now[c + k * step]);
+                next[c] = all;
+            },
+            Layout<Dim>::ghosts);
         std::swap(now, next);
     }
     grid.for_each([&](const CellNumber<Dim>&, Offset c) {
-        if (now[c] != 0) marks[c] = static_cast<std::uint8_t>(marks[c] | cell_mark::regular);
+        if (now[c] != 0) marks[c] = static_cast<std::uint8_t>(marks[c] | mark);
     });
 }
 
@@ -65,16 +70,23 @@ Field<std::uint8_t> surface_marks(const Grid<Dim>& grid, const Sides<Dim>& sides
                 marks[c] = of(c);
         },
         Layout<Dim>::ghosts);
-    detail::mark_regular(marks, grid);
     // Ghosts beyond periodic ends are what they are copies of, but for their place.
     Field<std::uint8_t> copies = marks;
     fill_periodic(copies, layout, sides);
     grid.for_each(
         [&](const CellNumber<Dim>&, Offset c) {
             if ((marks[c] & cell_mark::inside) == 0)
-                marks[c] = static_cast<std::uint8_t>(copies[c] & ~(cell_mark::inside | cell_mark::regular));
+                marks[c] = static_cast<std::uint8_t>(copies[c] & ~cell_mark::inside);
         },
         Layout<Dim>::ghosts);
+    CellNumber<Dim> reach;
+    reach.fill(1);
+    detail::mark_surrounded(marks, grid, reach, cell_mark::ringed);
+    for (int a = 0; a < Dim; ++a) {
+        reach.fill(1);
+        reach[static_cast<std::size_t>(a)] = 3;
+        detail::mark_surrounded(marks, grid, reach, cell_mark::deep(a));
+    }
     return marks;
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -14,10 +15,12 @@ namespace abrade {
 
 /// What is known of a cell before anything flows.
 namespace cell_mark {
-inline constexpr std::uint8_t whole = 1;    ///< not cut: its fraction tells of a plane in the full cell
-inline constexpr std::uint8_t regular = 2;  ///< all cells within 3 of it are whole
-inline constexpr std::uint8_t open = 4;     ///< fluid may be in it
-inline constexpr std::uint8_t inside = 8;   ///< no ghost
+inline constexpr std::uint8_t whole = 1;   ///< not cut: its fraction tells of a plane in the full cell
+inline constexpr std::uint8_t open = 2;    ///< fluid may be in it
+inline constexpr std::uint8_t inside = 4;  ///< no ghost
+inline constexpr std::uint8_t ringed = 8;  ///< all cells around it are whole
+/// All cells within 3 of it along an axis are whole, and those beside them.
+constexpr std::uint8_t deep(int axis) noexcept { return static_cast<std::uint8_t>(16 << axis); }
 }  // namespace cell_mark
 
 /// Planes of the cells that are neither full nor dry, in order of the cells in memory.
@@ -56,6 +59,14 @@ Pack gather(const Number* values, const PackCells& cells, Offset step = 0) noexc
         return Pack(Pack::Native{static_cast<Real>(values[cells[L] + step])...});
     }
     (std::make_index_sequence<pack_lanes>{});
+}
+
+/// Four neighbours along a row, from the one `step` away: result[n] stands n cells further.
+inline QuadColumns gather_row(const Real* values, const PackCells& cells, Offset step) noexcept {
+    QuadRows rows;
+    for (std::size_t lane = 0; lane < rows.size(); ++lane)
+        std::memcpy(&rows[lane], values + cells[lane] + step, sizeof(Quad));
+    return columns(rows);
 }
 
 /// The 3^Dim cells around one: steps in memory and along the axes; the cell itself is number `own`.

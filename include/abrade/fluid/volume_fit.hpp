@@ -18,11 +18,13 @@ public:
     VolumeFit() = default;
     VolumeFit(const Layout<Dim>& layout, const CellSizes<Dim>& sizes) : stencil_(layout), sizes_(sizes) {}
 
-    /// Normals (of any length) for a pack of cells.
-    std::array<Pack, Dim> normals(const Real* fraction, const std::uint8_t* marks, std::uint8_t asked,
-                                  const detail::PackCells& cells,
+    /// Normals (of any length) for a pack of cells. Without any attempts: against the gradient of the
+    /// fractions, which is of first order.
+    std::array<Pack, Dim> normals(int attempts, const Real* fraction, const std::uint8_t* marks,
+                                  std::uint8_t asked, const detail::PackCells& cells,
                                   const detail::PackCells& levels) const noexcept {
         Problem problem{};
+        problem.stretched = !sizes_.uniform();
         for (int k = 0; k < size; ++k) {
             const auto i = static_cast<std::size_t>(k);
             problem.fraction[i] = detail::gather(fraction, cells, stencil_.step[i]);
@@ -44,18 +46,18 @@ public:
                                          v == 0 ? -sizes_.gap(level) / edge : sizes_.gap(level + 1) / edge);
             }
         }
-        return solve(problem);
+        return solve(problem, attempts);
     }
 
 private:
     static constexpr int size = detail::Stencil<Dim>::size, own = detail::Stencil<Dim>::own;
     static constexpr int vertical = Grid<Dim>::vertical;
     static constexpr int unknowns = Dim - 1;
-    static constexpr int attempts = 10;
     using Normal = std::array<Pack, Dim>;
 
     struct Problem {
         std::array<Pack, size> fraction, weight;
+        bool stretched;
         std::array<Pack, 3> ratio, shift;  ///< of the levels below, at and above: edge, centre; in own edges
     };
     struct Misfit {
@@ -90,11 +92,12 @@ private:
         Misfit result;
         result.squares = Pack(0);
         const Pack distance = plane_distance<Dim>(normal, problem.fraction[own]);
+        detail::SortedNormal<Pack> m{};
         for (int v = 0; v < 3; ++v) {
             const auto i = static_cast<std::size_t>(v);
             Normal scaled = normal;
             scaled[vertical] = scaled[vertical] * problem.ratio[i];
-            const auto m = detail::sorted<Dim>(scaled);
+            if (v == 0 || problem.stretched) m = detail::sorted<Dim>(scaled);
             for (int k = 0; k < size; ++k) {
                 if (detail::Stencil<Dim>::along(vertical, k) != v - 1) continue;
                 Pack d = distance - normal[vertical] * problem.shift[i];
@@ -113,7 +116,7 @@ private:
         return result;
     }
 
-    static Normal solve(const Problem& problem) noexcept {
+    static Normal solve(const Problem& problem, int attempts) noexcept {
         const Normal g = gradient(problem);
         // The largest component is held at +-1, the others are the unknowns.
         std::array<Pack, Dim> size_of;
@@ -133,6 +136,8 @@ private:
         Normal normal;
         for (std::size_t a = 0; a < Dim; ++a)
             normal[a] = select(none, Pack(Real(a == vertical)), -g[a] / max(largest_one, Pack(1e-30)));
+
+        if (attempts == 0) return normal;
 
         const auto moved = [&](const Normal& from, const std::array<Pack, unknowns>& by) {
             Normal to = from;

@@ -35,7 +35,7 @@ void VolumeOfFluid<Dim>::include_inflows() {
 
 /// Planes of all cells of the band that are neither full nor dry.
 template <int Dim>
-void VolumeOfFluid<Dim>::reconstruct() {
+void VolumeOfFluid<Dim>::reconstruct(bool exact) {
     for (const Index c : planes_.cell) plane_of_[c] = -1;
     const auto cells = band_.cells();
     const auto levels = band_.levels();
@@ -59,7 +59,7 @@ void VolumeOfFluid<Dim>::reconstruct() {
             plane_of_[cells[k]] = next++;
         }
     });
-    normals_.find(planes_, fraction_.data(), marks_.data());
+    normals_.find(planes_, fraction_.data(), marks_.data(), exact);
 }
 
 /// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
@@ -146,7 +146,7 @@ void VolumeOfFluid<Dim>::sweep(int number) {
             filled_[k] = fraction_[cells[k]] > 0.5;
         });
     } else {
-        reconstruct();
+        reconstruct(params_.fit_every_sweep);
         fluxes_of_band(axis);
     }
     fluxes_of_planes(axis);

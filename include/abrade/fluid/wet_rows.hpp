@@ -62,20 +62,15 @@ public:
     WetRows dilated(int cells, const std::array<bool, Dim>& periodic = {}) const {
         WetRows grown = *this;
         const int n = layout_.row_length();
-        grown.for_each_plane([&](int plane) {
-            for (int r = 0; r < layout_.rows_per_plane(); ++r) {
-                RowRange all{};
-                for (int p = plane - cells; p <= plane + cells; ++p)
-                    for (int q = Dim == 3 ? r - cells : r; q <= (Dim == 3 ? r + cells : r); ++q)
-                        all = hull(all, wrapped(p, q, periodic));
-                if (!all.empty()) {
-                    all = {all.begin - cells, all.end + cells};
-                    // What crosses one end comes in at the other: the hull is then the whole row.
-                    if (periodic[1] && (all.begin < 0 || all.end > n)) all = {0, n};
-                }
-                grown.row(plane, r) = {std::max(0, all.begin), std::min(n, all.end)};
-            }
-        });
+        for (RowRange& range : grown.rows_) {
+            if (range.empty()) continue;
+            range = {range.begin - cells, range.end + cells};
+            // What crosses one end comes in at the other: the hull is then the whole row.
+            if (periodic[1] && (range.begin < 0 || range.end > n)) range = {0, n};
+            range = {std::max(0, range.begin), std::min(n, range.end)};
+        }
+        if constexpr (Dim == 3) grown.spread(false, cells, periodic[2]);
+        grown.spread(true, cells, periodic[0]);
         return grown;
     }
 
@@ -116,14 +111,20 @@ private:
         while (range.begin < range.end && !(f[range.end - 1] > dry)) --range.end;
         return range.begin < range.end ? range : RowRange{};
     }
-    RowRange wrapped(int plane, int r, const std::array<bool, Dim>& periodic) const noexcept {
-        const auto inside = [](int& i, int n, bool wraps) {
-            if (wraps) i = ((i % n) + n) % n;
-            return i >= 0 && i < n;
-        };
-        if (!inside(plane, layout_.planes(), periodic[Layout<Dim>::outer])) return {};
-        if (!inside(r, layout_.rows_per_plane(), periodic[Dim - 1])) return {};
-        return row(plane, r);
+    /// Takes in up to so many rows on either side: of other planes, or of the same.
+    void spread(bool by_plane, int cells, bool wraps) {
+        const WetRows before = *this;
+        const int planes = layout_.planes(), rows = layout_.rows_per_plane();
+        const int n = by_plane ? planes : rows;
+        for (int p = 0; p < planes; ++p)
+            for (int r = 0; r < rows; ++r)
+                for (int k = -cells; k <= cells; ++k) {
+                    int i = (by_plane ? p : r) + k;
+                    if (wraps) i = (i % n + n) % n;
+                    if (i < 0 || i >= n) continue;
+                    RowRange& own = row(p, r);
+                    own = hull(own, by_plane ? before.row(i, r) : before.row(p, i));
+                }
     }
 
     Layout<Dim> layout_{};
