@@ -272,8 +272,9 @@ private:
                     if constexpr (Dim == 3)
                         out += area2[i] * (high[2][i] * share(2, high_open) - low[2][i] * share(2, low_open));
                     if (surplus_ && open_volume_)
-                        out -= static_cast<State>((*surplus_)[start + i] * (*open_volume_)[start + i] / step_) *
-                               area0[i] / per0[i];
+                        out -=
+                            static_cast<State>((*surplus_)[start + i] * (*open_volume_)[start + i] / step_) *
+                            area0[i] / per0[i];
                     else if (surplus_)
                         out -= static_cast<State>((*surplus_)[start + i] / step_) * area0[i] / per0[i];
                     sum += finish(i, out);

@@ -55,6 +55,13 @@ public:
                         a == b ? normal(u[a], b, high) : tangential(u[a], a, b, high);
     }
 
+    /// Ghosts of a cell field beyond periodic sides.
+    template <class Number>
+    void join_cells(Field<Number>& x) const {
+        for (int b = 0; b < Dim; ++b)
+            if (sides_.periodic(b)) copy_around(x, b);
+    }
+
     /// Fills ghosts of a cell field with what is around (periodic) or beside.
     template <class State>
     void fill_cells(Field<State>& x) const {

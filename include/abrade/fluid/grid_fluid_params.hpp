@@ -1,0 +1,82 @@
+#pragma once
+// Water on a grid: what it is made from.
+
+#include <abrade/fluid/velocity_sides.hpp>
+#include <abrade/fluid/wall_friction.hpp>
+
+#include <functional>
+
+namespace abrade {
+
+/// A function of a place [m].
+template <int Dim>
+using PlaceFunction = std::function<Real(const Point<Dim>&)>;
+
+/// What water on a grid is made from.
+template <int Dim>
+struct GridFluidParams {
+    typename Grid<Dim>::Params grid{};
+    Sides<Dim> sides{};                 ///< walls unless told otherwise
+    SideVelocity<Dim> side_velocity{};  ///< of walls and of what flows in; none: at rest
+    bool steady_sides = true;           ///< side_velocity does not depend on time
+    PlaceFunction<Dim>
+        wall{};          ///< distance from walls inside the box, > 0 in the water (WallShape); none: no walls
+    WallLaw wall_law{};  ///< friction of walls inside, and of sides that are walls
+    /// > 0 where there is water at the start, such as the depth below a surface; none: dry. Linear functions
+    /// are met exactly. Not asked of a box that is full.
+    PlaceFunction<Dim> water{};
+    PlaceFunction<Dim> inflow_water{};                        ///< the same beyond sides where water flows in
+    std::function<Point<Dim>(const Point<Dim>&)> velocity{};  ///< at the start; none: at rest
+    Point<Dim> gravity = Point<Dim>::Zero();                  ///< [m/s2]
+    Real density = 1000;                                      ///< [kg/m3]
+    Real viscosity = 1.31e-3;                                 ///< dynamic [Pa s]
+    Real courant = 0.5;                                       ///< limit of dt sum |u_a| / h_a [-]
+    Real largest_step = 0;                                    ///< [s]; 0: none
+    /// Root mean square of the share of its volume that a cell may gain or lose in a step [-]. Where there is
+    /// a surface the next step takes it back: no volume is lost, whatever the tolerance.
+    Real tolerance = 1e-6;
+    Real fastest = 100;   ///< beyond it a run is wrong [m/s]
+    Real start_time = 0;  ///< [s]; before 0: it settles before the solids begin
+
+    void validate() const {
+        grid.validate();
+        sides.validate();
+        wall_law.validate();
+        for (int a = 0; a < Dim; ++a)
+            require_finite(gravity[a], std::string("GridFluid.gravity.") + Grid<Dim>::axis_name(a), "m/s2");
+        require_positive(density, "GridFluid.density", "kg/m3", "water has 1000 kg/m3");
+        require_not_negative(viscosity, "GridFluid.viscosity", "Pa s",
+                             "water has 1.31e-3 Pa s at 10 degrees C");
+        require(courant > 0 && courant <= 1,
+                {"GridFluid.courant", "in (0, 1]", "", "0.5 is usual; beyond 1 steps are not stable"},
+                courant);
+        require_not_negative(largest_step, "GridFluid.largest_step", "s", "0: none");
+        require(tolerance > 0 && tolerance <= 0.01,
+                {"GridFluid.tolerance", "in (0, 0.01]", "", "1e-6 is usual, 1e-4 is fast"}, tolerance);
+        require_positive(fastest, "GridFluid.fastest", "m/s", "100 m/s is far beyond any channel");
+        require_finite(start_time, "GridFluid.start_time", "s");
+        bool in = false, out = false;
+        for (int a = 0; a < Dim; ++a)
+            for (const Side side : sides[a])
+                in = in || side == Side::inflow, out = out || side == Side::outflow;
+        if (in && !side_velocity)
+            fail({"GridFluid.side_velocity", "given where a side is an inflow", "m/s",
+                  "give the velocity there"},
+                 "none");
+        if (in && !out && !water && !inflow_water)
+            fail({"GridFluid.sides", "with an outflow where there is an inflow", "",
+                  "what flows in must leave, or the pressure has no bound"},
+                 "none");
+    }
+    void visit(auto&& f) const {
+        for (int a = 0; a < Dim; ++a)
+            f(std::string("cells_") + Grid<Dim>::axis_name(a),
+              static_cast<Real>(grid.cells[static_cast<std::size_t>(a)]), "-");
+        f("density", density, "kg/m3");
+        f("viscosity", viscosity, "Pa s");
+        f("courant", courant, "-");
+        f("tolerance", tolerance, "-");
+    }
+};
+
+}  // namespace abrade

@@ -1,0 +1,228 @@
+#pragma once
+// Water below a free surface: where it is, what it touches, and what carries its momentum.
+
+#include <abrade/fluid/grid_fluid_params.hpp>
+#include <abrade/fluid/projection.hpp>
+#include <abrade/fluid/velocity_extension.hpp>
+#include <abrade/fluid/volume_of_fluid.hpp>
+
+#include <memory>
+
+namespace abrade::detail {
+
+/// What GridFluid knows of its liquid beside velocity and pressure.
+template <int Dim>
+class SurfaceWater {
+    static constexpr int inner = Layout<Dim>::inner, outer = Layout<Dim>::outer,
+                         vertical = Grid<Dim>::vertical;
+    /// Nearer to a cell's centre than this share of the way to the next one the surface is taken to be here:
+    /// conductances grow as its inverse.
+    static constexpr Real least_share = 0.01;
+
+public:
+    SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
+        : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides),
+          friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
+          carrier_(face_field<Dim>(grid.layout())), wet_(grid.layout().total), rows_(grid.layout()),
+          extension_(grid.layout()) {
+        for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
+        // The projection begins with a full box.
+        for (int plane = 0; plane < layout().planes(); ++plane)
+            for (int row = 0; row < layout().rows_per_plane(); ++row)
+                rows_.row(plane, row) = {0, layout().row_length()};
+        if (params.wall) {
+            walls_ = std::make_shared<Walls<Dim>>(grid, params.wall);
+            liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
+            friction_ = WallFriction<Dim>(grid, params.sides, params.wall_law, walls_.get());
+            held_ = Field<Real>(layout().total);
+        }
+        fill(params);
+    }
+
+    const VolumeOfFluid<Dim>& liquid() const noexcept { return liquid_; }
+    const Walls<Dim>* walls() const noexcept { return walls_.get(); }
+    /// Liquid in each cell, as a share of the whole cell [-]: now, and when the step began.
+    const Field<Real>& held() const noexcept { return walls_ ? held_ : liquid_.fraction(); }
+    const Field<Real>& held_before() const noexcept { return before_; }
+    const FaceField<Dim>* open_area() const noexcept { return walls_ ? &walls_->open_area() : nullptr; }
+    const FaceField<Dim>& carrier() const noexcept { return carrier_; }  ///< [m3] in the stage at work
+    const std::array<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }  ///< that carry momentum
+    const WallFriction<Dim>& friction() const noexcept { return friction_; }
+    const WetRows<Dim>& rows() const noexcept { return rows_; }
+
+    /// Moves the liquid with the velocity over a step.
+    void move(const FaceField<Dim>& velocity, Real step) {
+        before_ = held();
+        liquid_.advance(velocity, step);
+        rows_before_ = rows_;
+        find_rows();
+        hold();
+        carrier_ = liquid_.moved();
+    }
+
+    /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
+    void carry_by(const FaceField<Dim>& stage, const FaceField<Dim>& velocity, Real step) {
+        for (int a = 0; a < Dim; ++a) {
+            std::vector<Real> swept;
+            for (int k = 0; k < grid_->cells(vertical); ++k) {
+                CellNumber<Dim> cell{};
+                cell[vertical] = k;
+                swept.push_back(step * grid_->volume(cell) / grid_->size(a, cell[a]));
+            }
+            const Offset back = layout().stride[a];
+            rows_.for_each_row([&](int plane, int row, const RowRange& r) {
+                const Offset start = layout().row_start(plane, row);
+                Real* const __restrict c = carrier_[a].data() + start;
+                const Real *const u = velocity[a].data() + start, *const v = stage[a].data() + start;
+                const Real *const f = held().data() + start, *const g = before_.data() + start;
+                for (int i = r.begin; i < r.end; ++i) {
+                    const Real area = swept[static_cast<std::size_t>(Dim == 3 ? row : i)];
+                    const bool full = f[i] == 1 && f[i - back] == 1 && g[i] == 1 && g[i - back] == 1;
+                    c[i] += full ? (v[i] - u[i]) * area : 0;
+                }
+            });
+        }
+    }
+
+    /// Which cells are wet below the present surface and where it crosses the lines between centres; takes
+    /// the pressure from dry cells.
+    void find(Projection<Dim, Real>& projection, Field<Real>& pressure, const VelocitySides<Dim>& sides) {
+        WetRows<Dim> rows = rows_;
+        rows.include(rows_before_);
+        const Field<Real>& f = liquid_.fraction();
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout().row_start(plane, row);
+            for (Offset c = start + r.begin; c < start + r.end; ++c) {
+                wet_[c] = f[c] >= 0.5 && is_open(c);
+                if (!wet_[c]) pressure[c] = 0;
+            }
+        });
+        sides.join_cells(wet_);
+        open_ = projection.outflows(wet_);
+        for (int plane = 0; plane < layout().planes(); ++plane)
+            for (int row = 0; row < layout().rows_per_plane(); ++row) {
+                const RowRange r = rows_.row(plane, row);
+                const Offset start = layout().row_start(plane, row);
+                for (int i = r.begin; i < r.end; ++i)
+                    if (!wet_[start + i] && is_open(start + i)) add_open_faces(start + i, plane, row, i);
+            }
+        projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
+    }
+
+    void extend(FaceField<Dim>& u) { extension_.extend(u, wet_, rows_, held(), open_area()); }
+
+    /// Puts back fractions as they were saved.
+    void restore(const Field<Real>& fraction) {
+        liquid_.fraction() = fraction;
+        settle();
+    }
+
+private:
+    const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
+    bool is_open(Offset c) const noexcept { return !walls_ || walls_->open_volume()[c] > 0; }
+
+    /// Shares of the open volume that lie in the water of the start, and beyond inflows.
+    void fill(const GridFluidParams<Dim>& params) {
+        Field<Real>& f = liquid_.fraction();
+        const auto shares = [&](const PlaceFunction<Dim>& water, auto&& wanted) {
+            if (!water) return;
+            const auto both = [&](const Point<Dim>& x) {
+                return params.wall ? std::min(params.wall(x), water(x)) : water(x);
+            };
+            typename Walls<Dim>::Params how{.closed_below = 0, .bounded_slope = false};
+            const Walls<Dim> filled(*grid_, both, how);
+            grid_->for_each(
+                [&](const CellNumber<Dim>& cell, Offset c) {
+                    if (!wanted(cell) || !is_open(c)) return;
+                    const Real open = walls_ ? walls_->open_volume()[c] : 1;
+                    f[c] = std::clamp(filled.open_volume()[c] / open, Real(0), Real(1));
+                },
+                Layout<Dim>::ghosts);
+        };
+        const auto inside = [&](const CellNumber<Dim>& cell) {
+            for (int a = 0; a < Dim; ++a)
+                if (cell[a] < 0 || cell[a] >= grid_->cells(a)) return false;
+            return true;
+        };
+        shares(params.water, inside);
+        shares(params.inflow_water, [&](const CellNumber<Dim>& cell) {
+            for (int a = 0; a < Dim; ++a)
+                if ((cell[a] < 0 && sides_[a][0] == Side::inflow) ||
+                    (cell[a] >= grid_->cells(a) && sides_[a][1] == Side::inflow))
+                    return true;
+            return false;
+        });
+        settle();
+    }
+    void settle() {
+        liquid_.prepare();
+        rows_before_ = rows_;
+        find_rows();
+        hold();
+        before_ = held();
+    }
+    void hold() {
+        if (!walls_) return;
+        const Field<Real>&f = liquid_.fraction(), &v = walls_->open_volume();
+        for (Offset c = 0; c < f.size(); ++c) held_[c] = f[c] * v[c];
+    }
+
+    /// Rows that hold water and what is near, and faces that carry momentum.
+    void find_rows() {
+        std::array<bool, Dim> wraps;
+        for (int a = 0; a < Dim; ++a) wraps[static_cast<std::size_t>(a)] = sides_.periodic(a);
+        const WetRows<Dim>& wet = liquid_.wet();
+        rows_ = wet.dilated(VelocityExtension<Dim>::layers, wraps);
+        for (int a = 0; a < Dim; ++a) {
+            const int first = sides_.periodic(a) ? 0 : 1;  // a face at a side is the side's
+            faces_[a].for_each_plane([&](int plane) {
+                for (int row = 0; row < layout().rows_per_plane(); ++row) {
+                    RowRange r = wet.row(plane, row);
+                    const int number = a == outer ? plane : row;
+                    if (a == inner) {
+                        if (!r.empty())
+                            r = {std::max(first, r.begin), std::min(layout().row_length(), r.end + 1)};
+                    } else if (number < first) {
+                        r = {};
+                    } else {
+                        const int below = number > 0 ? number - 1 : layout().cells[a] - 1;
+                        r = hull(r, a == outer ? wet.row(below, row) : wet.row(plane, below));
+                    }
+                    faces_[a].row(plane, row) = r;
+                }
+            });
+        }
+    }
+
+    /// The faces between a dry cell and its wet neighbours.
+    void add_open_faces(Offset c, int plane, int row, int i) {
+        const int level = Dim == 3 ? row : i;
+        for (int a = 0; a < Dim; ++a) {
+            const Offset s = layout().stride[a];
+            const int number = a == outer ? plane : a == inner ? i : row, up = a == vertical;
+            // `above`: 1 where the wet cell is the upper one, -1 where it is the lower.
+            const auto add = [&](Offset wet, Offset face, int above, int upper, int wet_level) {
+                const Real plain = above / grid_->gap(a, upper);
+                const Real share = liquid_.surface_share(wet, wet_level, a, -above, least_share);
+                open_.push_back({face, wet, a, plain / share, plain});
+            };
+            if (number + 1 < layout().cells[a] && wet_[c + s]) add(c + s, c + s, 1, number + 1, level + up);
+            if (number > 0 && wet_[c - s]) add(c - s, c, -1, number, level - up);
+        }
+    }
+
+    const Grid<Dim>* grid_;
+    Sides<Dim> sides_;
+    VolumeOfFluid<Dim> liquid_;
+    std::shared_ptr<const Walls<Dim>> walls_;  ///< shared among copies; the liquid points to them
+    WallFriction<Dim> friction_;
+    Field<Real> held_, before_;
+    FaceField<Dim> carrier_;
+    Field<std::uint8_t> wet_;
+    WetRows<Dim> rows_, rows_before_;
+    std::array<WetRows<Dim>, Dim> faces_;
+    VelocityExtension<Dim> extension_;
+    std::vector<OpenFace> open_;
+};
+
+}  // namespace abrade::detail
