@@ -99,7 +99,7 @@ private:
             require_positive(side.discharge, field + ".discharge", unit,
                              "an end that lets nothing in is a wall");
             require_not_negative(side.depth, field + ".depth", "m",
-                                 "leave it 0 for subcritical flow: the water before it sets it");
+                                 "leave it 0 for subcritical flow: water before it sets it");
         }
     }
 };
