@@ -2,8 +2,6 @@
 
 #include "run_channel.hpp"
 
-#include <abrade/fluid/shallow_water.hpp>
-
 namespace abrade::examples {
 
 namespace {
@@ -47,6 +45,7 @@ void measure(const ChannelConfig& c, const ShallowWater<2>& flow, ChannelWater& 
         for (Index j = 0; j < flow.grid().count(1); ++j)
             if (flow.depth(i, j) > flow.params().dry_depth)
                 area += flow.depth(i, j) * flow.grid().spacing(1), width += flow.grid().spacing(1);
+        if (!(area > 0)) continue;  // the water has not come so far
         const Real middle = flow.sample({x, 0, 0}, 0).depth, mean = flow.discharge(i) / area;
         depth += middle, speed += mean, ++counted;
         froude += mean / std::sqrt(standard_gravity * area / width);

@@ -60,11 +60,13 @@ concept AdvancingFluid = FluidModel<F> && requires(F& fluid, const F& still) {
     { still.time() } noexcept -> std::same_as<Real>;
     { still.stable_step() } -> std::same_as<FluidStep>;
 };
-
-/// What advances does so in full: half of the concept would be taken for a fluid that stays as it is.
-template <class F>
-concept WholeFluid = AdvancingFluid<F> || !requires(F& fluid) { fluid.advance(Real{}); };
 // clang-format on
+
+/// Whether a fluid means to change: one that does so in part only would be taken for one that stays as it is.
+template <class F>
+inline constexpr bool goes_on = requires(F& fluid) {
+    fluid.advance(Real{});
+};
 
 /// Brings a fluid that changes to `t`, or one whole step of its own further where that leads beyond `t`: a
 /// step of solids is often much shorter than the fluid's.
