@@ -26,12 +26,17 @@ inline Scene make_scene(const ChannelConfig& c) {
     return scene;
 }
 
-inline auto make_simulation(const ChannelConfig& c) {
-    return simulate(make_scene(c))
-        .contact(LinearSpring{c.contact})
-        .bond(MohrCoulomb{c.bond})
-        .wear(SubParticleAbrasion{c.wear})
-        .fluid(UniformFlow{c.water}, CliftGauvin{c.drag});
+/// One engine is compiled for each fluid.
+template <FluidModel Fluid>
+auto make_simulation(const ChannelConfig& c, Fluid fluid) {
+    auto dry = simulate(make_scene(c))
+                   .contact(LinearSpring{c.contact})
+                   .bond(MohrCoulomb{c.bond})
+                   .wear(SubParticleAbrasion{c.wear});
+    if constexpr (std::same_as<Fluid, NoFluid>)
+        return dry;
+    else
+        return std::move(dry).fluid(std::move(fluid), CliftGauvin{c.drag});
 }
 
 namespace detail {
@@ -75,7 +80,6 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     ChannelResults r;
     const Concrete& concrete = sim.concrete();
     const Ledger& ledger = sim.ledger();
-    const UniformFlow& water = sim.fluid_model();
     r.stopped = sim.stopped();
     r.wall_s = sim.wall_seconds();
     r.simulated_s = sim.time();
@@ -107,11 +111,10 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     const auto shares = sim.wall_shares();
     r.wall_contacts_s = shares.contacts * r.wall_s, r.wall_bonds_s = shares.bonds * r.wall_s;
     r.wall_motion_s = shares.motion * r.wall_s, r.wall_lists_s = shares.renewal * r.wall_s;
+    r.wall_fluid_s = shares.fluid * r.wall_s;
     r.awake_fraction_mean = sim.awake_fraction_mean();
-    r.water_depth_m = water.depth(), r.water_speed_m_per_s = water.mean_velocity();
-    r.froude = water.froude(), r.bed_shear_Pa = water.bed_shear();
-    r.fluid = UniformFlow::name, r.contact = LinearSpring::name, r.bond = MohrCoulomb::name,
-    r.wear = SubParticleAbrasion::name;
+    r.fluid = std::remove_cvref_t<decltype(sim.fluid_model())>::name, r.contact = LinearSpring::name,
+    r.bond = MohrCoulomb::name, r.wear = SubParticleAbrasion::name;
 
     const Lattice& lattice = concrete.lattice();
     r.depth_m = concrete.depth();

@@ -1,4 +1,5 @@
 #include "config.hpp"
+#include "fluids.hpp"
 
 #include "../common/toml_reader.hpp"
 
@@ -65,11 +66,12 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
                                                     .help = "share of critical damping of a bond",
                                                     .assumption = "not in the text",
                                                     .bound = Bound::not_negative});
-    c.wake_force = in.number("concrete.wake_force",
-                             {.unit = "N",
-                              .fallback = 1,
-                              .help = "load that wakes sleeping concrete, 0: all is awake; a bond holds 848 N",
-                              .bound = Bound::not_negative});
+    c.wake_force =
+        in.number("concrete.wake_force",
+                  {.unit = "N",
+                   .fallback = 1,
+                   .help = "load that wakes sleeping concrete, 0: all is awake; a bond holds 848 N",
+                   .bound = Bound::not_negative});
     c.wake_radius = static_cast<Index>(in.integer(
         "concrete.wake_radius",
         {.fallback = 2, .help = "bonds about what stones may touch", .bound = Bound::not_negative}));
@@ -132,6 +134,33 @@ void read_water(TomlReader& in, ChannelConfig& c) {
                                               .help = "on a sphere's drag coefficient",
                                               .assumption = "stones of this level of model drag like spheres",
                                               .bound = Bound::positive});
+}
+
+void read_fluid(TomlReader& in, ChannelConfig& c) {
+    std::vector<std::string_view> names;
+    for (const ChannelFluid& one : channel_fluids) names.push_back(one.name);
+    c.fluid.model =
+        in.choice("fluid.model", names,
+                  {.fallback = "uniform", .help = "uniform: prescribed, shallow: depth-averaged, or none"});
+    c.fluid.spacing = in.number(
+        "fluid.spacing",
+        {.unit = "m", .fallback = 0.02, .help = "of the grid of shallow water", .bound = Bound::positive});
+    c.fluid.inflow_depth =
+        in.number("fluid.inflow_depth", {.unit = "m",
+                                         .fallback = 0,
+                                         .help = "of shallow water at the upstream end, 0: of uniform flow",
+                                         .assumption = "not in the text",
+                                         .bound = Bound::not_negative});
+    c.fluid.settle =
+        in.number("fluid.settle", {.unit = "s",
+                                   .fallback = 0,
+                                   .help = "that shallow water runs before the stones begin, 0: three "
+                                           "times what uniform flow takes down the channel, and 1 s",
+                                   .bound = Bound::not_negative});
+    require(c.fluid.spacing <= 0.25 * c.invert.width,
+            {in.where("fluid.spacing") + ": fluid.spacing",
+             "at most a quarter of the channel's width of " + to_text(c.invert.width) + " m", "m"},
+            c.fluid.spacing);
 }
 
 void read_sediment(TomlReader& in, ChannelConfig& c) {
@@ -260,6 +289,7 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
     read_concrete(in, c);
     read_contact(in, c);
     read_water(in, c);
+    read_fluid(in, c);
     read_sediment(in, c);
     c.wear.coefficient = in.number(
         "wear.coefficient", {.unit = "m3/J", .fallback = 1.1e-7, .help = "Cw", .bound = Bound::not_negative});

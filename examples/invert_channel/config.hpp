@@ -25,6 +25,14 @@ struct Comparison {
     std::filesystem::path measured;  ///< CSV of the user's own points, or empty
 };
 
+/// Which water runs down the channel, and what it needs beyond Manning's formula.
+struct WaterChoice {
+    std::string model;      ///< a name of `channel_fluids`
+    Real spacing = 0;       ///< of a grid [m]
+    Real inflow_depth = 0;  ///< at the centre line [m]; 0: of uniform flow
+    Real settle = 0;        ///< before the stones begin [s]
+};
+
 struct ChannelConfig {
     std::string title;
     std::string source;  ///< the TOML file
@@ -38,6 +46,7 @@ struct ChannelConfig {
     MohrCoulomb::Params bond;
     SubParticleAbrasion::Params wear;
     UniformFlow::Params water;
+    WaterChoice fluid;
     CliftGauvin::Params drag;
     FeedParams feed;
     Comparison comparison;

@@ -1,27 +1,29 @@
 // The main job: gravel and water down a concrete channel, and what they wear off it.
 //
-//   examples/run invert_channel [FILE.toml] [--set section.key=value]... [--out FOLDER] [--threads N]
+//   examples/run invert_channel [FILE.toml] [--fluid NAME] [--set section.key=value]... [--out FOLDER]
+//   [--threads N]
 //
-// config    what the TOML file says, checked
-// channel   from the configuration to a simulation, and from a simulation to results
-// recorder  what is written while it runs
-// pictures  what is drawn when it is done
+// config       what the TOML file says, checked
+// fluids       which waters there are; fluid_NAME.cpp: one of them
+// run_channel  a run with one of them
+// channel      from the configuration to a simulation, and from a simulation to results
+// recorder     what is written while it runs
+// pictures     what is drawn when it is done
 
-#include "channel.hpp"
+#include "fluids.hpp"
 #include "pictures.hpp"
-#include "recorder.hpp"
 
 #include "../common/gnuplot.hpp"
-#include "../common/interrupt.hpp"
 #include "../common/measured_points.hpp"
-#include "../common/progress.hpp"
 
+#include <abrade/core/parallel.hpp>
 #include <abrade/io/checkpoint.hpp>
 
 #include <hdf5.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 
@@ -33,12 +35,13 @@ namespace {
 struct Options {
     std::filesystem::path file = std::filesystem::path(ABRADE_EXAMPLE_DIR) / "quick.toml";
     std::vector<std::string> overrides;
+    std::string fluid;
     std::filesystem::path out = "out/invert_channel";
     int threads = 0;
 };
 
 void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::filesystem::path& path) {
-    const nlohmann::ordered_json summary{
+    nlohmann::ordered_json summary{
         {"title", c.title},
         {"configuration", c.source},
         {"version", ABRADE_VERSION},
@@ -75,14 +78,22 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"ledger_residual_relative", r.ledger_residual_relative},
         {"integration_residue_J", r.integration_residue_J},
         {"mean_stone_speed_m_per_s", r.mean_stone_speed_m_per_s},
-        {"water_depth_m", r.water_depth_m},
-        {"water_speed_m_per_s", r.water_speed_m_per_s},
         {"wall_s_by_room",
          {{"contacts_and_wear", r.wall_contacts_s},
           {"bonds", r.wall_bonds_s},
           {"motion_and_fluid", r.wall_motion_s},
-          {"lists", r.wall_lists_s}}},
+          {"lists", r.wall_lists_s},
+          {"changing_fluid", r.wall_fluid_s}}},
         {"policies", {{"fluid", r.fluid}, {"contact", r.contact}, {"bond", r.bond}, {"wear", r.wear}}}};
+    if (r.water) {
+        summary["water_depth_m"] = r.water->depth_m;
+        summary["water_speed_m_per_s"] = r.water->speed_m_per_s;
+        summary["manning_depth_m"] = r.water->manning_depth_m;
+        summary["manning_speed_m_per_s"] = r.water->manning_speed_m_per_s;
+        summary["water_off_manning"] = r.water->off_manning();
+        summary["water_settled"] = r.water->off_manning() <= ChannelWater::settled_within;
+        for (const auto& [name, value] : r.water->figures) summary[name] = value;
+    }
     std::ofstream file(path);
     file << summary.dump(2) << "\n";
     if (!file.flush()) throw FileError("cannot write '" + path.string() + "'");
@@ -112,46 +123,15 @@ int run(const Options& options) {
         std::cerr << "note: " << left.string()
                   << " was left by a run that was killed; delete it if you do not need it\n";
 
-    auto sim = make_simulation(config);
-    const Interrupt interrupt;
-    LedgerHistory history;
-    std::string went_wrong;
-    int code = 3;
-    {
-        Recorder recorder(folder.path("series"));
-        Progress progress("invert channel", config.end_time);
-        const auto stop = [&] {
-            progress.update(sim.time(), std::to_string(sim.feed()->supplied_stones()) + " stones fed");
-            return interrupt.requested();
-        };
-        try {
-            sim.run({.end_time = config.end_time,
-                     .time_step = config.time_step,
-                     .safety = config.safety,
-                     .observe_every = config.output_every,
-                     .skin = config.skin,
-                     .wake_force = config.wake_force,
-                     .wake_radius = config.wake_radius,
-                     .stop = stop},
-                    recorder);
-        } catch (const RunError& error) {
-            progress.clear();
-            went_wrong = error.what();
-        } catch (const InputError& error) {
-            throw InputError(config.source + ": " + error.what());  // what only the whole scene could tell
-        } catch (const std::exception& error) {                     // a full disk, no memory
-            progress.clear();
-            went_wrong = error.what();
-            code = 1;
-        }
-        history = recorder.take_history();
+    const auto fluid = std::find_if(channel_fluids.begin(), channel_fluids.end(),
+                                    [&](const ChannelFluid& one) { return one.name == config.fluid.model; });
+    const ChannelRun run = fluid->run(config, folder.path("series"));
+    if (run.code != 0) {
+        std::cerr << "error: " << run.went_wrong << "\n";
+        keep_failed_run(run.last_good, folder);
+        return run.code;
     }
-    if (!went_wrong.empty()) {  // only now: every file of the folder must be closed
-        std::cerr << "error: " << went_wrong << "\n";
-        keep_failed_run(sim.last_good(), folder);
-        return code;
-    }
-    const ChannelResults results = make_results(config, sim, std::move(history));
+    const ChannelResults& results = run.results;
     std::string unfinished;  // what was computed is kept, whatever happens to its pictures
     try {
         write_summary(config, results, folder.path("summary.json"));
@@ -161,7 +141,7 @@ int run(const Options& options) {
     }
     const std::filesystem::path place = folder.publish();
 
-    std::cout << sim;
+    std::cout << run.printed;
     if (results.stopped)
         std::cout << "stopped early, at " << short_text(results.simulated_s) << " s of "
                   << short_text(config.end_time) << " s\n";
@@ -172,6 +152,10 @@ int run(const Options& options) {
     if (results.sediment_fed_m3 < 0.95 * due - largest)
         std::cerr << "note: the supply fell short, there was no room: " << short_text(results.sediment_fed_m3)
                   << " of " << short_text(due) << " m3 were fed; widen the feed or raise its speed\n";
+    if (results.water && results.water->off_manning() > ChannelWater::settled_within)
+        std::cerr << "note: as the stones began the water was "
+                  << short_text(100 * results.water->off_manning())
+                  << " % off Manning's depth or speed; let it settle for longer (fluid.settle)\n";
     std::cout << "worn " << short_text(1e6 * results.worn_volume_m3) << " cm3; ";
     if (std::isfinite(results.centre_depth_mm_per_m3))
         std::cout << "at the centre " << short_text(results.centre_depth_mm_per_m3)
@@ -194,6 +178,7 @@ int main(int argc, char** argv) {
     CLI::App app("Gravel and water wear a concrete channel.");
     app.add_option("file", options.file, "TOML file; quick.toml and paper.toml come with the program")
         ->capture_default_str();
+    app.add_option("--fluid", options.fluid, "none, uniform or shallow; as fluid.model in the file");
     app.add_option("--set", options.overrides, "section.key=value, overrides the file")
         ->allow_extra_args(false)
         ->take_all();
@@ -214,6 +199,7 @@ int main(int argc, char** argv) {
         if (const auto beside = std::filesystem::path(ABRADE_EXAMPLE_DIR) / options.file;
             !std::filesystem::exists(options.file) && std::filesystem::exists(beside))
             options.file = beside;
+        if (!options.fluid.empty()) options.overrides.push_back("fluid.model=\"" + options.fluid + "\"");
         return run(options);
     } catch (const InputError& error) {
         std::cerr << "error: " << error.what() << "\n";

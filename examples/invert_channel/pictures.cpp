@@ -36,9 +36,19 @@ void draw_snapshot(const ChannelConfig& c, const ChannelResults& r, const fs::pa
     Axis shown = x;
     if (c.invert.length > 4)
         shown.min = c.comparison.from, shown.max = std::min(c.comparison.from + 4, c.invert.length);
-    const std::vector<Curve> surface{
-        {.title = "water surface", .x = {*shown.min, *shown.max}, .y = {r.water_depth_m, r.water_depth_m}}};
-    const Real top = r.water_depth_m + 0.12;
+    std::vector<Curve> surface;
+    Real top = 0.3;
+    if (r.water) {
+        Curve line{.title = "water surface", .x = {}, .y = {}};
+        for (std::size_t n = 0; n < r.water->surface_x.size(); ++n) {
+            const Real at = r.water->surface_x[n];
+            const bool ends = r.water->surface_x.size() == 2;  // a straight line: cut, not left out
+            if (!ends && (at < *shown.min || at > *shown.max)) continue;
+            line.x.push_back(std::clamp(at, *shown.min, *shown.max)), line.y.push_back(r.water->surface_z[n]);
+        }
+        top = 0.12 + *std::max_element(line.y.begin(), line.y.end());
+        surface.push_back(std::move(line));
+    }
     draw(CirclePicture{.title = "Side view at the end",
                        .x = shown,
                        .y = {.label = "height", .unit = "m", .min = -0.02, .max = top},
@@ -54,6 +64,18 @@ void draw_snapshot(const ChannelConfig& c, const ChannelResults& r, const fs::pa
             .colour = fracture,
             .sets = {bed_plan, stones_plan}},
         plan);
+}
+
+void draw_water(const ChannelConfig& c, const ChannelWater& water, const fs::path& picture) {
+    ColourMap map{
+        .title = "Depth of water at the end",
+        .x = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length},
+        .y = {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width},
+        .colour = {.label = "depth", .unit = "m", .min = 0.0},
+        .columns = static_cast<std::size_t>(water.columns),
+        .values = water.depth_map};
+    map.equal_aspect = c.invert.length < 4;
+    draw(map, picture);
 }
 
 void draw_depth_map(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
@@ -146,36 +168,44 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
         return ReportRow{name, std::isfinite(value) ? short_number(value) : otherwise,
                          std::isfinite(value) ? unit : ""};
     };
-    return {row("simulated time", r.simulated_s, "s"),
-            row("represented time (times beta)", r.represented_h, "h"),
-            row("wall time", r.wall_s, "s"),
-            row("time step", 1e6 * r.time_step_s, "us"),
-            row("stable time step", 1e6 * r.stable_time_step_s, "us"),
-            row("stones fed", r.stones_fed, ""),
-            row("stones in the channel at the end", r.stones, ""),
-            row("their mean speed", r.mean_stone_speed_m_per_s, "m/s"),
-            row("concrete spheres", r.concrete_spheres, ""),
-            row("bonds broken", r.bonds_broken, ""),
-            row("sediment past the gauge", r.sediment_passed_m3, "m3"),
-            row("converted sediment (times beta)", r.converted_sediment_m3, "m3"),
-            row("worn volume", 1e6 * r.worn_volume_m3, "cm3"),
-            row("worn volume from the energy lost", 1e6 * r.worn_volume_from_energy_m3, "cm3"),
-            row("overflow: hit spheres already fully fractured", 1e6 * r.overflow_volume_m3, "cm3"),
-            row("sound concrete that went with loosened spheres", 1e6 * r.detached_volume_m3, "cm3"),
-            row("largest share of a cell that one collision wore", r.largest_collision_share, ""),
-            row("largest safe beta", r.largest_safe_beta, "", "nothing was worn"),
-            row("depth at the centre per converted sediment", r.centre_depth_mm_per_m3, "mm/m3"),
-            row("greatest depth", r.max_depth_mm, "mm"),
-            row("mean depth", r.mean_depth_mm, "mm"),
-            row("width of the worn band (90 % of the volume)", r.worn_band_width_m, "m"),
-            row("energy lost in impacts on concrete", r.energy_lost_normal_J, "J"),
-            row("energy lost in sliding on concrete", r.energy_lost_sliding_J, "J"),
-            row("ledger residual, relative", r.ledger_residual_relative, ""),
-            row("integration residue", r.integration_residue_J, "J"),
-            row("water depth at the centre", r.water_depth_m, "m"),
-            row("mean water speed", r.water_speed_m_per_s, "m/s"),
-            row("Froude number", r.froude, ""),
-            row("bed shear", r.bed_shear_Pa, "Pa")};
+    std::vector<ReportRow> rows{
+        row("simulated time", r.simulated_s, "s"),
+        row("represented time (times beta)", r.represented_h, "h"),
+        row("wall time", r.wall_s, "s"),
+        row("time step", 1e6 * r.time_step_s, "us"),
+        row("stable time step", 1e6 * r.stable_time_step_s, "us"),
+        row("stones fed", r.stones_fed, ""),
+        row("stones in the channel at the end", r.stones, ""),
+        row("their mean speed", r.mean_stone_speed_m_per_s, "m/s"),
+        row("concrete spheres", r.concrete_spheres, ""),
+        row("bonds broken", r.bonds_broken, ""),
+        row("sediment past the gauge", r.sediment_passed_m3, "m3"),
+        row("converted sediment (times beta)", r.converted_sediment_m3, "m3"),
+        row("worn volume", 1e6 * r.worn_volume_m3, "cm3"),
+        row("worn volume from the energy lost", 1e6 * r.worn_volume_from_energy_m3, "cm3"),
+        row("overflow: hit spheres already fully fractured", 1e6 * r.overflow_volume_m3, "cm3"),
+        row("sound concrete that went with loosened spheres", 1e6 * r.detached_volume_m3, "cm3"),
+        row("largest share of a cell that one collision wore", r.largest_collision_share, ""),
+        row("largest safe beta", r.largest_safe_beta, "", "nothing was worn"),
+        row("depth at the centre per converted sediment", r.centre_depth_mm_per_m3, "mm/m3"),
+        row("greatest depth", r.max_depth_mm, "mm"),
+        row("mean depth", r.mean_depth_mm, "mm"),
+        row("width of the worn band (90 % of the volume)", r.worn_band_width_m, "m"),
+        row("energy lost in impacts on concrete", r.energy_lost_normal_J, "J"),
+        row("energy lost in sliding on concrete", r.energy_lost_sliding_J, "J"),
+        row("ledger residual, relative", r.ledger_residual_relative, ""),
+        row("integration residue", r.integration_residue_J, "J")};
+    if (r.water) {
+        const ChannelWater& water = *r.water;
+        for (const ReportRow& one :
+             {row("water depth at the centre as the stones begin", water.depth_m, "m"),
+              row("Manning's depth", water.manning_depth_m, "m"),
+              row("mean water speed as the stones begin", water.speed_m_per_s, "m/s"),
+              row("Manning's speed", water.manning_speed_m_per_s, "m/s"),
+              row("Froude number", water.froude, ""), row("bed shear", water.bed_shear_Pa, "Pa")})
+            rows.push_back(one);
+    }
+    return rows;
 }
 
 }  // namespace
@@ -188,13 +218,18 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
     draw_depth_map(c, r, depth);
     draw_centre_line(c, r, centre);
     draw_ledger(r, ledger);
+    const bool flows = r.water && !r.water->depth_map.empty();
+    if (flows) draw_water(c, *r.water, folder.path("water.png"));
 
     const Bracket bracket;
     Report report;
     report.title = c.title;
     report.explanation =
-        "Gravel is fed into steady uniform water at the upstream end of a channel whose invert is made of "
-        "bonded concrete spheres. "
+        "Gravel is fed into " +
+        std::string(!r.water ? "a dry channel"
+                    : flows  ? "water that runs down a channel"
+                             : "steady uniform water at the upstream end of a channel") +
+        " whose invert is made of bonded concrete spheres. "
         "Half of the energy that stones lose in contact with a sphere wears it (sub-particle abrasion), and "
         "what is worn holds less. "
         "The ledger follows every joule; worn volume is the energy lost times a constant, to round-off.";
@@ -224,12 +259,19 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
         {ledger,
          "Energy over time. The integration residue is the integrator's error in energy, shown and not "
          "hidden in a loss."}};
+    if (flows)
+        report.figures.push_back({folder.path("water.png"),
+                                  "Depth of the water at the end, in plan. It is averaged over "
+                                  "the depth, and has run since before the stones came."});
     report.parameters = c.parameters;
     report.notes = {
         "The measured curve of the original experiment is not available in the text that this model was "
         "built from. The result is judged by the bracket, by the closed ledger and by the hydraulics.",
-        "The water is prescribed: it drives the stones and does not feel them. Stones drag like spheres of "
-        "the same volume.",
+        std::string(!r.water ? "There is no water."
+                    : flows
+                        ? "The water is averaged over its depth; it drives the stones and does not feel them."
+                        : "The water is prescribed: it drives the stones and does not feel them.") +
+            " Stones drag like spheres of the same volume.",
         "Parameters marked as assumptions are open in the source; they are choices, not data."};
     report.versions = build_versions();
     report.versions.push_back({"configuration", c.source, ""});

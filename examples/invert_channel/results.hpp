@@ -3,7 +3,9 @@
 
 #include "config.hpp"
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace abrade::examples {
@@ -22,6 +24,26 @@ struct LedgerHistory {
     std::vector<std::vector<Real>> values;  ///< [name][time] [J]
 };
 
+/// The water of a run.
+struct ChannelWater {
+    Real depth_m = 0, speed_m_per_s = 0;  ///< at the centre line, and mean; as the stones begin
+    Real froude = 0, bed_shear_Pa = 0;
+    Real manning_depth_m = 0, manning_speed_m_per_s = 0;  ///< of uniform flow
+    /// Its surface along the centre line at the end [m].
+    std::vector<Real> surface_x, surface_z;
+    /// Of water that is reckoned: depth at the end [m], [row x column] from the right wall on.
+    std::vector<Real> depth_map;
+    Index columns = 0;
+    std::vector<std::pair<std::string, Real>> figures;  ///< more that is known of it, for the summary
+
+    /// The larger deviation from Manning's depth and speed [-].
+    Real off_manning() const {
+        return std::max(std::abs(depth_m / manning_depth_m - 1),
+                        std::abs(speed_m_per_s / manning_speed_m_per_s - 1));
+    }
+    static constexpr Real settled_within = 0.1;
+};
+
 struct ChannelResults {
     bool stopped = false;  ///< by Ctrl-C
     Real wall_s = 0, simulated_s = 0, represented_h = 0, time_step_s = 0, stable_time_step_s = 0;
@@ -37,8 +59,8 @@ struct ChannelResults {
     Real ledger_residual_relative = 0, integration_residue_J = 0;
     Real mean_stone_speed_m_per_s = 0;
     Real awake_fraction_mean = 1;  ///< of the concrete that could move
-    Real wall_contacts_s = 0, wall_bonds_s = 0, wall_motion_s = 0, wall_lists_s = 0;
-    Real water_depth_m = 0, water_speed_m_per_s = 0, froude = 0, bed_shear_Pa = 0;
+    Real wall_contacts_s = 0, wall_bonds_s = 0, wall_motion_s = 0, wall_lists_s = 0, wall_fluid_s = 0;
+    std::optional<ChannelWater> water;
     std::string fluid, contact, bond, wear;  ///< names of the policies
 
     std::vector<Real> depth_m;  ///< [along x across] abrasion depth

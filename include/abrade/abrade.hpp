@@ -9,6 +9,7 @@
 #include <abrade/dem/linear_spring.hpp>
 #include <abrade/dem/material_pairs.hpp>
 #include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/fluid/shallow_water.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/geometry/gravel.hpp>
 #include <abrade/geometry/stone_shapes.hpp>

@@ -37,6 +37,21 @@ grep -q "Warning" short/report.html && fail "a warning although no collision wor
 grep -q "Warning: one collision wore" fast/report.html || fail "the report does not warn of beta"
 grep -q "^warning  one collision wore" fast.log || fail "the run does not warn of beta"
 
+# --- other fluids: shallow water has come to Manning's depth and speed before the stones begin, and keeps its volume
+"$program" "${short[@]}" --fluid shallow --set run.end_time=0.03 --out shallow > shallow.log || fail "shallow water: $(cat shallow.log)"
+for file in report.html summary.json water.png side_view.png; do [ -s "shallow/$file" ] || fail "shallow/$file is missing or empty"; done
+[ "$(value shallow/summary.json fluid)" = '"ShallowWater"' ] || fail "the fluid is not shallow water"
+[ "$(value shallow/summary.json water_settled)" = true ] || fail "the water has not settled"
+holds "Manning's depth" "($(value shallow/summary.json water_depth_m) / $(value shallow/summary.json manning_depth_m) - 1)^2 < 0.01"
+holds "Manning's speed" "($(value shallow/summary.json water_speed_m_per_s) / $(value shallow/summary.json manning_speed_m_per_s) - 1)^2 < 0.01"
+holds "the water's volume" "$(value shallow/summary.json water_volume_residual_relative) < 1e-12"
+holds "the ledger closes in shallow water" "$(value shallow/summary.json ledger_residual_relative) < 1e-6"
+holds "stones are moved" "$(value shallow/summary.json mean_stone_speed_m_per_s) > 1"
+"$program" "${short[@]}" --fluid shallow --set fluid.settle=0.02 --set run.end_time=0.001 --out early > early.log 2>&1 || fail "water that has not settled"
+grep -q "off Manning's depth" early.log || fail "water that has not settled is not mentioned"
+"$program" "${short[@]}" --fluid none --set run.end_time=0.01 --out none > none.log || fail "a dry channel: $(cat none.log)"
+grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
+
 # --- measured points are drawn; a bad row is named
 printf 'x,depth\n0.3,0.1\n' > points.csv
 "$program" "${short[@]}" --set run.end_time=0.01 --set "compare.measured=\"points.csv\"" --out measured > /dev/null || fail "measured points"
@@ -96,6 +111,9 @@ refused "fractions" 'fraction.*1' --set 'sediment.fractions=[0.2,0.2,0.2,0.2,0.3
 refused "restitution" 'restitution.*\(0, 1\].*1.5' --set contact.restitution=1.5
 printf 'x,depth\n0.3,high\n' > points_bad.csv
 refused "bad measured points" 'points_bad.csv.*(row|line|:) *2' --set 'compare.measured="points_bad.csv"'
+refused "unknown fluid" 'fluid.model.*shallow' --fluid shalow
+refused "inflow too deep" 'at most critical.*got 2 m' --fluid shallow --set fluid.inflow_depth=2
+refused "a coarse grid" 'fluid.spacing.*at most a quarter.*0.5 m' --fluid shallow --set fluid.spacing=0.5
 refused "unknown option" 'help' --frobnicate
 mkdir -p readonly_is_a_file && touch readonly_is_a_file/inside
 code=0; "$program" --out readonly_is_a_file/inside > refused.log 2>&1 || code=$?

@@ -62,6 +62,12 @@ concept AdvancingFluid = FluidModel<F> && requires(F& fluid, const F& still) {
 };
 // clang-format on
 
+/// Whether a fluid means to change: one that does so in part only would be taken for one that stays as it is.
+template <class F>
+inline constexpr bool goes_on = requires(F& fluid) {
+    fluid.advance(Real{});
+};
+
 /// Brings a fluid that changes to `t`, or one whole step of its own further where that leads beyond `t`: a
 /// step of solids is often much shorter than the fluid's.
 template <AdvancingFluid F>

@@ -95,8 +95,9 @@ WaterFlux<Number> water_flux(const WaterBeside<Number>& low, const WaterBeside<N
     const Number none(0);
     const Number c_low = wave_speed(low.depth, gravity), c_high = wave_speed(high.depth, gravity);
     // Towards a dry side water runs at u + 2c: that speed stands for the one that is not there.
-    const Number u_low = select(low.depth > none, low.through, high.through - (c_high + c_high));
-    const Number u_high = select(high.depth > none, high.through, low.through + (c_low + c_low));
+    const auto wet_low = low.depth > none, wet_high = high.depth > none;
+    const Number u_low = select(wet_low, low.through, high.through - (c_high + c_high));
+    const Number u_high = select(wet_high, high.through, low.through + (c_low + c_low));
     const Number a = min(none, min(u_low - c_low, u_high - c_high));
     const Number b = max(none, max(u_low + c_low, u_high + c_high));
     const Number share = a * reciprocal(a - b);  // of the high side; b - a is never 0, for c is not
@@ -106,19 +107,24 @@ WaterFlux<Number> water_flux(const WaterBeside<Number>& low, const WaterBeside<N
     const Number m_low = q_low * u_low;
     WaterFlux<Number> flux;
     flux.mass = q_low + share * (more - b * risen);
+    // Not even round-off comes out of a dry side.
+    flux.mass = select(wet_low, flux.mass, min(flux.mass, none));
+    flux.mass = select(wet_high, flux.mass, max(flux.mass, none));
     flux.low = m_low + share * (q_high * u_high - m_low + pressure - b * more);
     flux.high = flux.low - pressure;
     flux.along = flux.mass * select(flux.mass > none, low.along, high.along);
     return flux;
 }
 
-/// Depth that a cell shows to a face: its surface there over the bed that stands there, none below it, and no
-/// more than twice its own depth, which a linear profile could not exceed. `most` is that, and 0 for a dry
-/// cell.
+/// The bed that both cells beside a face see there: what stands there, and no deeper than twice a cell's
+/// depth below its surface, for a linear profile of depth reaches 0 then at the cell's other end. `most` is
+/// twice the depth, and 0 for a dry cell. Where both surfaces are the same so are the depths above it: a
+/// shore rests.
 template <class Number>
-Number depth_at_face(Number surface, Number bed, Number most) noexcept {
-    using std::max, std::min;
-    return max(Number(0), min(surface - bed, most));
+Number bed_at_face(Number bed, Number surface_low, Number most_low, Number surface_high,
+                   Number most_high) noexcept {
+    using std::max;
+    return max(bed, max(surface_low - most_low, surface_high - most_high));
 }
 
 /// Rate at which Manning's friction slows water down, k = g n^2 |u| / h^(4/3) [1/s]: dq/dt = -k q.

@@ -68,7 +68,6 @@ struct ShallowWaterParams {
 
 private:
     void validate_axis(std::size_t a) const {
-        using Kind = WaterSide::Kind;
         const std::string axis(1, "xy"[a]);
         require_finite(low[a], "ShallowWater.low." + axis, "m");
         require(high[a] > low[a] && std::isfinite(high[a]),
@@ -81,7 +80,8 @@ private:
             std::abs(low[a]) < 1e6 * (high[a] - low[a]),
             {"ShallowWater.low." + axis, "within a million times the plane's length", "m", "move the origin"},
             low[a]);
-        require((sides[a][0].kind == Kind::periodic) == (sides[a][1].kind == Kind::periodic),
+        require((sides[a][0].kind == WaterSide::Kind::periodic) ==
+                    (sides[a][1].kind == WaterSide::Kind::periodic),
                 {"ShallowWater.sides." + axis, "periodic at both ends or at none, periodic ends", "",
                  "water that leaves one end comes in at the other"},
                 1);
@@ -89,7 +89,7 @@ private:
             const WaterSide& side = sides[a][end];
             const std::string field = "ShallowWater.sides." + axis + (end == 0 ? ".low" : ".high");
             const std::string unit = Dim == 2 ? "m3/s" : "m2/s";
-            if (side.kind != Kind::inflow) {
+            if (side.kind != WaterSide::Kind::inflow) {
                 require(side.discharge == 0 && side.depth == 0,
                         {field + ".discharge", "0 but at an inflow", unit,
                          "make it WaterSide::inflow(discharge)"},
@@ -99,7 +99,7 @@ private:
             require_positive(side.discharge, field + ".discharge", unit,
                              "an end that lets nothing in is a wall");
             require_not_negative(side.depth, field + ".depth", "m",
-                                 "leave it 0 for subcritical flow: the water before it sets it");
+                                 "leave it 0 for subcritical flow: water before it sets it");
         }
     }
 };

@@ -10,12 +10,13 @@ struct WaterSide {
     enum class Kind { wall, inflow, outflow, periodic };
     Kind kind = Kind::wall;
     Real discharge = 0;  ///< of an inflow [m3/s]; in one dimension, per width [m2/s]
-    /// Of an inflow, above the lowest bed of that side [m]: for supercritical flow. 0: as high as the water
-    /// that stands before it, at least critical.
+    /// Of an inflow, above the lowest bed of that side [m]: for supercritical flow. 0: critical. Where water
+    /// before it stands higher and pushes harder than what comes in, it comes in that high.
     Real depth = 0;
 
     static WaterSide wall() { return {}; }
     static WaterSide inflow(Real discharge, Real depth = 0) { return {Kind::inflow, discharge, depth}; }
+    /// Lets waves out and nothing in.
     static WaterSide outflow() { return {Kind::outflow}; }
     static WaterSide periodic() { return {Kind::periodic}; }
 };
@@ -33,13 +34,14 @@ public:
         : side_(side), axis_(axis), high_(high), count_(grid.count(1 - axis)),
           length_(Dim == 2 ? grid.spacing(1 - axis) : 1), flux(static_cast<std::size_t>(count_), 0.0) {
         if (!is_inflow()) return;
-        depth.assign(flux.size(), 0.0), speed = bed = interior = depth;
+        depth.assign(flux.size(), 0.0), speed = bed = depth;
     }
 
     bool is_inflow() const noexcept { return side_.kind == WaterSide::Kind::inflow; }
+    bool is_outflow() const noexcept { return side_.kind == WaterSide::Kind::outflow; }
     bool is_wall() const noexcept { return side_.kind == WaterSide::Kind::wall; }
     bool is_periodic() const noexcept { return side_.kind == WaterSide::Kind::periodic; }
-    bool is_open() const noexcept { return is_inflow() || side_.kind == WaterSide::Kind::outflow; }
+    bool is_open() const noexcept { return is_inflow() || is_outflow(); }
     Index count() const noexcept { return count_; }
     int axis() const noexcept { return axis_; }
     bool high() const noexcept { return high_; }
@@ -70,7 +72,7 @@ public:
                 const Real edge = column[cell(grid, 0, k)];
                 const Real inner = column[cell(grid, std::min<Index>(1, grid.count(axis_) - 1), k)];
                 column[cell(grid, -g, k)] =
-                    is_open() ? edge + g * (edge - inner) : column[source(grid, g, k)];
+                    is_open() ? edge + g * std::min(0.0, edge - inner) : column[source(grid, g, k)];
             }
     }
 
@@ -83,10 +85,6 @@ public:
             bed[at(k)] = on.face[static_cast<std::size_t>(axis_)][face(grid, k)];
             lowest = std::min(lowest, bed[at(k)]);
         }
-        if (side_.depth > 0) {
-            set_level(lowest + side_.depth);
-            return;
-        }
         Real low = lowest, high = lowest + 0.01;
         while (!is_subcritical(high, gravity)) high = lowest + 2 * (high - lowest);
         for (int n = 0; n < 100; ++n) {
@@ -94,12 +92,20 @@ public:
             (is_subcritical(middle, gravity) ? high : low) = middle;
         }
         critical_level_ = high;
-        set_level(high);
+        require(lowest + side_.depth <= critical_level_ + 1e-9 * (critical_level_ - lowest),
+                {"ShallowWater.sides." + std::string(1, "xy"[axis_]) + (high_ ? ".high" : ".low") + ".depth",
+                 "at most critical (" + to_text(critical_level_ - lowest) + " m)", "m",
+                 "leave it 0 for subcritical flow: water before it sets it"},
+                side_.depth);
+        given_level_ = side_.depth > 0 ? lowest + side_.depth : critical_level_;
+        set_level(given_level_);
+        given_push_ = push(gravity);
     }
 
     /// Ghost cells of a state, before its fluxes are taken.
-    void fill(const ShallowGrid<Dim>& grid, const ShallowBed<Dim>& on, ShallowState<Dim>& state) {
-        if (is_inflow() && side_.depth == 0) meet(grid, on, state);
+    void fill(const ShallowGrid<Dim>& grid, const ShallowBed<Dim>& on, Real gravity,
+              ShallowState<Dim>& state) {
+        if (is_inflow()) meet(grid, on, gravity, state);
         const auto a = static_cast<std::size_t>(axis_);
         const Real inwards = high_ ? -1 : 1;
         for (Index k = -corner(); k < count_ + corner(); ++k)
@@ -127,6 +133,18 @@ public:
             most = std::max(most, (speed[k] + c) / spacing + (Dim == 2 ? c / other_spacing : 0));
         }
         return most;
+    }
+
+    /// What comes in at place k of an inflow, where the cell inside shows some depth [m2/s], [m3/s2].
+    struct Incoming {
+        Real mass, momentum;
+    };
+    Incoming incoming(std::size_t k, Real shown, Real gravity) const noexcept {
+        const Real q = depth[k] * speed[k];
+        Real h = depth[k];
+        // Below the speed of waves the water inside says how high it stands, down to critical.
+        if (square(speed[k]) < gravity * h) h = std::max(shown, std::cbrt(square(q) / gravity));
+        return {q, (h > 0 ? square(q) / h : 0) + 0.5 * gravity * (h - shown) * (h + shown)};
     }
 
     /// Volume that comes in through it over a time of 1 s, as `flux` has it [m3/s].
@@ -167,24 +185,37 @@ private:
         for (Real& one : speed) one *= side_.discharge / carried;
     }
 
-    /// As high as the water that stands before it, at least critical.
-    void meet(const ShallowGrid<Dim>& grid, const ShallowBed<Dim>& on, const ShallowState<Dim>& state) {
+    /// Momentum that comes in and pressure, over density [m4/s2].
+    Real push(Real gravity) const noexcept {
+        Real sum = 0;
+        for (std::size_t k = 0; k < depth.size(); ++k)
+            sum += length_ * depth[k] * (square(speed[k]) + 0.5 * gravity * depth[k]);
+        return sum;
+    }
+
+    /// Comes in as it is given, or as high as the water that stands before it, where that is subcritical and
+    /// pushes harder: a jump drowns what shoots in.
+    void meet(const ShallowGrid<Dim>& grid, const ShallowBed<Dim>& on, Real gravity,
+              const ShallowState<Dim>& state) {
         Real weight = 0, level = 0;
         for (Index k = 0; k < count_; ++k) {
             const std::size_t first = cell(grid, 0, k);
             const Real h = state.depth[first], share = h * std::cbrt(square(h));
             weight += share, level += share * (h + on.cell[first]);
         }
-        set_level(weight > 0 ? std::max(level / weight, critical_level_) : critical_level_);
+        const bool met = weight > 0 && level > weight * critical_level_;
+        if (met) set_level(level / weight);
+        if (!met || push(gravity) <= given_push_) set_level(given_level_);
     }
 
     WaterSide side_;
     int axis_ = 0;
     bool high_ = false;
     Index count_ = 0;
-    Real length_ = 1;  ///< of a face [m]
-    Real critical_level_ = 0;
-    std::vector<Real> bed, interior;  ///< [m]
+    Real length_ = 1;                            ///< of a face [m]
+    Real critical_level_ = 0, given_level_ = 0;  ///< [m]
+    Real given_push_ = 0;
+    std::vector<Real> bed;  ///< [m]
 
 public:
     std::vector<Real> flux;          ///< along the axis, of volume, in the last step [m2/s]

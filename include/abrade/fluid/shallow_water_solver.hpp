@@ -72,10 +72,10 @@ public:
             if (side.is_inflow()) tiles_.add_reached(side.first_cells(grid_));
         });
         ShallowState<Dim>&present = states_[current_], &next = states_[1 - current_];
-        each_side([&](ShallowSide<Dim>& side) { side.fill(grid_, bed_, present); });
+        each_side([&](ShallowSide<Dim>& side) { side.fill(grid_, bed_, forces_.pressing, present); });
         for (int halvings = 0;; ++halvings, dt *= 0.5) {
             if (!try_step(present, next, dt)) {
-                if (halvings == most_halvings || !only_negative(next)) fail_step(next, dt, time);
+                if (halvings == most_halvings || !has_negative_depth(next)) fail_step(next, dt, time);
                 ++repeated_;
                 continue;
             }
@@ -200,15 +200,10 @@ private:
                             [&](Index t) { return tiles_.list[at(t)].unsound; });
     }
 
-    bool only_negative(const ShallowState<Dim>& wrong) const noexcept {
-        bool negative = false, other = false;
-        each_cell([&](Index i, Index j) {
-            const std::size_t k = grid_.at(i, j);
-            negative |= wrong.depth[k] < 0;
-            other |= !std::isfinite(wrong.depth[k]);
-            for (const auto& column : wrong.speed) other |= !(std::abs(column[k]) <= forces_.fastest);
-        });
-        return negative && !other;
+    bool has_negative_depth(const ShallowState<Dim>& state) const noexcept {
+        bool negative = false;
+        each_cell([&](Index i, Index j) { negative |= state.depth[grid_.at(i, j)] < 0; });
+        return negative;
     }
 
     [[noreturn]] void fail_step(const ShallowState<Dim>& wrong, Real dt, Real time) const {

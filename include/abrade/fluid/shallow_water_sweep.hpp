@@ -150,17 +150,29 @@ private:
         return friction_rate(depth, swift2 * rsqrt(max(swift2, Pack(1e-200))), forces_.gravity_manning2);
     }
 
-    /// What a row's cell shows to the face at its high end along an axis (turn = 1), or at its low end (-1).
-    WaterBeside<Pack> shown(const Predicted& row, std::size_t b, std::size_t axis, Pack turn,
-                            Pack bed) const noexcept {
-        const std::size_t other = Dim - 1 - axis;
-        WaterBeside<Pack> water;
-        water.depth = depth_at_face(load(&row.surface[b]) + turn * load(&row.surface_change[axis][b]), bed,
-                                    load(&row.most[b]));
-        water.through = load(&row.speed[axis][b]) + turn * load(&row.speed_change[axis][axis][b]);
-        water.along =
-            Dim == 2 ? load(&row.speed[other][b]) + turn * load(&row.speed_change[axis][other][b]) : Pack(0);
-        return water;
+    /// Flux along an axis through a face, between cell `low` of one row and cell `high` of another, or of the
+    /// same.
+    WaterFlux<Pack> flux(const Predicted& low_row, std::size_t low, const Predicted& high_row,
+                         std::size_t high, std::size_t axis, Pack bed) const noexcept {
+        const auto at_high_end = [&](const Row& middle, const Row& change) {
+            return load(&middle[low]) + load(&change[low]);
+        };
+        const auto at_low_end = [&](const Row& middle, const Row& change) {
+            return load(&middle[high]) - load(&change[high]);
+        };
+        const Pack surface_low = at_high_end(low_row.surface, low_row.surface_change[axis]);
+        const Pack surface_high = at_low_end(high_row.surface, high_row.surface_change[axis]);
+        bed =
+            bed_at_face(bed, surface_low, load(&low_row.most[low]), surface_high, load(&high_row.most[high]));
+        const auto side = [&](Pack surface, const Predicted& row, const auto& at_end) {
+            WaterBeside<Pack> water{max(surface - bed, Pack(0)),
+                                    at_end(row.speed[axis], row.speed_change[axis][axis]), Pack(0)};
+            if constexpr (Dim == 2)
+                water.along = at_end(row.speed[1 - axis], row.speed_change[axis][1 - axis]);
+            return water;
+        };
+        return water_flux(side(surface_low, low_row, at_high_end), side(surface_high, high_row, at_low_end),
+                          forces_.pressing);
     }
 
     /// Fluxes through the faces between each cell of row j and the one before it.
@@ -169,8 +181,7 @@ private:
         for (Index i = first_; i <= last_; i += lanes) {
             const std::size_t b = here(i);
             const Pack bed = load(&bed_.face[0][cell(i, j)]);
-            put(along_, b,
-                water_flux(shown(row, b - 1, 0, 1, bed), shown(row, b, 0, -1, bed), forces_.pressing));
+            put(along_, b, flux(row, b - 1, row, b, 0, bed));
         }
         if (first_ == 0) pass_side(sides_[0][0], j, row, here(0), along_, here(0), cell(0, j));
         if (last_ == grid_.count(0))
@@ -185,8 +196,7 @@ private:
             for (Index i = first_; i < last_; i += lanes) {
                 const std::size_t b = here(i);
                 const Pack bed = load(&bed_.face[1][cell(i, j + 1)]);
-                put(fluxes, b,
-                    water_flux(shown(low, b, 1, 1, bed), shown(high, b, 1, -1, bed), forces_.pressing));
+                put(fluxes, b, flux(low, b, high, b, 1, bed));
             }
             const auto at_end = [&](ShallowSide<Dim>& side, const Predicted& row) {
                 for (Index i = first_; i < std::min(last_, grid_.count(0)); ++i)
@@ -202,17 +212,16 @@ private:
     void pass_side(ShallowSide<Dim>& side, Index k, const Predicted& row, std::size_t inner, Fluxes& fluxes,
                    std::size_t b, std::size_t face) noexcept {
         const auto s = static_cast<std::size_t>(k), axis = static_cast<std::size_t>(side.axis());
+        const Real inwards = side.high() ? -1 : 1;
         if (side.is_inflow()) {
-            const Real h = side.depth[s], u = side.speed[s], turn = side.high() ? 1 : -1;
-            const Real shown = depth_at_face(row.surface[inner] + turn * row.surface_change[axis][inner],
-                                             bed_.face[axis][face], row.most[inner]);
-            fluxes.mass[b] = -turn * h * u;
-            (side.high() ? fluxes.low : fluxes.high)[b] =
-                h * u * u + 0.5 * forces_.pressing * (h - shown) * (h + shown);
+            const Real surface = row.surface[inner] - inwards * row.surface_change[axis][inner];
+            const Real shown = std::max(0.0, std::min(surface - bed_.face[axis][face], row.most[inner]));
+            const auto incoming = side.incoming(s, shown, forces_.pressing);
+            fluxes.mass[b] = inwards * incoming.mass;
+            (side.high() ? fluxes.low : fluxes.high)[b] = incoming.momentum;
             fluxes.along[b] = 0;
-        } else if (side.is_wall()) {
-            fluxes.mass[b] = 0;  // not to round-off only
-            fluxes.along[b] = 0;
+        } else if (side.is_wall() || (side.is_outflow() && inwards * fluxes.mass[b] > 0)) {
+            fluxes.mass[b] = fluxes.along[b] = 0;  // not to round-off only
         }
         side.flux[s] = fluxes.mass[b];
     }

@@ -1,0 +1,91 @@
+// Depth-averaged water: runs down the dry channel before the stones begin, then beside them.
+
+#include "run_channel.hpp"
+
+namespace abrade::examples {
+
+namespace {
+
+ShallowWater<2> shallow_channel(const ChannelConfig& c) {
+    const UniformFlow uniform{c.water};
+    const Real inflow = c.fluid.inflow_depth > 0 ? c.fluid.inflow_depth : uniform.depth();
+    const Real settle =
+        c.fluid.settle > 0 ? c.fluid.settle : 1 + 3 * c.invert.length / uniform.mean_velocity();
+    const auto cells = [&](Real length) {
+        return static_cast<Index>(std::ceil(length / c.fluid.spacing - 1e-9));
+    };
+    const Real half = 0.5 * c.invert.width;
+    try {
+        return ShallowWater<2>{
+            {.low = {0, -half},
+             .high = {c.invert.length, half},
+             .cells = {cells(c.invert.length), cells(c.invert.width)},
+             .sides = {{{WaterSide::inflow(c.water.discharge, inflow), WaterSide::outflow()},
+                        {WaterSide::wall(), WaterSide::wall()}}},
+             .bed = [invert = c.invert](Real, Real y) { return invert.bed_height(y); },
+             .gravity = c.invert.gravity(),
+             .manning = c.water.manning,
+             .density = c.water.density,
+             .viscosity = c.water.viscosity,
+             .start_time = -settle}};
+    } catch (const InputError& error) {
+        throw InputError(c.source + ", [fluid]: " + error.what());
+    }
+}
+
+/// Mean over the compared section of the depth at the centre line, and of the mean speed of its
+/// cross-sections.
+void measure(const ChannelConfig& c, const ShallowWater<2>& flow, ChannelWater& water) {
+    Real depth = 0, speed = 0, froude = 0, shear = 0;
+    Index counted = 0;
+    for (Index i = 0; i < flow.grid().count(0); ++i) {
+        const Real x = flow.grid().centre(0, i);
+        if (x < c.comparison.from || x > c.comparison.to) continue;
+        Real area = 0, width = 0;
+        for (Index j = 0; j < flow.grid().count(1); ++j)
+            if (flow.depth(i, j) > flow.params().dry_depth)
+                area += flow.depth(i, j) * flow.grid().spacing(1), width += flow.grid().spacing(1);
+        if (!(area > 0)) continue;  // the water has not come so far
+        const Real middle = flow.sample({x, 0, 0}, 0).depth, mean = flow.discharge(i) / area;
+        depth += middle, speed += mean, ++counted;
+        froude += mean / std::sqrt(standard_gravity * area / width);
+        shear += c.water.density * standard_gravity * square(c.water.manning * mean) /
+                 std::cbrt(area / c.invert.wetted_perimeter(middle));
+    }
+    if (counted == 0) return;
+    water.depth_m = depth / counted, water.speed_m_per_s = speed / counted;
+    water.froude = froude / counted, water.bed_shear_Pa = shear / counted;
+}
+
+void look_at_the_end(const ShallowWater<2>& flow, ChannelWater& water) {
+    water.columns = flow.grid().count(0);
+    water.depth_map = flow.columns().depth;
+    for (Index i = 0; i < water.columns; ++i) {
+        water.surface_x.push_back(flow.grid().centre(0, i));
+        water.surface_z.push_back(flow.sample({water.surface_x.back(), 0, 0}, 0).depth);
+    }
+    water.figures = {{"water_settled_s", -flow.params().start_time},
+                     {"water_steps", static_cast<Real>(flow.steps())},
+                     {"water_cells", static_cast<Real>(flow.grid().cells())},
+                     {"water_volume_m3", flow.volume()},
+                     {"water_in_m3", flow.volume_in(0, false)},
+                     {"water_out_m3", -flow.volume_in(0, true)},
+                     {"water_volume_residual_relative", flow.volume_residual()},
+                     {"water_discharge_at_outlet_m3_per_s", flow.discharge(flow.grid().count(0) - 1)}};
+}
+
+}  // namespace
+
+ChannelRun run_in_shallow_water(const ChannelConfig& config, const std::filesystem::path& stem) {
+    const UniformFlow uniform{config.water};
+    ChannelWater water;
+    water.manning_depth_m = uniform.depth(), water.manning_speed_m_per_s = uniform.mean_velocity();
+    ChannelRun run =
+        run_channel(config, stem, shallow_channel(config), [&](const ShallowWater<2>& flow, bool first) {
+            first ? measure(config, flow, water) : look_at_the_end(flow, water);
+        });
+    run.results.water = std::move(water);
+    return run;
+}
+
+}  // namespace abrade::examples

@@ -1,0 +1,67 @@
+#pragma once
+// One run of the invert channel with a fluid that is known when this is compiled.
+
+#include "channel.hpp"
+#include "fluids.hpp"
+#include "recorder.hpp"
+
+#include "../common/interrupt.hpp"
+#include "../common/progress.hpp"
+
+#include <sstream>
+
+namespace abrade::examples {
+
+/// `look_at(fluid, first)` sees the water as the stones begin, and at the end.
+template <FluidModel Fluid, class LookAt>
+ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path& stem, Fluid fluid,
+                       LookAt&& look_at) {
+    ChannelRun run;
+    auto sim = make_simulation(config, std::move(fluid));
+    const Interrupt interrupt;
+    LedgerHistory history;
+    {
+        Recorder recorder(stem);
+        Progress progress("invert channel", config.end_time);
+        const auto stop = [&] {
+            progress.update(sim.time(), std::to_string(sim.feed()->supplied_stones()) + " stones fed");
+            return interrupt.requested();
+        };
+        const auto watch = [&](const auto& now) {
+            if (now.steps() == 0) look_at(now.fluid_model(), true);
+            recorder(now);
+        };
+        try {
+            sim.run({.end_time = config.end_time,
+                     .time_step = config.time_step,
+                     .safety = config.safety,
+                     .observe_every = config.output_every,
+                     .skin = config.skin,
+                     .wake_force = config.wake_force,
+                     .wake_radius = config.wake_radius,
+                     .stop = stop},
+                    watch);
+        } catch (const RunError& error) {
+            progress.clear();
+            run.went_wrong = error.what(), run.code = 3;
+        } catch (const InputError& error) {
+            throw InputError(config.source + ": " + error.what());  // what only the whole scene could tell
+        } catch (const std::exception& error) {                     // a full disk, no memory
+            progress.clear();
+            run.went_wrong = error.what(), run.code = 1;
+        }
+        history = recorder.take_history();
+    }
+    if (run.code != 0) {
+        run.last_good = sim.last_good();
+        return run;
+    }
+    look_at(sim.fluid_model(), false);
+    run.results = make_results(config, sim, std::move(history));
+    std::ostringstream printed;
+    printed << sim;
+    run.printed = printed.str();
+    return run;
+}
+
+}  // namespace abrade::examples
