@@ -91,12 +91,11 @@ inline Returned single_vortex(int cells, Real period, Real courant,
                               const VolumeOfFluid<2>::Params& params = {}) {
     const Grid<2> grid = grid_of<2>(cells, 1);
     VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall), params);
-    fill_below<2>(water.fraction(), grid,
-                  [](const Point<2>& x) { return (x - Point<2>(0.5, 0.75)).norm() - 0.15; }, 5);
+    fill_below<2>(
+        water.fraction(), grid, [](const Point<2>& x) { return (x - Point<2>(0.5, 0.75)).norm() - 0.15; }, 5);
     water.prepare();
-    const auto u = from_stream(grid, [](Real x, Real z) {
-        return square(std::sin(pi * x) * std::sin(pi * z)) / pi;
-    });
+    const auto u =
+        from_stream(grid, [](Real x, Real z) { return square(std::sin(pi * x) * std::sin(pi * z)) / pi; });
     // The largest speed is 1 m/s.
     const int steps = static_cast<int>(std::ceil(period * cells / courant));
     return carry<2>({.duration = period, .steps = steps}, water, u,
@@ -116,8 +115,7 @@ inline Returned zalesak(int cells, const VolumeOfFluid<2>::Params& params = {}) 
     VolumeOfFluid<2> water(grid, Sides<2>::all(Side::outflow), params);
     fill_below<2>(water.fraction(), grid, slotted_disc, 5);
     water.prepare();
-    const auto u = from_stream(
-        grid, [](Real x, Real z) { return -0.25 * (square(x - 2) + square(z - 2)); });
+    const auto u = from_stream(grid, [](Real x, Real z) { return -0.25 * (square(x - 2) + square(z - 2)); });
     return carry<2>({.size = 4, .duration = 4 * pi, .steps = 2524 * cells / 200}, water, u,
                     [](Real) { return 1; });
 }
@@ -129,15 +127,16 @@ inline Returned zalesak(int cells, const VolumeOfFluid<2>::Params& params = {}) 
 inline Returned deformation(int cells, Real courant, const VolumeOfFluid<3>::Params& params = {}) {
     const Grid<3> grid = grid_of<3>(cells, 1);
     VolumeOfFluid<3> water(grid, Sides<3>::all(Side::wall), params);
-    fill_below<3>(water.fraction(), grid,
-                  [](const Point<3>& x) { return (x - Point<3>::Constant(0.35)).norm() - 0.15; }, 3);
+    fill_below<3>(
+        water.fraction(), grid,
+        [](const Point<3>& x) { return (x - Point<3>::Constant(0.35)).norm() - 0.15; }, 3);
     water.prepare();
     auto u = face_field<3>(grid.layout());
     const auto bump = [](Real s) { return square(std::sin(pi * s)); };
     const auto wave = [](Real s) { return std::sin(2 * pi * s); };
     const Real h = 1.0 / cells;
-    // Two fluxes in planes: with P = sin^2 sin^2 / pi, (u, v) = w_z (dP/dy, -dP/dx) and (u, w) = w_y (dP/dz, -dP/dx)
-    // give (2 sin^2(x) w_y w_z, -w_x sin^2(y) w_z, -w_x w_y sin^2(z)).
+    // Two fluxes in planes: with P = sin^2 sin^2 / pi, (u, v) = w_z (dP/dy, -dP/dx) and (u, w) = w_y (dP/dz,
+    // -dP/dx) give (2 sin^2(x) w_y w_z, -w_x sin^2(y) w_z, -w_x w_y sin^2(z)).
     const auto stream = [&](Real s, Real t) { return bump(s) * bump(t) / pi; };
     grid.for_each(
         [&](const CellNumber<3>& cell, Offset c) {
