@@ -1,6 +1,7 @@
 #pragma once
 // The liquid's volume in each cell of a staggered grid, and how it is carried along.
 
+#include <abrade/fluid/surface_at_walls.hpp>
 #include <abrade/fluid/surface_band.hpp>
 #include <abrade/fluid/surface_marks.hpp>
 #include <abrade/fluid/surface_normals.hpp>
@@ -54,9 +55,9 @@ public:
 
     VolumeOfFluid(const Grid<Dim>& grid, const Sides<Dim>& sides, const Params& params)
         : params_(params), grid_(grid), sides_((sides.validate(), sides)), layout_(grid.layout()),
-          sizes_(grid), normals_(layout_, sizes_), fraction_(layout_.total, 0), surplus_(layout_.total, 0),
-          moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1), band_(layout_), wet_(layout_),
-          active_(layout_), touched_(layout_) {
+          sizes_(grid), normals_(layout_, sizes_), at_walls_(layout_, sizes_), fraction_(layout_.total, 0),
+          surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
+          band_(layout_), wet_(layout_), active_(layout_), touched_(layout_) {
         for (int a = 0; a < Dim; ++a) wraps_[index(a)] = sides_.periodic(a);
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
@@ -156,6 +157,14 @@ public:
         Real total = 0;
         for (const Real sum : plane) total += sum;
         return total;
+    }
+
+    /// Whether the centre of a cell lies below the surface: f >= 1/2, or, in a cell that a wall cuts, what
+    /// the surface beside it tells. Pressure lives in these cells.
+    bool is_liquid(Offset cell) const noexcept {
+        const Index i = plane_of_[cell];
+        if (i < 0 || (marks_[cell] & cell_mark::whole) != 0) return fraction_[cell] >= 0.5;
+        return planes_.position[static_cast<std::size_t>(i)] >= 0;
     }
 
     /// Where the surface is between the centres of two neighbours, as a share of their distance from the
@@ -320,6 +329,7 @@ private:
     const FaceField<Dim>* open_faces_ = nullptr;
     const Field<Real>* open_volumes_ = nullptr;
     SurfaceNormals<Dim> normals_;
+    SurfaceAtWalls<Dim> at_walls_;
 
     Field<Real> fraction_, surplus_;
     FaceField<Dim> moved_;

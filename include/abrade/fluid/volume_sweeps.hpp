@@ -60,6 +60,7 @@ void VolumeOfFluid<Dim>::reconstruct(bool exact) {
         }
     });
     normals_.find(planes_, fraction_.data(), marks_.data(), exact);
+    if (open_volumes_) at_walls_.find(planes_, fraction_.data(), marks_.data(), plane_of_.data());
 }
 
 /// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
