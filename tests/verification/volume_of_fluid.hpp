@@ -22,14 +22,10 @@ struct Returned {
     Field<Real> start{}, end{};
 };
 
-/// A shape in the unit box and its flow, from a vector potential so that faces are free of divergence:
-/// u = velocity(time factor of the middle of the step) on faces.
-template <int Dim>
-struct Problem {
-    Real size = 1;      ///< of the box, a square or cube [m]
+struct Duration {
     Real duration = 1;  ///< [s]
     int steps = 0;
-    typename VolumeOfFluid<Dim>::Params params{};
+    Real until = 1;  ///< share of the duration that is run
 };
 
 template <int Dim>
@@ -39,16 +35,17 @@ Grid<Dim> grid_of(int cells, Real size) {
     return Grid<Dim>({.cells = count, .spacing = Point<Dim>::Constant(size / cells)});
 }
 
-/// Carries `water` with velocity times factor(t).
+/// Carries `water` with velocity times factor(t), taken in the middle of each step.
 template <int Dim>
-Returned carry(const Problem<Dim>& problem, VolumeOfFluid<Dim>& water, const FaceField<Dim>& velocity,
+Returned carry(const Duration& problem, VolumeOfFluid<Dim>& water, const FaceField<Dim>& velocity,
                const auto& factor) {
     using Clock = std::chrono::steady_clock;
     Returned result{.steps = problem.steps, .start = water.fraction()};
     const Grid<Dim>& grid = water.grid();
     const Real before = water.volume(), dt = problem.duration / problem.steps;
     auto u = velocity;
-    for (int k = 0; k < problem.steps; ++k) {
+    const int last = static_cast<int>(std::lround(problem.until * problem.steps)) - 1;
+    for (int k = 0; k <= last; ++k) {
         const Real now = factor((k + 0.5) * dt);
         for (std::size_t a = 0; a < Dim; ++a)
             for (Offset i = 0; i < u[a].size(); ++i) u[a][i] = now * velocity[a][i];
@@ -57,7 +54,7 @@ Returned carry(const Problem<Dim>& problem, VolumeOfFluid<Dim>& water, const Fac
         result.seconds += std::chrono::duration<Real>(Clock::now() - begun).count();
         result.moved_aside += step.moved_aside / before;
         result.wet_steps += static_cast<Real>(water.wet().cells());
-        if (k % 16 != 0 && k != problem.steps - 1) continue;
+        if (k % 16 != 0 && k != last) continue;
         result.lost = std::max(result.lost, std::abs(water.volume() / before - 1));
         grid.for_each([&](const CellNumber<Dim>&, Offset c) {
             result.outside = std::max({result.outside, -water.fraction()[c], water.fraction()[c] - 1});
@@ -88,7 +85,7 @@ inline FaceField<2> from_stream(const Grid<2>& grid, const auto& stream) {
 /// A circle of radius 0.15 at (0.5, 0.75) in the unit box, stretched into a spiral and back:
 /// psi = sin^2(pi x) sin^2(pi z) cos(pi t / T) / pi (Rider & Kothe 1998, doi 10.1006/jcph.1998.5906).
 inline Returned single_vortex(int cells, Real period, Real courant,
-                              const VolumeOfFluid<2>::Params& params = {}) {
+                              const VolumeOfFluid<2>::Params& params = {}, Real until = 1) {
     const Grid<2> grid = grid_of<2>(cells, 1);
     VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall), params);
     fill_below<2>(
@@ -98,7 +95,7 @@ inline Returned single_vortex(int cells, Real period, Real courant,
         from_stream(grid, [](Real x, Real z) { return square(std::sin(pi * x) * std::sin(pi * z)) / pi; });
     // The largest speed is 1 m/s.
     const int steps = static_cast<int>(std::ceil(period * cells / courant));
-    return carry<2>({.duration = period, .steps = steps}, water, u,
+    return carry<2>({.duration = period, .steps = steps, .until = until}, water, u,
                     [&](Real t) { return std::cos(pi * t / period); });
 }
 
@@ -110,13 +107,13 @@ inline Real slotted_disc(const Point<2>& x) {
     const Real slot = std::max(std::abs(x[0] - 2) - 0.06, x[1] - 2.85);
     return std::max(disc, -slot);
 }
-inline Returned zalesak(int cells, const VolumeOfFluid<2>::Params& params = {}) {
+inline Returned zalesak(int cells, const VolumeOfFluid<2>::Params& params = {}, Real until = 1) {
     const Grid<2> grid = grid_of<2>(cells, 4);
     VolumeOfFluid<2> water(grid, Sides<2>::all(Side::outflow), params);
     fill_below<2>(water.fraction(), grid, slotted_disc, 5);
     water.prepare();
     const auto u = from_stream(grid, [](Real x, Real z) { return -0.25 * (square(x - 2) + square(z - 2)); });
-    return carry<2>({.size = 4, .duration = 4 * pi, .steps = 2524 * cells / 200}, water, u,
+    return carry<2>({.duration = 4 * pi, .steps = 2524 * cells / 200, .until = until}, water, u,
                     [](Real) { return 1; });
 }
 
