@@ -198,7 +198,7 @@ private:
             const Misfit then = misfit(problem, next);
             const PackMask better = active & (then.squares < now.squares);
             for (std::size_t a = 0; a < Dim; ++a) normal[a] = select(better, next[a], normal[a]);
-            const PackMask settled = better & (now.squares - then.squares < Pack(1e-3) * now.squares);
+            const PackMask settled = better & (now.squares - then.squares < Pack(1e-2) * now.squares);
             for (std::size_t k = 0; k < size; ++k) now.each[k] = select(better, then.each[k], now.each[k]);
             now.squares = select(better, then.squares, now.squares);
             trust = select(better, min(Pack(1), trust * Pack(4)), trust * Pack(0.25));

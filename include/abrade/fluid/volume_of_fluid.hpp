@@ -1,6 +1,7 @@
 #pragma once
 // The liquid's volume in each cell of a staggered grid, and how it is carried along.
 
+#include <abrade/fluid/surface_at_walls.hpp>
 #include <abrade/fluid/surface_band.hpp>
 #include <abrade/fluid/surface_marks.hpp>
 #include <abrade/fluid/surface_normals.hpp>
@@ -54,15 +55,19 @@ public:
 
     VolumeOfFluid(const Grid<Dim>& grid, const Sides<Dim>& sides, const Params& params)
         : params_(params), grid_(grid), sides_((sides.validate(), sides)), layout_(grid.layout()),
-          sizes_(grid), normals_(layout_, sizes_), fraction_(layout_.total, 0), surplus_(layout_.total, 0),
-          moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1), band_(layout_), wet_(layout_),
-          active_(layout_), touched_(layout_) {
+          sizes_(grid), normals_(layout_, sizes_), at_walls_(layout_, sizes_), fraction_(layout_.total, 0),
+          surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
+          band_(layout_), wet_(layout_), active_(layout_), touched_(layout_) {
         for (int a = 0; a < Dim; ++a) wraps_[index(a)] = sides_.periodic(a);
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
                 areas_[index(a)].push_back(sizes_.face(a, k));
         for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
             per_volume_.push_back(1 / sizes_.volume(k));
+        // Packs look beyond the end of a row.
+        for (auto& areas : areas_) areas.resize(areas.size() + pack_lanes, 0);
+        per_volume_.resize(per_volume_.size() + pack_lanes, 0);
+        swept_per_speed_ = areas_;
         set_walls(nullptr, nullptr);
     }
 
@@ -71,6 +76,10 @@ public:
     /// Shares of faces and cells that walls leave open [-]; none: all open. They must outlive this. Call
     /// `prepare` afterwards.
     void set_walls(const FaceField<Dim>* open_faces, const Field<Real>* open_volumes) {
+        if ((open_faces == nullptr) != (open_volumes == nullptr))
+            fail({"VolumeOfFluid.set_walls", "both open faces and open volumes, or neither", "",
+                  "walls close faces and take volume"},
+                 "one of them");
         open_faces_ = open_faces;
         open_volumes_ = open_volumes;
         marks_ = surface_marks(grid_, sides_, open_volumes_);
@@ -99,7 +108,8 @@ public:
         VolumeStep step{.courant = dt * outflow_rate(velocity)};
         if (!(step.courant <= courant_end)) fail_courant(velocity, dt);
         velocity_ = &velocity;
-        dt_ = dt;
+        for (std::size_t a = 0; a < Dim; ++a)
+            for (std::size_t k = 0; k < areas_[a].size(); ++k) swept_per_speed_[a][k] = dt * areas_[a][k];
         carry_bulk();
         for (int sweep = 0; sweep < Dim; ++sweep) this->sweep(sweep);
         settle(step);
@@ -149,6 +159,14 @@ public:
         return total;
     }
 
+    /// Whether the centre of a cell lies below the surface: f >= 1/2, or, in a cell that a wall cuts, what
+    /// the surface beside it tells. Pressure lives in these cells.
+    bool is_liquid(Offset cell) const noexcept {
+        const Index i = plane_of_[cell];
+        if (i < 0 || (marks_[cell] & cell_mark::whole) != 0) return fraction_[cell] >= 0.5;
+        return planes_.position[static_cast<std::size_t>(i)] >= 0;
+    }
+
     /// Where the surface is between the centres of two neighbours, as a share of their distance from the
     /// liquid one, f >= 1/2, to the other one, at `side` (-1 or 1) of it along `axis`. Exact for planes,
     /// second order for curved surfaces; at least `least`.
@@ -191,9 +209,14 @@ private:
     Real open_volume(Offset c, Index level) const noexcept {
         return sizes_.volume(level) * (open_volumes_ ? (*open_volumes_)[c] : 1);
     }
+    Real per_open_volume(Offset c, Index level) const noexcept {
+        const Real whole = per_volume_[index(level + Layout<Dim>::ghosts)];
+        return open_volumes_ ? whole / (*open_volumes_)[c] : whole;
+    }
     /// Volume that a lower face sweeps in a step, positive upwards [m3].
     Real swept(int axis, Offset c, Index level) const noexcept {
-        const Real volume = (*velocity_)[index(axis)][c] * (dt_ * sizes_.face(axis, level));
+        const Real volume =
+            (*velocity_)[index(axis)][c] * swept_per_speed_[index(axis)][index(level + Layout<Dim>::ghosts)];
         return open_faces_ ? volume * (*open_faces_)[index(axis)][c] : volume;
     }
     void set_cell(Offset c, Real liquid) noexcept {
@@ -252,6 +275,7 @@ private:
     void include_inflows();
     void reconstruct(bool exact);
     void carry_bulk();
+    void carry_row(Offset start, Index level, const RowRange& range, bool cells);
     void sweep(int number);
     void fluxes_of_band(int axis);
     void fluxes_of_planes(int axis);
@@ -305,6 +329,7 @@ private:
     const FaceField<Dim>* open_faces_ = nullptr;
     const Field<Real>* open_volumes_ = nullptr;
     SurfaceNormals<Dim> normals_;
+    SurfaceAtWalls<Dim> at_walls_;
 
     Field<Real> fraction_, surplus_;
     FaceField<Dim> moved_;
@@ -318,7 +343,8 @@ private:
     long steps_ = 0;
 
     const FaceField<Dim>* velocity_ = nullptr;  ///< of the step at work
-    Real dt_ = 0;
+    std::array<std::vector<Real>, Dim>
+        swept_per_speed_;  ///< dt times area, by level from the first ghost [m2 s]
 };
 
 }  // namespace abrade

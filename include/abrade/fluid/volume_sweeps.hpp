@@ -60,6 +60,7 @@ void VolumeOfFluid<Dim>::reconstruct(bool exact) {
         }
     });
     normals_.find(planes_, fraction_.data(), marks_.data(), exact);
+    if (open_volumes_) at_walls_.find(planes_, fraction_.data(), marks_.data(), plane_of_.data());
 }
 
 /// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
@@ -67,65 +68,64 @@ void VolumeOfFluid<Dim>::reconstruct(bool exact) {
 template <int Dim>
 void VolumeOfFluid<Dim>::carry_bulk() {
     const int rows = layout_.rows_per_plane(), planes = layout_.planes(), n = layout_.row_length();
-    const Real* f = fraction_.data();
-    const auto through = [&](int axis, Offset start, int begin, int end, Index level) {
-        const Real* u = (*velocity_)[index(axis)].data() + start;
-        const Real* open = open_faces_ ? (*open_faces_)[index(axis)].data() + start : nullptr;
-        const Real* area = areas_[index(axis)].data() + Layout<Dim>::ghosts + (Dim == 3 ? level : 0);
-        const Real* up = f + start;
-        const Real* low = up - layout_.stride[index(axis)];
-        Real* out = moved_[index(axis)].data() + start;
-        const Real dt = dt_;
-#if defined(_OPENMP)
-#pragma omp simd
-#endif
-        for (int i = begin; i < end; ++i) {
-            Real volume = u[i] * (dt * area[Dim == 3 ? 0 : i]);
-            if (open) volume *= open[i];
-            const Real donor = u[i] > 0 ? low[i] : up[i];
-            out[i] = donor > 0 ? volume * donor : 0;
-        }
-    };
     touched_.for_each_row([&](int p, int r, const RowRange& range) {
         const Offset start = layout_.row_start(p, r);
-        for (int a = 0; a < Dim; ++a) through(a, start, range.begin, range.end, r);
-        // The upper sides' faces belong to ghosts.
-        if (range.end == n) through(inner, start, n, n + 1, r);
-        if (p == planes - 1) through(0, start + layout_.stride[0], range.begin, range.end, r);
-        if (Dim == 3 && r == rows - 1)
-            through(Dim - 1, start + layout_.stride[Dim - 1], range.begin, range.end, r);
-
-        Real* surplus = surplus_.data() + start;
-        const Real* own = f + start;
-        const std::uint8_t* band = band_.data() + start;
-        std::array<const Real*, Dim> u, area, open{};
-        for (std::size_t a = 0; a < Dim; ++a) {
-            u[a] = (*velocity_)[a].data() + start;
-            area[a] = areas_[a].data() + Layout<Dim>::ghosts + (Dim == 3 ? r : 0);
-            if (open_faces_) open[a] = (*open_faces_)[a].data() + start;
-        }
-        const Real* per_volume = per_volume_.data() + Layout<Dim>::ghosts + (Dim == 3 ? r : 0);
-        const Real* room = open_volumes_ ? open_volumes_->data() + start : nullptr;
-        const Real dt = dt_;
-#if defined(_OPENMP)
-#pragma omp simd
-#endif
-        for (int i = range.begin; i < range.end; ++i) {
-            const int k = Dim == 3 ? 0 : i;
-            Real out = 0;
-            for (std::size_t a = 0; a < Dim; ++a) {
-                const Offset s = layout_.stride[a];
-                if (open_faces_)
-                    out += (u[a][i + s] * open[a][i + s] - u[a][i] * open[a][i]) * area[a][k];
-                else
-                    out += (u[a][i + s] - u[a][i]) * area[a][k];
-            }
-            const bool full = (band[i] == 0) & (own[i] == 1);
-            Real lost = dt * out * per_volume[k];
-            if (room) lost /= room[i];
-            surplus[i] -= full ? lost : 0;
-        }
+        // Whole packs, which begin where a cache line does: what lies before and behind the range is dry, and
+        // faces of ghosts that follow are those of the upper side.
+        constexpr int ghosts = Layout<Dim>::ghosts, lanes = pack_lanes;
+        RowRange all{(range.begin + ghosts) / lanes * lanes - ghosts, range.end + (range.end == n)};
+        all.end = all.begin + (all.length() + lanes - 1) / lanes * lanes;
+        carry_row(start, r, all, true);
+        if (p == planes - 1) carry_row(start + layout_.stride[0], r, all, false);
+        if (Dim == 3 && r == rows - 1) carry_row(start + layout_.stride[Dim - 1], r, all, false);
     });
+}
+
+/// One row of it. Rows of ghosts have faces (of the upper sides), but no cells.
+template <int Dim>
+void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& range, bool cells) {
+    const Real* f = fraction_.data() + start;
+    Real* surplus = surplus_.data() + start;
+    const std::uint8_t* band = band_.data() + start;
+    std::array<const Real*, Dim> u, open{};
+    std::array<Real*, Dim> out;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        u[a] = (*velocity_)[a].data() + start;
+        out[a] = moved_[a].data() + start;
+        if (open_faces_) open[a] = (*open_faces_)[a].data() + start;
+    }
+    const auto at_level = [&](const std::vector<Real>& table, int i) {
+        const Real* first = table.data() + Layout<Dim>::ghosts;
+        return Dim == 3 ? Pack(first[level]) : Pack::load_from_anywhere(first + i);
+    };
+    const std::array<Offset, Dim> step = layout_.stride;
+    for (int i = range.begin; i < range.end; i += pack_lanes) {
+        const Pack own = Pack::load(f + i);
+        Pack gone = Pack(0);
+        for (std::size_t a = 0; a < Dim; ++a) {
+            const Pack speed = Pack::load(u[a] + i), area = at_level(swept_per_speed_[a], i);
+            Pack low = speed * area, high = Pack::load_from_anywhere(u[a] + i + step[a]) * area;
+            if (open_faces_) {
+                low *= Pack::load(open[a] + i);
+                high *= Pack::load_from_anywhere(open[a] + i + step[a]);
+            }
+            const Pack donor = select(speed > Pack(0), Pack::load_from_anywhere(f + i - step[a]), own);
+            select(donor > Pack(0), low * donor, Pack(0)).store(out[a] + i);
+            gone += high - low;
+        }
+        const unsigned full = lanes_of(own == Pack(1));
+        if (!cells || full == 0) continue;
+        std::array<std::uint8_t, pack_lanes> in_band;
+        std::memcpy(in_band.data(), band + i, pack_lanes);
+        const bool deep = in_band == std::array<std::uint8_t, pack_lanes>{};
+        Pack lost = gone * at_level(per_volume_, i);
+        if (open_volumes_) lost /= Pack::load(open_volumes_->data() + start + i);
+        if (deep && full == (1u << pack_lanes) - 1)
+            (Pack::load(surplus + i) - lost).store(surplus + i);
+        else
+            for (int lane = 0; lane < pack_lanes; ++lane)
+                if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0) surplus[i + lane] -= lost[lane];
+    }
 }
 
 template <int Dim>
@@ -169,7 +169,7 @@ void VolumeOfFluid<Dim>::sweep(int number) {
                 for (int n = 0; n < number; ++n) added -= dilatation(axis_of(n), c, level);
         }
         const Real left = (moved[c + layout_.stride[index(axis)]] - moved[c]) - added;
-        fraction_[c] -= left / open_volume(c, level);
+        fraction_[c] -= left * per_open_volume(c, level);
     });
     if (!last) fill_periodic(fraction_, layout_, sides_);
 }

@@ -1,0 +1,95 @@
+#pragma once
+// The surface in cells that walls cut: it goes on as it came.
+
+#include <abrade/core/parallel.hpp>
+#include <abrade/fluid/cell_sizes.hpp>
+#include <abrade/fluid/surface_planes.hpp>
+
+#include <cmath>
+
+namespace abrade {
+
+/// A liquid fraction in a cell that a wall cuts says nothing of a plane in the whole cell. There the surface
+/// is that of the neighbours which no wall cuts, the mean of their planes, carried on from cell to cell where
+/// a wall leaves at a shallow angle. So a planar surface stays exact up to the wall: water in a curved invert
+/// rests. The plane that holds the cell's volume (`distance`) gets the same normal. Cells that no neighbour
+/// tells of keep what they have.
+template <int Dim>
+class SurfaceAtWalls {
+public:
+    SurfaceAtWalls() = default;
+    SurfaceAtWalls(const Layout<Dim>& layout, const CellSizes<Dim>& sizes)
+        : stencil_(layout), sizes_(sizes) {}
+
+    void find(SurfacePlanes<Dim>& planes, const Real* fraction, const std::uint8_t* marks,
+              const Index* plane_of) {
+        known_.resize(static_cast<std::size_t>(planes.count()));
+        open_.clear();
+        for (Index i = 0; i < planes.count(); ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            known_[k] = (marks[planes.cell[k]] & cell_mark::whole) != 0;
+            if (!known_[k]) open_.push_back(i);
+        }
+        constexpr int farthest = 6;  // cells from the last whole one
+        for (int pass = 0; pass < farthest && !open_.empty(); ++pass) {
+            found_.assign(open_.size(), 0);
+            parallel_for(static_cast<Index>(open_.size()), [&](Index n) {
+                const auto k = static_cast<std::size_t>(n);
+                found_[k] = carry_on(planes, open_[k], fraction, plane_of);
+            });
+            std::size_t left = 0;
+            for (std::size_t n = 0; n < open_.size(); ++n) {
+                if (found_[n])
+                    known_[static_cast<std::size_t>(open_[n])] = 1;
+                else
+                    open_[left++] = open_[n];
+            }
+            if (left == open_.size()) break;
+            open_.resize(left);
+        }
+    }
+
+private:
+    static constexpr int vertical = Grid<Dim>::vertical;
+
+    /// Takes the mean of known planes around a cell. Planes that are not known are not touched by others.
+    bool carry_on(SurfacePlanes<Dim>& planes, Index i, const Real* fraction, const Index* plane_of) const {
+        const auto own = static_cast<std::size_t>(i);
+        const Index level = planes.level[own];
+        Point<Dim> normal = Point<Dim>::Zero();
+        Real distance = 0;
+        int count = 0;
+        for (int k = 0; k < detail::Stencil<Dim>::size; ++k) {
+            const Index other = plane_of[planes.cell[own] + stencil_.step[static_cast<std::size_t>(k)]];
+            if (other < 0 || !known_[static_cast<std::size_t>(other)]) continue;
+            const auto j = static_cast<std::size_t>(other);
+            Point<Dim> n, to_own;
+            for (int a = 0; a < Dim; ++a) {
+                n[a] = planes.normal[static_cast<std::size_t>(a)][j] / sizes_.edge(a, planes.level[j]);
+                const int along = detail::Stencil<Dim>::along(a, k);
+                const Real gap =
+                    a == vertical ? sizes_.gap(std::max(level, planes.level[j])) : sizes_.edge(a, level);
+                to_own[a] = -along * gap;
+            }
+            const Real length = n.norm();
+            if (!(length > 0)) continue;
+            normal += n / length;
+            distance += (planes.position[j] - n.dot(to_own)) / length;
+            ++count;
+        }
+        const Real length = normal.norm();
+        if (count == 0 || !(length > 1e-3 * count)) return false;
+        for (int a = 0; a < Dim; ++a)
+            planes.normal[static_cast<std::size_t>(a)][own] = normal[a] / length * sizes_.edge(a, level);
+        planes.position[own] = distance / count;
+        planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, fraction[planes.cell[own]]);
+        return true;
+    }
+
+    detail::Stencil<Dim> stencil_{};
+    CellSizes<Dim> sizes_{};
+    std::vector<std::uint8_t> known_, found_;
+    std::vector<Index> open_;
+};
+
+}  // namespace abrade
