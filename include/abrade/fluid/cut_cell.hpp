@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 
 namespace abrade {
 
@@ -32,9 +33,23 @@ Number positive(Number x) noexcept {
 }
 
 inline Real cube_root(Real x) noexcept { return std::cbrt(x); }
+/// For 0 <= x <= 1. A third of the exponent, which is within 4 % (the bits of a number are its logarithm,
+/// nearly), then three of Halley's steps, each of which cubes the error.
 inline Pack cube_root(Pack x) noexcept {
-    Pack root = x;
-    for (int lane = 0; lane < pack_lanes; ++lane) root.set(lane, std::cbrt(x[lane]));
+    using Bits [[gnu::vector_size(sizeof(Pack::Native))]] = long long;
+    x = max(x, Pack(1e-200));
+    constexpr Real two_thirds_of_one = 4607182418800017408.0 / 3 * 2 - 1.6e14;
+    Bits bits;
+    std::memcpy(&bits, &x.lanes, sizeof bits);
+    const Pack third =
+        Pack(__builtin_convertvector(bits, Pack::Native)) * Pack(1.0 / 3) + Pack(two_thirds_of_one);
+    bits = __builtin_convertvector(third.lanes, Bits);
+    Pack root;
+    std::memcpy(&root.lanes, &bits, sizeof bits);
+    for (int step = 0; step < 3; ++step) {
+        const Pack cube = root * root * root;
+        root *= (cube + Pack(2) * x) / (Pack(2) * cube + x);
+    }
     return root;
 }
 

@@ -2,6 +2,7 @@
 // Copies of cells beyond the sides of a box.
 
 #include <abrade/fluid/sides.hpp>
+#include <abrade/fluid/wet_rows.hpp>
 
 namespace abrade {
 
@@ -44,15 +45,31 @@ void fill_periodic(Field<Number>& field, const Layout<Dim>& layout, const Sides<
     }
 }
 
-/// Ghosts beyond all sides but those of an inflow, which are given: periodic, or as the cell inside.
+/// Ghosts beyond all sides but those of an inflow, which are given: periodic, or as the cell inside. Rows get
+/// their ends filled where `rows` has them, dry ones are left as they are.
 template <int Dim, class Number>
-void fill_ghosts(Field<Number>& field, const Layout<Dim>& layout, const Sides<Dim>& sides) noexcept {
-    for (int a = 0; a < Dim; ++a) {
+void fill_ghosts(Field<Number>& field, const WetRows<Dim>& rows, const Sides<Dim>& sides) noexcept {
+    const Layout<Dim>& layout = rows.layout();
+    constexpr int inner = Layout<Dim>::inner, ghosts = Layout<Dim>::ghosts;
+    const auto source = [&](int axis, int end, int g) {
+        const int n = layout.cells[static_cast<std::size_t>(axis)];
+        if (sides.periodic(axis)) return end == 0 ? n - 1 - g % n : g % n;
+        return end == 0 ? 0 : n - 1;
+    };
+    rows.for_each_row([&](int plane, int r, const RowRange&) {
+        Number* row = field.data() + layout.row_start(plane, r);
+        for (int g = 0; g < ghosts; ++g) {
+            if (sides[inner][0] != Side::inflow) row[-1 - g] = row[source(inner, 0, g)];
+            if (sides[inner][1] != Side::inflow) row[layout.row_length() + g] = row[source(inner, 1, g)];
+        }
+    });
+    // The other axes copy whole rows, ends included.
+    for (int a = Dim - 1; a >= 0; --a) {
+        if (a == inner) continue;
         const int n = layout.cells[static_cast<std::size_t>(a)];
-        for (int g = 0; g < Layout<Dim>::ghosts; ++g) {
-            const bool wraps = sides.periodic(a);
-            if (sides[a][0] != Side::inflow) copy_layer(field, layout, a, wraps ? n - 1 - g % n : 0, -1 - g);
-            if (sides[a][1] != Side::inflow) copy_layer(field, layout, a, wraps ? g % n : n - 1, n + g);
+        for (int g = 0; g < ghosts; ++g) {
+            if (sides[a][0] != Side::inflow) copy_layer(field, layout, a, source(a, 0, g), -1 - g);
+            if (sides[a][1] != Side::inflow) copy_layer(field, layout, a, source(a, 1, g), n + g);
         }
     }
 }

@@ -264,11 +264,11 @@ private:
 
     // The surface moves in a step by less than a cell; wisps that are moved aside, by one more.
     void locate() {
-        fill_ghosts(fraction_, layout_, sides_);
         touched_ = active_;
         active_ = wet_.dilated(2, wraps_);
         include_inflows();
         touched_.include(active_);
+        fill_ghosts(fraction_, touched_, sides_);
         band_.find(fraction_, marks_, active_, sides_);
         reconstruct(true);
     }

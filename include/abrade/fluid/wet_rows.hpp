@@ -60,17 +60,24 @@ public:
 
     /// Grown by `cells` along every axis, diagonals included; across those ends where the box is periodic.
     WetRows dilated(int cells, const std::array<bool, Dim>& periodic = {}) const {
-        WetRows grown = *this;
-        const int n = layout_.row_length();
-        for (RowRange& range : grown.rows_) {
-            if (range.empty()) continue;
-            range = {range.begin - cells, range.end + cells};
+        const int n = layout_.row_length(), rows = layout_.rows_per_plane(), planes = layout_.planes();
+        // A dry row begins behind all others and ends before them, so that hulls are minima and maxima.
+        constexpr int far = 1 << 30;
+        std::vector<int> begin(rows_.size()), end(rows_.size());
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            const bool dry = rows_[i].empty();
+            begin[i] = dry ? far : rows_[i].begin - cells;
+            end[i] = dry ? -far : rows_[i].end + cells;
             // What crosses one end comes in at the other: the hull is then the whole row.
-            if (periodic[1] && (range.begin < 0 || range.end > n)) range = {0, n};
-            range = {std::max(0, range.begin), std::min(n, range.end)};
+            if (periodic[1] && !dry && (begin[i] < 0 || end[i] > n)) begin[i] = 0, end[i] = n;
         }
-        if constexpr (Dim == 3) grown.spread(false, cells, periodic[2]);
-        grown.spread(true, cells, periodic[0]);
+        // From one row to the next of a plane, then from one plane to the next, all of its rows at once.
+        if constexpr (Dim == 3)
+            for (int p = 0; p < planes; ++p) spread(begin, end, p * rows, rows, 1, cells, periodic[2]);
+        spread(begin, end, 0, planes, rows, cells, periodic[0]);
+        WetRows grown(layout_);
+        for (std::size_t i = 0; i < rows_.size(); ++i)
+            if (begin[i] < end[i]) grown.rows_[i] = {std::max(0, begin[i]), std::min(n, end[i])};
         return grown;
     }
 
@@ -111,20 +118,22 @@ private:
         while (range.begin < range.end && !(f[range.end - 1] > dry)) --range.end;
         return range.begin < range.end ? range : RowRange{};
     }
-    /// Takes in up to so many rows on either side: of other planes, or of the same.
-    void spread(bool by_plane, int cells, bool wraps) {
-        const WetRows before = *this;
-        const int planes = layout_.planes(), rows = layout_.rows_per_plane();
-        const int n = by_plane ? planes : rows;
-        for (int p = 0; p < planes; ++p)
-            for (int r = 0; r < rows; ++r)
-                for (int k = -cells; k <= cells; ++k) {
-                    int i = (by_plane ? p : r) + k;
-                    if (wraps) i = (i % n + n) % n;
-                    if (i < 0 || i >= n) continue;
-                    RowRange& own = row(p, r);
-                    own = hull(own, by_plane ? before.row(i, r) : before.row(p, i));
+    /// `count` groups of `length` ranges each take in those up to `cells` groups away.
+    static void spread(std::vector<int>& begin, std::vector<int>& end, int first, int count, int length,
+                       int cells, bool wraps) {
+        const auto from = begin.begin() + first, to = end.begin() + first;
+        const std::vector<int> begin_before(from, from + count * length), end_before(to, to + count * length);
+        for (int g = 0; g < count; ++g)
+            for (int k = g - cells; k <= g + cells; ++k) {
+                if (k == g || (!wraps && (k < 0 || k >= count))) continue;
+                const int other = (k % count + count) % count * length;
+                int* b = &*from + g * length;
+                int* e = &*to + g * length;
+                for (int i = 0; i < length; ++i) {
+                    b[i] = std::min(b[i], begin_before[static_cast<std::size_t>(other + i)]);
+                    e[i] = std::max(e[i], end_before[static_cast<std::size_t>(other + i)]);
                 }
+            }
     }
 
     Layout<Dim> layout_{};
