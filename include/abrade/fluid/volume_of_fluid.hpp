@@ -269,7 +269,15 @@ private:
         include_inflows();
         touched_.include(active_);
         fill_ghosts(fraction_, touched_, sides_);
+        settled_.insert(settled_.end(), band_.cells().begin(), band_.cells().end());
         band_.find(fraction_, marks_, active_, sides_);
+        // What has left the band with less air than makes a surface is full from now on; the rest is surplus.
+        for (const Index c : settled_)
+            if (fraction_[c] >= 1 - SurfaceBand<Dim>::smallest_void && !band_.holds(c)) {
+                surplus_[c] += fraction_[c] - 1;
+                fraction_[c] = 1;
+            }
+        settled_.clear();
         reconstruct(true);
     }
     void include_inflows();
@@ -280,6 +288,7 @@ private:
     void fluxes_of_band(int axis);
     void fluxes_of_planes(int axis);
     void join_periodic(int axis);
+    void even_out_rims();
     void settle(VolumeStep& step);
     struct Neighbours;
     Real share_out(Offset c, Index level, Real amount);
@@ -339,6 +348,7 @@ private:
     SurfaceBand<Dim> band_;
     WetRows<Dim> wet_, active_, touched_;  ///< touched: active now or in the step before
     std::vector<std::uint8_t> filled_;     ///< [band cell] c of Weymouth and Yue
+    std::vector<Index> settled_;           ///< cells of the last band, and those that took what was moved aside
     std::vector<std::uint8_t> bulk_;       ///< [band cell] full, and so are its neighbours
     long steps_ = 0;
 

@@ -300,6 +300,7 @@ Real VolumeOfFluid<Dim>::share_out(Offset c, Index level, Real amount) {
             const Real part = taken * (way.room / room);
             moved_[index(way.axis)][way.face] += way.sign * part;
             if (way.twin >= 0) moved_[index(way.axis)][way.twin] += way.sign * part;
+            settled_.push_back(static_cast<Index>(way.cell));
             set_cell(way.cell,
                      fraction_[way.cell] + surplus_[way.cell] + part / open_volume(way.cell, way.level));
         }
@@ -309,9 +310,29 @@ Real VolumeOfFluid<Dim>::share_out(Offset c, Index level, Real amount) {
     return amount;
 }
 
+/// Full cells beyond the band took it that what flows through their faces is all liquid. Where a cell of the band beside
+/// them held a trace of air, too little to be a surface, they had a trace less.
+template <int Dim>
+void VolumeOfFluid<Dim>::even_out_rims() {
+    for (Index i = 0; i < planes_.count(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const Offset c = planes_.cell[k];
+        if (band_.airy(c)) continue;  // all its neighbours are in the band
+        for (int a = 0; a < Dim; ++a)
+            for (const int side : {-1, 1}) {
+                const Offset s = layout_.stride[index(a)], n = c + side * s, face = side > 0 ? n : c;
+                if (band_.holds(n) || fraction_[n] != 1 || (marks_[n] & cell_mark::inside) == 0) continue;
+                const Index level = planes_.level[k] + (a == vertical ? side : 0);
+                const Index face_level = planes_.level[k] + (a == vertical && side > 0 ? 1 : 0);
+                surplus_[n] += side * (moved_[index(a)][face] - swept(a, face, face_level)) / open_volume(n, level);
+            }
+    }
+}
+
 /// Brings the fractions of the band within their bounds.
 template <int Dim>
 void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
+    even_out_rims();
     fill_periodic(fraction_, layout_, sides_);
     const auto cells = band_.cells();
     const auto levels = band_.levels();
