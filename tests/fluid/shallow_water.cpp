@@ -125,7 +125,7 @@ TEST_CASE("along y water does what it does along x") {
             apart = std::max(apart, std::abs(along.speed(0, i, j) - across.speed(1, j, i)));
             apart = std::max(apart, std::abs(along.speed(1, i, j) - across.speed(0, j, i)));
         }
-    CHECK(apart < 1e-11);  // round-off, grown by two hundred steps through a jump
+    CHECK(apart < 1e-13);
 }
 
 TEST_CASE("rows of a plane that are all alike are the one-dimensional flow") {

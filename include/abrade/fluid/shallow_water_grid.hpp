@@ -5,10 +5,31 @@
 #include <abrade/fluid/shallow_water_kernel.hpp>
 
 #include <array>
+#include <new>
 #include <string>
 #include <vector>
 
 namespace abrade {
+
+namespace detail {
+
+/// Memory that begins where a cache line does: packs that cross lines cost twice.
+template <class T>
+struct LineAllocator {
+    using value_type = T;
+    static constexpr std::align_val_t line{64};
+    LineAllocator() = default;
+    template <class U>
+    LineAllocator(const LineAllocator<U>&) noexcept {}
+    T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), line)); }
+    void deallocate(T* at, std::size_t) noexcept { ::operator delete(at, line); }
+    friend bool operator==(const LineAllocator&, const LineAllocator&) = default;
+};
+
+}  // namespace detail
+
+/// A number for each cell, ghosts among them.
+using CellColumn = std::vector<Real, detail::LineAllocator<Real>>;
 
 /// Cells [first.x, last.x) x [first.y, last.y); empty where there are none.
 struct CellBox {
@@ -89,8 +110,8 @@ private:
 /// Depth and velocity of all cells: what changes.
 template <int Dim>
 struct ShallowState {
-    std::vector<Real> depth;                   ///< [m]
-    std::array<std::vector<Real>, Dim> speed;  ///< along x, y [m/s]
+    CellColumn depth;                   ///< [m]
+    std::array<CellColumn, Dim> speed;  ///< along x, y [m/s]
 
     ShallowState() = default;
     explicit ShallowState(std::size_t size) : depth(size, 0.0) {
@@ -103,9 +124,9 @@ struct ShallowState {
 /// Comput. 25 (2004) 2050, doi:10.1137/S1064827503431090), with profiles that do not change in time.
 template <int Dim>
 struct ShallowBed {
-    std::vector<Real> cell;                          ///< [m]
-    std::array<std::vector<Real>, Dim> half_change;  ///< across a cell along that axis, limited [m]
-    std::array<std::vector<Real>, Dim> face;  ///< between a cell and the one before it along that axis [m]
+    CellColumn cell;                          ///< [m]
+    std::array<CellColumn, Dim> half_change;  ///< across a cell along that axis, limited [m]
+    std::array<CellColumn, Dim> face;         ///< between a cell and the one before it along that axis [m]
 
     /// Of cells, ghosts among them.
     void find_faces(const ShallowGrid<Dim>& grid) {

@@ -10,16 +10,6 @@ namespace abrade {
 
 namespace detail {
 
-template <class Number>
-Number load(const Real* from) noexcept {
-    if constexpr (std::same_as<Number, Pack>)
-        return Pack::load_from_anywhere(from);
-    else
-        return *from;
-}
-inline void put(Real* to, Real value) noexcept { *to = value; }
-inline void put(Real* to, Pack value) noexcept { std::memcpy(to, &value.lanes, sizeof(Pack::Native)); }
-
 /// sqrt(x) for normal x > 0, to eight digits at least.
 inline Pack rough_root(Pack x) noexcept {
 #if defined(ABRADE_AVX512)

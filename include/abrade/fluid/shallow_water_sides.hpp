@@ -66,7 +66,7 @@ public:
 
     /// Bed of the ghost cells: mirrored in a wall, repeated in periodic space, else carried on in a straight
     /// line.
-    void extend_bed(const ShallowGrid<Dim>& grid, std::vector<Real>& column) const {
+    void extend_bed(const ShallowGrid<Dim>& grid, CellColumn& column) const {
         for (Index k = -corner(); k < count_ + corner(); ++k)
             for (Index g = 1; g <= ShallowGrid<Dim>::ghosts; ++g) {
                 const Real edge = column[cell(grid, 0, k)];

@@ -27,7 +27,7 @@ public:
     }
 
     const ShallowGrid<Dim>& grid() const noexcept { return grid_; }
-    const std::vector<Real>& bed() const noexcept { return bed_.cell; }
+    const CellColumn& bed() const noexcept { return bed_.cell; }
     const ShallowState<Dim>& state() const noexcept { return states_[current_]; }
     Index steps() const noexcept { return steps_; }
     Index steps_repeated() const noexcept { return repeated_; }

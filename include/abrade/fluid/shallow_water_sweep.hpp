@@ -58,7 +58,11 @@ private:
     static constexpr Index room = ShallowTiles<Dim>::width + 2 * ShallowGrid<Dim>::margin;
     static constexpr int lanes = pack_lanes;
     static constexpr std::size_t rows = Dim;  ///< that are needed at a time
-    using Row = std::array<Real, static_cast<std::size_t>(room)>;
+    struct alignas(64) Row {
+        std::array<Real, static_cast<std::size_t>(room)> number{};
+        Real& operator[](std::size_t i) noexcept { return number[i]; }
+        const Real& operator[](std::size_t i) const noexcept { return number[i]; }
+    };
     /// A row of cells half a step on, with half the changes across each cell.
     struct Predicted {
         Row surface{};                                         ///< [m]
@@ -71,7 +75,8 @@ private:
         Row mass{}, low{}, high{}, along{};
     };
 
-    static Pack load(const Real* from) noexcept { return detail::load<Pack>(from); }
+    static Pack load(const Real* from) noexcept { return Pack::load_from_anywhere(from); }
+    static void put(Real* to, Pack value) noexcept { std::memcpy(to, &value.lanes, sizeof(Pack::Native)); }
     /// Where cell i of the tile stands in a row of ours.
     std::size_t here(Index i) const noexcept {
         return static_cast<std::size_t>(i - first_ + ShallowGrid<Dim>::margin);
@@ -84,9 +89,10 @@ private:
     /// The surface of a row.
     void level(Index j) noexcept {
         Row& to = surface(j);
-        for (Index i = first_ - ShallowGrid<Dim>::block; i < last_ + ShallowGrid<Dim>::block; i += lanes) {
+        // Packs stand where those of the state do; slopes of the cells beside the row want two beyond it.
+        for (Index i = first_ - 2 * lanes; i < last_ + lanes + 2; i += lanes) {
             const std::size_t k = cell(i, j);
-            detail::put(&to[here(i)], load(&from_->depth[k]) + load(&bed_.cell[k]));
+            put(&to[here(i)], load(&from_->depth[k]) + load(&bed_.cell[k]));
         }
     }
 
@@ -107,7 +113,7 @@ private:
         const std::size_t stride = static_cast<std::size_t>(grid_.stride());
         const Pack dry(forces_.dry_depth), half_step(0.5 * dt_), press(forces_.pressing);
         const std::array<Pack, 2> per{Pack(dt_ / grid_.spacing(0)), Pack(dt_ / grid_.spacing(Dim - 1))};
-        for (Index i = first_ - 1; i <= last_; i += lanes) {
+        for (Index i = first_ - lanes; i <= last_; i += lanes) {
             const std::size_t b = here(i), k = cell(i, j);
             const Pack depth = load(&from_->depth[k]), level = load(&middle[b]);
             std::array<Pack, Dim> speed;
@@ -120,13 +126,13 @@ private:
                 const Real* before = a == 0 ? &middle[b - 1] : &surface(j - 1)[b];
                 const Real* after = a == 0 ? &middle[b + 1] : &surface(j + 1)[b];
                 const Pack change = limited_half_change(level - load(before), load(after) - level);
-                detail::put(&to.surface_change[a][b], change);
+                put(&to.surface_change[a][b], change);
                 std::array<Pack, Dim> speed_change;
                 for (std::size_t c = 0; c < Dim; ++c) {
                     const Real* of = &from_->speed[c][k];
                     speed_change[c] =
                         limited_half_change(speed[c] - load(of - step), load(of + step) - speed[c]);
-                    detail::put(&to.speed_change[a][c][b], speed_change[c]);
+                    put(&to.speed_change[a][c][b], speed_change[c]);
                     gain[c] -= per[a] * speed[a] * speed_change[c];
                 }
                 gain[a] -= per[a] * press * change;
@@ -137,10 +143,10 @@ private:
             Pack held(1);
             if constexpr (rough) held = reciprocal(Pack(1) + half_step * friction(max(depth, dry), speed));
             for (std::size_t c = 0; c < Dim; ++c)
-                detail::put(&to.speed[c][b], select(flows, (speed[c] + gain[c]) * held, Pack(0)));
+                put(&to.speed[c][b], select(flows, (speed[c] + gain[c]) * held, Pack(0)));
             // A thin sheet may not run dry within half a step.
-            detail::put(&to.surface[b], level + select(flows, max(rise, Pack(-0.5) * depth), Pack(0)));
-            detail::put(&to.most[b], select(flows, depth + depth, Pack(0)));
+            put(&to.surface[b], level + select(flows, max(rise, Pack(-0.5) * depth), Pack(0)));
+            put(&to.most[b], select(flows, depth + depth, Pack(0)));
         }
     }
 
@@ -227,9 +233,9 @@ private:
     }
 
     static void put(Fluxes& fluxes, std::size_t b, const WaterFlux<Pack>& flux) noexcept {
-        detail::put(&fluxes.mass[b], flux.mass), detail::put(&fluxes.low[b], flux.low);
-        detail::put(&fluxes.high[b], flux.high);
-        if constexpr (Dim == 2) detail::put(&fluxes.along[b], flux.along);
+        put(&fluxes.mass[b], flux.mass), put(&fluxes.low[b], flux.low);
+        put(&fluxes.high[b], flux.high);
+        if constexpr (Dim == 2) put(&fluxes.along[b], flux.along);
     }
 
     template <bool rough>
@@ -277,11 +283,11 @@ private:
                 const Pack flow =
                     h * load(&from_->speed[c][k]) + more * (gain[c] + dt * Pack(forces_.along[c]) * h_half);
                 const Pack speed = select(flows, flow * thin, Pack(0)), size = max(speed, -speed);
-                detail::put(&to_->speed[c][k], speed);
+                put(&to_->speed[c][k], speed);
                 sound = sound & (size <= Pack(forces_.fastest));
                 swift += size * (c == 0 ? each_x : each_y);
             }
-            detail::put(&to_->depth[k], depth);
+            put(&to_->depth[k], depth);
             PackMask counts = flows, unsound = !sound;
             if (i + lanes > grid_.count(0))
                 counts = counts & inside_row(i), unsound = unsound & inside_row(i);
