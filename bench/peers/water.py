@@ -52,7 +52,8 @@ def run_openfoam(case, threads):
     command = [*pinned(threads), solver, "-case", cases[case]["scene"]]
     if threads > 1:
         as_root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-        command = ["mpirun", *as_root, "--oversubscribe", "--bind-to", "core", "-np", str(threads), *command, "-parallel"]
+        command = ["mpirun", *as_root, "--oversubscribe", "--bind-to", "core", "-np", str(threads), *command,
+                   "-parallel"]
     text = call(command, f"{case}_openfoam", environment)
     steps = foam_logs.steps(text)
     if len(steps) != warm + timed:
@@ -77,5 +78,5 @@ def run_code(code, case, threads):
 
 if __name__ == "__main__":
     sys.exit(run_set("water", __doc__.splitlines()[0], unit,
-                     f"{unit}, medians; in brackets the mean of |div u| dt that the steps leave", cases, peers, make_case,
-                     run_code))
+                     f"{unit}, medians; in brackets the mean of |div u| dt that the steps leave", cases, peers,
+                     make_case, run_code))

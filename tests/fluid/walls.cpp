@@ -51,6 +51,17 @@ Grid<Dim> uneven_box() {
     return Grid<Dim>(params);
 }
 
+/// The unit box in cells of other sizes along each axis, flat ones below.
+template <int Dim>
+Grid<Dim> flat_cells() {
+    typename Grid<Dim>::Params params;
+    for (int a = 0; a < Dim; ++a)
+        params.cells[at(a)] = 14 + 9 * a, params.spacing[a] = 1.0 / params.cells[at(a)];
+    for (int k = 0; k <= params.cells[Dim - 1]; ++k)
+        params.levels.push_back(std::pow(static_cast<Real>(k) / params.cells[Dim - 1], 1.5));
+    return Grid<Dim>(params);
+}
+
 /// Nothing is closed for being small.
 template <int Dim>
 typename Walls<Dim>::Params all_of_it(int levels = 0) {
@@ -316,17 +327,24 @@ TEST_CASE("the distance of a packing is that of its nearest sphere, and never gr
             CHECK((d >= 0.2 && d <= expected + 1e-12));
         CHECK(std::abs(packing(y) - d) <= (y - x).norm() * (1 + 1e-12));
     }
+    const Vec3 above(0.5, 0.5, 1.3);
+    Real highest = 1;
+    for (const auto& [centre, radius] : spheres)
+        highest = std::min(highest, (above - centre).norm() - radius);
+    CHECK(packing(above) < highest);
+    CHECK(SpherePacking(spheres, 0.6)(above) == doctest::Approx(highest).epsilon(1e-14));
     CHECK(packing(Point<2>(0.4, 0.6)) == packing(Vec3(0.4, 0, 0.6)));
 }
 
 TEST_CASE("cells far from a wall need no look inside: the same bits with and without") {
     const Shape<3> packing = SpherePacking(heap(30, 6));
-    for (const int levels : {0, 2}) {
-        auto params = all_of_it<3>(levels);
-        const Walls<3> skipping(unit_box<3>(23), packing, params);
-        params.bounded_slope = false;
-        CHECK(same(skipping, Walls<3>(unit_box<3>(23), packing, params)));
-    }
+    for (const int levels : {0, 2})
+        for (const Grid<3>& grid : {unit_box<3>(23), flat_cells<3>()}) {
+            auto params = all_of_it<3>(levels);
+            const Walls<3> skipping(grid, packing, params);
+            params.bounded_slope = false;
+            CHECK(same(skipping, Walls<3>(grid, packing, params)));
+        }
 }
 
 TEST_CASE_TEMPLATE("an update is what building anew gives, bit by bit, and takes no new memory", D, Two,
@@ -335,7 +353,9 @@ TEST_CASE_TEMPLATE("an update is what building anew gives, bit by bit, and takes
     std::vector<Sphere> spheres = heap(80, 7);
     if (Dim == 2)
         for (Sphere& sphere : spheres) sphere.centre.y() = 0;
-    const Grid<Dim> grid = unit_box<Dim>(Dim == 2 ? 90 : 30);
+    Grid<Dim> grid = unit_box<Dim>(Dim == 2 ? 90 : 30);
+    SUBCASE("cubes") {}
+    SUBCASE("flat cells") { grid = flat_cells<Dim>(); }
     SpherePacking packing(spheres);
     const Shape<Dim> shape = [&](const Point<Dim>& x) { return packing(x); };
     Walls<Dim> walls(grid, shape);

@@ -59,16 +59,15 @@ def cubic(xs, ys, x):
     return total
 
 
-def row(case, cells, steps, dt, wall, **errors):
-    """One line of the table; seconds are the solver's own, of the processor."""
+def rows_of(case, cells, steps, dt, wall, **errors):
+    """Lines of the table, one for each error; cpu_s is what the solver says of itself."""
     seconds, divergences = steps[-1]["seconds"], [s["sum_local"] for s in steps if s["sum_local"] is not None]
     found = {"case": case, "cells": cells, "steps": len(steps), "dt_s": f"{dt:.6g}", "cpu_s": f"{seconds:.2f}",
              "wall_s": f"{wall:.2f}", "ns_per_cell_step": f"{1e9 * seconds / cells / len(steps):.0f}",
              "divergence_dt_mean": f"{sum(divergences) / len(divergences):.3g}",
              "pressure_cycles_per_step": f"{sum(s['pressure_cycles'] for s in steps) / len(steps):.1f}"}
-    found["errors"] = " ".join(f"{name}={value:.4g}" for name, value in errors.items())
-    print(found, flush=True)
-    return found
+    print(found, errors, flush=True)
+    return [{**found, "error": name, "value": f"{value:.4g}"} for name, value in errors.items()]
 
 
 # --- the cavity, Re 1000 --------------------------------------------------------------------------------------
@@ -93,7 +92,7 @@ def cavity():
         fine = [k / 5000 for k in range(5001)]
         on_u, on_v = [cubic(at, u, x) for x in fine], [cubic(at, v, x) for x in fine]
         ours = {"u_min": min(on_u), "v_max": max(on_v), "v_min": min(on_v)}
-        found.append(row("cavity_2d_Re1000", n * n, logs.steps(log), dt, wall, largest_u_off_ghia=max(off_u),
+        found.extend(rows_of("cavity_2d_Re1000", n * n, logs.steps(log), dt, wall, largest_u_off_ghia=max(off_u),
                          largest_v_off_ghia=max(off_v),
                          **{f"{k}_off_spectral": ours[k] - spectral[k] for k in spectral}))
     return found
@@ -113,7 +112,7 @@ def taylor_green():
             p, q, _ = cases.taylor_green(x, y, viscosity, end)
             square += (u - p) ** 2 + (v - q) ** 2
             energy, exact = energy + u * u + v * v, exact + p * p + q * q
-        found.append(row("taylor_green_2d", n * n, logs.steps(log), dt, wall,
+        found.extend(rows_of("taylor_green_2d", n * n, logs.steps(log), dt, wall,
                          velocity_rms_relative=math.sqrt(square / exact), energy_relative=energy / exact - 1))
     return found
 
@@ -158,7 +157,7 @@ def dam_break():
             errors["Z_largest_relative_" + ("1.125in" if "1.125" in series else "2.25in")] = max(off, key=abs)
         volumes = logs.water_volumes(log)
         steps = logs.steps(log)
-        found.append(row("dam_break_2d_martin_moyce", across * upwards, steps, end / len(steps), wall, **errors,
+        found.extend(rows_of("dam_break_2d_martin_moyce", across * upwards, steps, end / len(steps), wall, **errors,
                          T_at_start=start, volume_lost_relative=1 - volumes[-1] / volumes[0]))
     return found
 

@@ -5,7 +5,8 @@ Written for OpenFOAM 1912 (Debian's openfoam). A case is a dictionary of file te
 
 import math
 
-sides = {"x0": "(0 4 7 3)", "x1": "(2 6 5 1)", "y0": "(1 5 4 0)", "y1": "(3 7 6 2)", "z0": "(0 3 2 1)", "z1": "(4 5 6 7)"}
+sides = {"x0": "(0 4 7 3)", "x1": "(2 6 5 1)", "y0": "(1 5 4 0)", "y1": "(3 7 6 2)", "z0": "(0 3 2 1)",
+         "z1": "(4 5 6 7)"}
 
 
 def foam(kind, name, body):
@@ -35,8 +36,8 @@ def mesh(lengths, cells, patches):
 
 def control(application, dt, end, every, adjust=None):
     """Writes fields every so many seconds; `adjust`: largest Courant number, of the flow and of the surface."""
-    automatic = (f"adjustTimeStep yes; maxCo {adjust}; maxAlphaCo {adjust}; maxDeltaT 1; writeControl adjustableRunTime;"
-                 if adjust else "adjustTimeStep no; writeControl runTime;")
+    automatic = (f"adjustTimeStep {'yes' if adjust else 'no'}; maxCo {adjust or 1}; maxAlphaCo {adjust or 1}; "
+                 f"maxDeltaT 1; writeControl {'adjustableRunTime' if adjust else 'runTime'};")
     return foam("dictionary", "controlDict",
                 f"application {application}; startFrom startTime; startTime 0; stopAt endTime; endTime {end:.12g};\n"
                 f"deltaT {dt:.12g}; {automatic} writeInterval {every:.12g};\n"
@@ -181,7 +182,8 @@ relaxationFactors {equations {".*" 1;}}"""),
                                      "regions (boxToCell {box (-1 -1 -1) (%.12g %.12g %.12g); "
                                      "fieldValues (volScalarFieldValue alpha.water 1);});" % corner),
         "constant/transportProperties": foam("dictionary", "transportProperties",
-                                             "phases (water air); water {transportModel Newtonian; nu 1e-06; rho 1000;}\n"
+                                             "phases (water air);\n"
+                                             "water {transportModel Newtonian; nu 1e-06; rho 1000;}\n"
                                              "air {transportModel Newtonian; nu 1.48e-05; rho 1;} sigma 0.07;"),
         "constant/turbulenceProperties": foam("dictionary", "turbulenceProperties", "simulationType laminar;"),
         "constant/g": foam("uniformDimensionedVectorField", "g", f"dimensions [0 1 -2 0 0 0 0]; value {gravity};"),

@@ -73,30 +73,34 @@ private:
 
 /// Solid spheres, as concrete is made of: the distance from the nearest. In two dimensions a point is
 /// (x, z): a section along y = 0. Inside the solid it is the depth in one sphere, not in their union; in
-/// the water it is cut short at two of the largest radii: take cells whose diagonal is no longer.
+/// the water it is cut short at a reach, which must not be below a cell's diagonal: walls are found by
+/// interpolating it.
 ///
 /// Spheres can be worn or taken out; Walls::update then renews the cells about them.
 class SpherePacking {
 public:
-    /// Throws InputError for a centre that is not finite or a radius that is not > 0.
-    explicit SpherePacking(std::span<const Sphere> spheres) {
+    /// `reach` [m]; 0: two of the largest radii. Throws InputError for a centre that is not finite or a
+    /// radius that is not > 0.
+    explicit SpherePacking(std::span<const Sphere> spheres, Real reach = 0) {
         for (std::size_t n = 0; n < spheres.size(); ++n) {
             const auto& [centre, radius] = spheres[n];
-            const std::string name = "SpherePacking.spheres[" + std::to_string(n) + "]";
-            require_finite(centre, name + ".centre", "m");
-            require_positive(radius, name + ".radius", "m");
+            if (!centre.allFinite() || !(radius > 0) || !std::isfinite(radius)) {
+                const std::string name = "SpherePacking.spheres[" + std::to_string(n) + "]";
+                require_finite(centre, name + ".centre", "m");
+                require_positive(radius, name + ".radius", "m");
+            }
             centres_.push_back(centre), radii_.push_back(radius);
             largest_ = std::max(largest_, radius);
         }
-        build();
+        build(reach);
     }
-    explicit SpherePacking(const Lattice& lattice) : largest_(lattice.radius) {
+    explicit SpherePacking(const Lattice& lattice, Real reach = 0) : largest_(lattice.radius) {
         require_positive(lattice.radius, "Lattice.radius", "m");
         for (const LatticeSite& site : lattice.sites) {
             require_finite(site.centre, "Lattice.sites.centre", "m");
             centres_.push_back(site.centre), radii_.push_back(lattice.radius);
         }
-        build();
+        build(reach);
     }
 
     std::size_t size() const noexcept { return centres_.size(); }
@@ -169,8 +173,9 @@ private:
         return std::min(nearest, std::sqrt(apart2) - radius);
     }
 
-    void build() {
-        reach_ = 2 * largest_;
+    void build(Real reach) {
+        require_not_negative(reach, "SpherePacking.reach", "m");
+        reach_ = reach > 0 ? reach : 2 * largest_;
         grid_ = PointGrid(centres_, 2 * largest_);
         low_ = Vec3::Constant(std::numeric_limits<Real>::infinity()), high_ = -low_;
         for (const Vec3& x : centres_) low_ = low_.cwiseMin(x), high_ = high_.cwiseMax(x);
