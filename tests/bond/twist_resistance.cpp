@@ -102,9 +102,10 @@ TEST_CASE("a sphere on a held one swings at sqrt(k_t / I), and dies away by its 
             worst = std::max(worst, std::abs(memory.twist - expected) * omega / start);
             before = spin, spin += dt * answer.load.couple.z() / inertia;
         }
-        // Half a step at the start, and (omega dt)^2 / 24 of phase a radian.
+        MESSAGE("damping " << damping << ": off by " << worst << " of the amplitude at most");
+        // (omega dt)^2 / 24 of phase a radian, 3e-5 in all; zeta omega dt, 2e-4, as the dashpot starts.
         CHECK(omega * dt < 0.01);
-        CHECK(worst < 0.01);
+        CHECK(worst < 1e-3);
         const Real left = 0.5 * inertia * square(spin) + 0.5 * k_t * square(memory.twist);
         CHECK(left + lost == doctest::Approx(0.5 * inertia * square(start)).epsilon(0.01).scale(0));
         CHECK((lost > 0) == (damping > 0));
