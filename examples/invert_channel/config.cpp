@@ -65,11 +65,12 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
                                                     .help = "share of critical damping of a bond",
                                                     .assumption = "not in the text",
                                                     .bound = Bound::not_negative});
-    c.wake_force = in.number("concrete.wake_force",
-                             {.unit = "N",
-                              .fallback = 1,
-                              .help = "load that wakes sleeping concrete, 0: all is awake; a bond holds 848 N",
-                              .bound = Bound::not_negative});
+    c.wake_force =
+        in.number("concrete.wake_force",
+                  {.unit = "N",
+                   .fallback = 10,
+                   .help = "load that wakes sleeping concrete, 0: all is awake; a bond holds 848 N",
+                   .bound = Bound::not_negative});
     c.wake_radius = static_cast<Index>(in.integer(
         "concrete.wake_radius",
         {.fallback = 2, .help = "bonds about what stones may touch", .bound = Bound::not_negative}));

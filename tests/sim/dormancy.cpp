@@ -41,6 +41,8 @@ TEST_CASE("untouched concrete is no body; what is hit wakes, and sleeps again") 
     CHECK(sim.particles().bodies() == 1);  // the stone, on its way
     CHECK(sim.awake_fraction_mean() == 0);
     CHECK(sim.concrete().sites() == 25 * 25 * 3);
+    for (Index s = 0; s < sim.concrete().sites(); ++s)
+        CHECK(sim.concrete_place(s) == sim.concrete().lattice().sites[static_cast<std::size_t>(s)].centre);
     run(0.103);
     CHECK(count(sim, Kind::concrete) > 20);
     CHECK(sim.concrete().worn_volume() > 0);
@@ -67,6 +69,7 @@ TEST_CASE("ids and sites of what wakes again are those it had") {
         CHECK(p.id[b] == p.site[b]);
         const LatticeSite& site = sim.concrete().lattice().sites[static_cast<std::size_t>(p.site[b])];
         CHECK((p.position[b] - site.centre).norm() < 0.01 * d);
+        CHECK(sim.concrete_place(p.site[b]) == p.position[b]);
         CHECK((p.kind[b] == Kind::fixed) == site.held);
         ++seen;
     }
