@@ -132,13 +132,14 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     for (Index b = 0; b < p.bodies(); ++b) {
         const auto i = static_cast<std::size_t>(b);
         if (p.kind[i] == Kind::stone) ++r.stones, speed += p.velocity[i].norm();
-        if (p.site[i] >= 0 && lattice.sites[static_cast<std::size_t>(p.site[i])].layer > 0 &&
-            p.kind[i] != Kind::grain)
-            continue;
+        if (p.site[i] >= 0 && p.kind[i] != Kind::grain) continue;
         for (Index s = p.first_sphere[i]; s < p.first_sphere[i] + p.sphere_count[i]; ++s)
             r.spheres.push_back({p.centre[static_cast<std::size_t>(s)], p.radius[static_cast<std::size_t>(s)],
                                  p.site[i] >= 0 ? concrete.fracture(p.site[i]) : -1});
     }
+    for (Index site = 0; site < concrete.sites(); ++site)  // most of it may sleep, and is no body
+        if (!concrete.gone(site) && lattice.sites[static_cast<std::size_t>(site)].layer == 0)
+            r.spheres.push_back({sim.concrete_place(site), lattice.radius, concrete.fracture(site)});
     r.mean_stone_speed_m_per_s = r.stones > 0 ? speed / r.stones : 0;
     r.ledger = std::move(history);
     return r;

@@ -69,7 +69,7 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
     c.wake_force =
         in.number("concrete.wake_force",
                   {.unit = "N",
-                   .fallback = 1,
+                   .fallback = 10,
                    .help = "load that wakes sleeping concrete, 0: all is awake; a bond holds 848 N",
                    .bound = Bound::not_negative});
     c.wake_radius = static_cast<Index>(in.integer(

@@ -19,7 +19,7 @@ public:
         if (!history_.time.empty() && sim.time() <= history_.time.back()) return;  // a stop on an output time
         record_ledger(sim.ledger(), sim.time());
         write_stones(sim.particles(), sim.time());
-        write_concrete(sim.particles(), sim.concrete(), sim.time());
+        write_concrete(sim);
     }
 
     LedgerHistory take_history() { return std::move(history_); }
@@ -55,20 +55,29 @@ private:
         series_.write("stones", time, {"position", "m", 3, centre}, fields);
     }
 
-    /// Concrete still in the channel, standing or loose.
-    void write_concrete(const Particles& p, const Concrete& concrete, Real time) {
+    /// Concrete still in the channel, standing, awake or not, or loose.
+    template <class Sim>
+    void write_concrete(const Sim& sim) {
+        const Particles& p = sim.particles();
+        const Concrete& concrete = sim.concrete();
         std::vector<Real> centre, velocity, fracture, kind;
+        const auto add = [&](Index site, const Vec3& x, const Vec3& v, bool loose) {
+            append(centre, x), append(velocity, v);
+            fracture.push_back(concrete.fracture(site)), kind.push_back(loose);
+        };
+        std::vector<char> is_body(static_cast<std::size_t>(concrete.sites()), 0);
         for (Index b = 0; b < p.bodies(); ++b) {
             const auto i = static_cast<std::size_t>(b);
             if (p.site[i] < 0) continue;
-            append(centre, p.position[i]);
-            append(velocity, p.velocity[i]);
-            fracture.push_back(concrete.fracture(p.site[i]));
-            kind.push_back(p.kind[i] == Kind::grain ? 1 : 0);
+            is_body[static_cast<std::size_t>(p.site[i])] = 1;
+            add(p.site[i], p.position[i], p.velocity[i], p.kind[i] == Kind::grain);
         }
+        for (Index site = 0; site < concrete.sites(); ++site)
+            if (!is_body[static_cast<std::size_t>(site)] && !concrete.gone(site))
+                add(site, sim.concrete_place(site), Vec3::Zero(), false);
         const std::vector<FieldView> fields{
             {"fracture_rate", "-", 1, fracture}, {"loose", "-", 1, kind}, {"velocity", "m/s", 3, velocity}};
-        series_.write("concrete", time, {"position", "m", 3, centre}, fields);
+        series_.write("concrete", sim.time(), {"position", "m", 3, centre}, fields);
     }
 
     SeriesWriter series_;

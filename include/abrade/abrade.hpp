@@ -4,6 +4,7 @@
 #include <abrade/bond/elastic_brittle.hpp>
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/parallel_bond.hpp>
+#include <abrade/bond/twist_resistance.hpp>
 #include <abrade/coupling/drag.hpp>
 #include <abrade/dem/hertz_mindlin.hpp>
 #include <abrade/dem/linear_spring.hpp>

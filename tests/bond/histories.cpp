@@ -3,6 +3,7 @@
 #include <abrade/bond/elastic_brittle.hpp>
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/parallel_bond.hpp>
+#include <abrade/bond/twist_resistance.hpp>
 #include <abrade/dem/linear_spring.hpp>
 
 #include <doctest/doctest.h>
@@ -34,6 +35,8 @@ Law bond_law(Real damping) {
                     .stiffness = stiffness,
                     .friction = std::tan(radians(friction_angle)),
                     .damping = damping}};
+    else if constexpr (CarriesMoments<Law>)
+        return Law{{.bond = bond_law<MohrCoulomb>(damping).params()}};
     else
         return Law{{.tensile = tensile,
                     .friction_angle = friction_angle,
@@ -153,7 +156,7 @@ Outcome go_through(const Law& law, const History& history, int steps) {
 
 TEST_CASE_TEMPLATE(
     "no loss is ever negative, and work put in is stored or lost: intact, breaking and sliding", Law,
-    MohrCoulomb, ElasticBrittle, ParallelBond) {
+    MohrCoulomb, ElasticBrittle, ParallelBond, TwistResistance<MohrCoulomb>) {
     std::mt19937 random(11);
     std::uniform_real_distribution<Real> u(0, 1);
     constexpr int histories = 60;
@@ -183,7 +186,7 @@ TEST_CASE_TEMPLATE(
 }
 
 TEST_CASE_TEMPLATE("random jumps, as no engine makes them: no loss is negative", Law, ElasticBrittle,
-                   ParallelBond) {
+                   ParallelBond, TwistResistance<MohrCoulomb>) {
     std::mt19937 random(37);
     std::uniform_real_distribution<Real> u(-1, 1);
     const auto any = [&](Real size) {

@@ -30,7 +30,7 @@ grep -q "assum" short/report.html || fail "the report marks no assumptions"
 grep -qE 'src="http|href="http' short/report.html && fail "the report loads something from outside"
 
 share=$(value short/summary.json largest_collision_share) safe=$(value short/summary.json largest_safe_beta)
-holds "at the safe beta a collision wears half a cell" "($safe * $share - 0.5 * 200)^2 < 1e-12"
+holds "at the safe beta a collision wears half a cell" "($safe * $share - 0.5 * 25)^2 < 1e-12"
 holds "no collision wore a whole cell" "$share > 0 && $share < 1"
 grep -q "Warning" short/report.html && fail "a warning although no collision wore a whole cell"
 "$program" "${short[@]}" --set wear.acceleration=200000 --out fast > fast.log || fail "a run with much acceleration"

@@ -41,6 +41,8 @@ TEST_CASE("untouched concrete is no body; what is hit wakes, and sleeps again") 
     CHECK(sim.particles().bodies() == 1);  // the stone, on its way
     CHECK(sim.awake_fraction_mean() == 0);
     CHECK(sim.concrete().sites() == 25 * 25 * 3);
+    for (Index s = 0; s < sim.concrete().sites(); ++s)
+        CHECK(sim.concrete_place(s) == sim.concrete().lattice().sites[static_cast<std::size_t>(s)].centre);
     run(0.103);
     CHECK(count(sim, Kind::concrete) > 20);
     CHECK(sim.concrete().worn_volume() > 0);
@@ -67,6 +69,7 @@ TEST_CASE("ids and sites of what wakes again are those it had") {
         CHECK(p.id[b] == p.site[b]);
         const LatticeSite& site = sim.concrete().lattice().sites[static_cast<std::size_t>(p.site[b])];
         CHECK((p.position[b] - site.centre).norm() < 0.01 * d);
+        CHECK(sim.concrete_place(p.site[b]) == p.position[b]);
         CHECK((p.kind[b] == Kind::fixed) == site.held);
         ++seen;
     }
@@ -255,6 +258,82 @@ TEST_CASE("rigid concrete that a stone has passed by is no body any more") {
             [&](const auto& now) { most = std::max(most, now.particles().bodies()); });
     CHECK(most > 3);
     CHECK(most < 60);
+}
+
+namespace {
+
+/// A beam clamped at both ends above a row of spheres that stand on held ones and that it does not touch. A
+/// stone breaks it off at one end and presses it down on the row, which it is not bonded to.
+struct BrokenBeam {
+    static constexpr Index length = 9;
+    static constexpr Real gap = 0.02 * d;
+
+    static Scene scene() {
+        std::vector<Vec3> centres;
+        for (const Real z : {0.0, -d - gap, -2 * d - gap})
+            for (Index n = 0; n < length; ++n) centres.push_back({0.999 * d * n, 0, z});
+        Lattice lattice = lattice_of(centres, 0.5 * d, static_cast<Real>(centres.size()) * cube(d), 1e-6);
+        for (std::size_t s = 0; s < lattice.sites.size(); ++s)
+            lattice.sites[s].held = s >= 2 * length || s == 0 || s == length - 1;
+        Scene scene;
+        scene.concrete = ConcreteBlock{lattice};
+        scene.add_sphere(0.02, {.position = {7 * 0.999 * d, 0, 0.031}, .velocity = {0, 0, -4}});
+        return scene;
+    }
+    static bool in_row(Index site) { return site >= length && site < 2 * length; }
+
+    Index broken = 0, gone = 0;
+    bool stood = false;  ///< a sphere of the row, held by no bond that is looked at
+    bool woke = false;   ///< some of the row
+    Real deepest = 0;    ///< that any of the row was pressed down [m]
+    Real pressed = 0;    ///< the hardest that the beam pressed on one of them [N]
+
+    explicit BrokenBeam(Real wake_force) {
+        auto sim = simulate(scene()).contact(law).bond(
+            ParallelBond{{.youngs = 2e8, .tensile = 1e9, .cohesion = 1e6, .damping = 0.3}});
+        sim.run({.end_time = 0.01, .observe_every = 1e-5, .wake_force = wake_force, .wake_radius = length},
+                [&](const auto& now) { look(now); });
+        CHECK(sim.ledger().residual_relative() < 1e-12);
+        broken = sim.bonds_broken();
+        for (Index s = 0; s < 2 * length; ++s) gone += sim.concrete().gone(s);
+    }
+    void look(const auto& sim) {
+        const Particles& p = sim.particles();
+        for (const Dormancy::Anchor& anchor : sim.world().state().dormancy.anchors)
+            stood |= in_row(anchor.site) && anchor.bonds == 0;
+        for (std::size_t b = 0; b < p.site.size(); ++b) {
+            if (!in_row(p.site[b])) continue;
+            woke |= p.inverse_mass[b] > 0;
+            deepest = std::max(deepest, -d - gap - p.position[b].z());
+        }
+        sim.world().each_contact([&](Index body, Index other, const auto&, const auto& load) {
+            if (other < 0) return;
+            const Index a = p.site[static_cast<std::size_t>(body)],
+                        b = p.site[static_cast<std::size_t>(other)];
+            if (a >= 0 && b >= 0) pressed = std::max(pressed, load.force.norm());
+        });
+    }
+};
+
+}  // namespace
+
+TEST_CASE("an anchor that contacts alone press on wakes once they press by more than the threshold") {
+    const BrokenBeam awake(0);
+    MESSAGE(awake.broken << " bonds broken, " << awake.gone << " spheres loose; the beam pressed by "
+                         << awake.pressed << " N, the row gave way by " << awake.deepest << " m");
+    CHECK(awake.broken > 0);
+    CHECK(awake.gone == 0);
+    CHECK(awake.pressed > 50);
+    const BrokenBeam wakes(0.02 * awake.pressed);
+    CHECK(wakes.stood);
+    CHECK(wakes.woke);
+    CHECK(wakes.broken == awake.broken);
+    CHECK(wakes.deepest == doctest::Approx(awake.deepest).epsilon(0.02).scale(0));
+    const BrokenBeam stands(3 * awake.pressed);
+    CHECK(stands.stood);
+    CHECK(!stands.woke);
+    CHECK(stands.deepest == 0);
+    CHECK(stands.pressed > 0.5 * awake.pressed);
 }
 
 TEST_CASE("bad options are named") {

@@ -20,6 +20,31 @@ TEST_CASE("stones at rest wear nothing, awake or asleep") {
     }
 }
 
+TEST_CASE("on a cubic lattice held by springs alone it stays once concrete may sleep as well") {
+    const History h = lie({.stones = 16, .per_side = 2, .slab = Slab::cubic, .wake_force = 1}, springs, 3);
+    MESSAGE("worn " << h.worn.back() << " m3, unchanged since " << h.unchanged_since() << " s, "
+                    << 100 * h.awake << " % of the concrete awake");
+    CHECK(h.worn.back() > 1e-6);
+    CHECK(h.unchanged_since() <= 2);
+    CHECK(h.kinetic.back() == 0);
+    CHECK(h.asleep == 16);
+    CHECK(h.awake < 0.5);
+    CHECK(h.residual < 1e-12);
+    CHECK(h.broken == 0);
+}
+
+TEST_CASE("on a cubic lattice whose springs resist twisting it stays with everything awake") {
+    const History h =
+        lie({.stones = 16, .per_side = 2, .slab = Slab::cubic, .sleep_speed = 0}, twist_springs, 3);
+    MESSAGE("worn " << h.worn.back() << " m3, unchanged since " << h.unchanged_since()
+                    << " s, kinetic energy " << h.kinetic.back() << " J");
+    CHECK(h.worn.back() > 1e-6);
+    CHECK(h.unchanged_since() <= 2);
+    CHECK(h.kinetic.back() < 1e-18);
+    CHECK(h.residual < 1e-12);
+    CHECK(h.broken == 0);
+}
+
 TEST_CASE("a cubic lattice held by springs alone does not come to rest: its layers turn as gears do") {
     // Neighbours of a layer that turn against each other roll on each other; bonds to the layers above and
     // below are only twisted, and these bonds do not feel that. Beams do, and rows of a hexagonal lattice

@@ -3,6 +3,7 @@
 
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/parallel_bond.hpp>
+#include <abrade/bond/twist_resistance.hpp>
 #include <abrade/dem/rolling_resistance.hpp>
 #include <abrade/geometry/sphere_union.hpp>
 #include <abrade/sim/simulation.hpp>
@@ -21,7 +22,8 @@ struct Setting {
     int stones = 500, per_side = 6;  ///< in layers of per_side x per_side, one above the other
     Slab slab = Slab::hexagonal;
     Real rolling_friction = 0.1;  ///< [-]
-    Real sleep_speed = 2e-3;      ///< [m/s]; 0: nobody sleeps
+    Real sleep_speed = 2e-3;      ///< of stones [m/s]; 0: none sleeps
+    Real wake_force = 0;          ///< of concrete [N]; 0: all is awake
 };
 
 /// Four spheres at the corners of a tetrahedron, with the volume of a sphere of diameter `size` [m].
@@ -66,6 +68,9 @@ inline const MohrCoulomb springs{{.tensile = 2.7e6, .stiffness = 5e5}};
 inline const ParallelBond beams{
     {.youngs = 5e5 * 0.04 / (pi * square(0.02)), .stiffness_ratio = 0.2, .tensile = 2.7e6, .cohesion = 8e6}};
 
+/// The springs, and what resists that one end of a bond twists against the other.
+inline const TwistResistance<MohrCoulomb> twist_springs{{.bond = springs.params()}};
+
 template <class Bond>
 auto simulation(const Setting& setting, const Bond& bond) {
     return simulate(scene(setting))
@@ -81,6 +86,7 @@ struct History {
     std::vector<Real> time, worn, kinetic;  ///< [s], [m3], [J]
     Index asleep = 0, broken = 0;           ///< stones, bonds, at the end
     Real residual = 0;                      ///< of the ledger, relative, at the end [-]
+    Real awake = 1;                         ///< share of the concrete, mean over all steps [-]
 
     /// Since when the worn volume has been what it is at the end, to the last bit [s].
     Real unchanged_since() const {
@@ -94,13 +100,16 @@ template <class Bond>
 History lie(const Setting& setting, const Bond& bond, Real end_time) {
     auto sim = simulation(setting, bond);
     History h;
-    sim.run({.end_time = end_time, .observe_every = 0.05, .sleep_speed = setting.sleep_speed},
+    sim.run({.end_time = end_time,
+             .observe_every = 0.05,
+             .sleep_speed = setting.sleep_speed,
+             .wake_force = setting.wake_force},
             [&](const auto& now) {
                 h.time.push_back(now.time()), h.worn.push_back(now.concrete().worn_volume());
                 h.kinetic.push_back(now.ledger().kinetic);
             });
     h.asleep = sim.world().state().sleep.count, h.broken = sim.bonds_broken();
-    h.residual = sim.ledger().residual_relative();
+    h.residual = sim.ledger().residual_relative(), h.awake = sim.awake_fraction_mean();
     return h;
 }
 

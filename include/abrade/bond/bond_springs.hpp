@@ -35,8 +35,8 @@ struct SpringMemory {
 /// the direction of s in space. For loose clusters that are sheared or bent and spin about such an axis this
 /// is an error. Nor do springs resist that one end twists against the other: in a cubic lattice, where all
 /// neighbours of a layer may turn against each other as gears do, nothing stops that, and the load's own
-/// shear drives it slowly (tests/verification/deposit.cpp). Beams (ParallelBond) resist it; a hexagonal
-/// lattice has no such motion.
+/// shear drives it slowly (tests/verification/deposit.cpp). Beams (ParallelBond) resist it, and so do springs
+/// with TwistResistance; a hexagonal lattice has no such motion, and concrete that may sleep stops it.
 template <class Number>
 class BondSprings {
 public:

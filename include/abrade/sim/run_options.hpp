@@ -39,7 +39,8 @@ struct RunOptions {
     Real sleep_after = 0;
     /// Concrete that no load reaches is no body and takes no steps: spheres farther than `wake_radius` bonds
     /// from what may touch a moving body, where the load of bonds changes by less than this [N]. A thousandth
-    /// of a bond's strength is a good choice. Its own weight counts as held until it wakes. 0: all is awake.
+    /// to a hundredth of a bond's strength is a good choice (docs/dormant_concrete.md). Its own weight counts
+    /// as held until it wakes. 0: all is awake.
     Real wake_force = 0;
     Index wake_radius = 2;         ///< [bonds]
     std::function<bool()> stop{};  ///< asked now and then; true ends the run cleanly

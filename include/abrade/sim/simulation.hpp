@@ -120,6 +120,8 @@ public:
     // These throw std::logic_error before the first run: there is nothing to show yet.
     const Particles& particles() const { return world().particles(); }
     const Concrete& concrete() const { return world().concrete(); }
+    /// Where the sphere of a site of the concrete is, awake or not; where it was built if it left [m].
+    const Vec3& concrete_place(Index site) const { return world().state().place_of(site); }
     Index bonds_broken() const { return world().state().broken_tension + world().state().broken_shear; }
     /// Of the concrete that could move, the share that did not sleep, over all steps so far [-].
     Real awake_fraction_mean() const { return world().awake_fraction(); }

@@ -215,6 +215,13 @@ struct State {
         return kind == Kind::concrete;
     }
 
+    /// Where a site's sphere stands, a body or not; where it was built if it is gone and no body [m].
+    const Vec3& place_of(Index site) const noexcept {
+        const Index body = dormancy.body_of[at(site)];
+        if (body >= 0) return particles.position[at(body)];
+        return concrete.gone(site) ? concrete.lattice().sites[at(site)].centre : dormancy.place[at(site)];
+    }
+
     /// Writes down which bodies the sites of the concrete are.
     void note_sites() {
         for (Index b = 0; b < particles.bodies(); ++b)
