@@ -24,12 +24,15 @@ struct ChannelRun {
 ChannelRun run_without_fluid(const ChannelConfig& config, const std::filesystem::path& stem);
 ChannelRun run_in_uniform_flow(const ChannelConfig& config, const std::filesystem::path& stem);
 ChannelRun run_in_shallow_water(const ChannelConfig& config, const std::filesystem::path& stem);
+ChannelRun run_in_grid_water(const ChannelConfig& config, const std::filesystem::path& stem);
 
 struct ChannelFluid {
     std::string_view name;  ///< in the TOML file
     ChannelRun (*run)(const ChannelConfig&, const std::filesystem::path&);
 };
-inline constexpr std::array<ChannelFluid, 3> channel_fluids{
-    {{"none", run_without_fluid}, {"uniform", run_in_uniform_flow}, {"shallow", run_in_shallow_water}}};
+inline constexpr std::array<ChannelFluid, 4> channel_fluids{{{"none", run_without_fluid},
+                                                             {"uniform", run_in_uniform_flow},
+                                                             {"shallow", run_in_shallow_water},
+                                                             {"grid", run_in_grid_water}}};
 
 }  // namespace abrade::examples

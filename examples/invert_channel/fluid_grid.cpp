@@ -1,0 +1,134 @@
+// Water on a grid of its own, with a free surface: runs down the dry channel before the stones begin, then
+// beside them.
+
+#include "run_channel.hpp"
+
+#include <abrade/fluid/grid_fluid.hpp>
+
+namespace abrade::examples {
+
+namespace {
+
+using Flow = GridFluid<3>;
+
+Flow grid_channel(const ChannelConfig& c) {
+    const UniformFlow uniform{c.water};
+    const Real depth = c.fluid.inflow_depth > 0 ? c.fluid.inflow_depth : uniform.depth();
+    const Real settle =
+        c.fluid.settle > 0 ? c.fluid.settle : 1 + 3 * c.invert.length / uniform.mean_velocity();
+    const auto cells = [&](Real length) {
+        return static_cast<int>(std::ceil(length / c.fluid.spacing - 1e-9));
+    };
+    const Real half = 0.5 * c.invert.width;
+    const std::array<int, 3> count{cells(c.invert.length), cells(c.invert.width),
+                                   cells(std::max(2 * depth, depth + c.invert.bed_height(half)))};
+    const Point<3> size(c.invert.length / count[0], c.invert.width / count[1], c.fluid.spacing);
+    Sides<3> sides;
+    sides[0] = {Side::inflow, Side::outflow};
+    sides[2] = {Side::slip, Side::slip};
+    // The profile of uniform flow, at the depth that is given: what enters is the discharge.
+    const Real share = c.invert.flow_area(uniform.depth()) / c.invert.flow_area(depth);
+    const auto enters = [uniform, depth, share](const Point<3>& x, Real) {
+        const Real z = std::min(x.z(), depth) * uniform.depth() / depth;
+        return x.x() > 0 ? Point<3>::Zero().eval()
+                         : Point<3>(share * uniform.sample({0, x.y(), z}, 0).velocity.x(), 0, 0);
+    };
+    try {
+        return Flow{{.grid = {.cells = count, .low = {0, -half, 0}, .spacing = size},
+                     .sides = sides,
+                     .side_velocity = enters,
+                     .wall = InvertWall(c.invert),
+                     .wall_law = {WallLaw::Kind::logarithmic, std::pow(26 * c.water.manning, 6)},
+                     .inflow_water = [depth](const Point<3>& x) { return depth - x.z(); },
+                     .gravity = c.invert.gravity(),
+                     .density = c.water.density,
+                     .viscosity = c.water.viscosity,
+                     .tolerance = 1e-5,
+                     .start_time = -settle}};
+    } catch (const InputError& error) {
+        throw InputError(c.source + ", [fluid]: " + error.what());
+    }
+}
+
+/// Of the cross-section that begins with cells of number i along the channel.
+struct Section {
+    Real area = 0, discharge = 0, width = 0;  ///< [m2], [m3/s], [m]
+};
+Section section(const Flow& flow, int i) {
+    const Grid<3>& grid = flow.grid();
+    const Offset along = grid.layout().stride[0];
+    Section s;
+    for (int j = 0; j < grid.cells(1); ++j) {
+        bool wet = false;
+        for (int k = 0; k < grid.cells(2); ++k) {
+            const Offset c = grid.layout().at({i, j, k});
+            const Real part = flow.liquid().fraction()[c] * flow.walls()->open_volume()[c] * grid.size(1, j) *
+                              grid.size(2, k);
+            wet = wet || flow.liquid().fraction()[c] > 0.5;
+            s.area += part;
+            s.discharge += part * 0.5 * (flow.velocity()[0][c] + flow.velocity()[0][c + along]);
+        }
+        s.width += wet ? grid.size(1, j) : 0;
+    }
+    return s;
+}
+
+/// Mean over the compared section of the depth at the centre line, and of the mean speed of its
+/// cross-sections.
+void measure(const ChannelConfig& c, const Flow& flow, ChannelWater& water) {
+    Real depth = 0, speed = 0, froude = 0, shear = 0;
+    int counted = 0;
+    for (int i = 0; i < flow.grid().cells(0); ++i) {
+        const Real x = flow.grid().centre(0, i);
+        if (x < c.comparison.from || x > c.comparison.to) continue;
+        const Section s = section(flow, i);
+        if (!(s.area > 1e-6)) continue;  // the water has not come so far
+        const Real middle = flow.surface_at({x, 0, 0}), mean = s.discharge / s.area;
+        depth += middle, speed += mean, ++counted;
+        froude += mean / std::sqrt(standard_gravity * s.area / std::max(s.width, flow.grid().size(1, 0)));
+        shear += c.water.density * standard_gravity * square(c.water.manning * mean) /
+                 std::cbrt(s.area / c.invert.wetted_perimeter(middle));
+    }
+    if (counted == 0) return;
+    water.depth_m = depth / counted, water.speed_m_per_s = speed / counted;
+    water.froude = froude / counted, water.bed_shear_Pa = shear / counted;
+}
+
+void look_at_the_end(const Flow& flow, ChannelWater& water) {
+    const Grid<3>& grid = flow.grid();
+    water.columns = grid.cells(0);
+    for (int j = 0; j < grid.cells(1); ++j)
+        for (int i = 0; i < grid.cells(0); ++i) {
+            Real depth = 0;
+            for (int k = 0; k < grid.cells(2); ++k) {
+                const Offset c = grid.layout().at({i, j, k});
+                depth += flow.liquid().fraction()[c] * flow.walls()->open_volume()[c] * grid.size(2, k);
+            }
+            water.depth_map.push_back(depth);
+        }
+    for (int i = 0; i < grid.cells(0); ++i) {
+        water.surface_x.push_back(grid.centre(0, i));
+        water.surface_z.push_back(flow.surface_at({grid.centre(0, i), 0, 0}));
+    }
+    water.figures = {{"water_settled_s", -flow.params().start_time},
+                     {"water_steps", static_cast<Real>(flow.steps())},
+                     {"water_cells", static_cast<Real>(grid.layout().cell_count())},
+                     {"water_cells_wet", static_cast<Real>(flow.wet_cells())},
+                     {"water_volume_m3", flow.liquid().volume()},
+                     {"water_discharge_at_outlet_m3_per_s", section(flow, grid.cells(0) - 1).discharge}};
+}
+
+}  // namespace
+
+ChannelRun run_in_grid_water(const ChannelConfig& config, const std::filesystem::path& stem) {
+    const UniformFlow uniform{config.water};
+    ChannelWater water;
+    water.manning_depth_m = uniform.depth(), water.manning_speed_m_per_s = uniform.mean_velocity();
+    ChannelRun run = run_channel(config, stem, grid_channel(config), [&](const Flow& flow, bool first) {
+        first ? measure(config, flow, water) : look_at_the_end(flow, water);
+    });
+    run.results.water = std::move(water);
+    return run;
+}
+
+}  // namespace abrade::examples
