@@ -1,7 +1,7 @@
 #pragma once
 // How VolumeOfFluid carries liquid: the bulk, the sweeps of the band, and what found no room.
 
-#include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/volume_of_fluid_class.hpp>
 
 #include <limits>
 
