@@ -21,14 +21,16 @@ public:
     SurfaceNormals(const Layout<Dim>& layout, const CellSizes<Dim>& sizes)
         : layout_(layout), sizes_(sizes), stencil_(layout), fit_(layout, sizes) {}
 
-    /// Fills in normals, distances and positions of planes whose cells are set. Not `exact`: where heights
-    /// are not known normals follow the gradient, at a tenth of what the fit costs.
+    /// Fills in distances and positions of planes whose cells are set, and their normals where they have
+    /// none. Not `exact`: where heights are not known normals follow the gradient, at a tenth of what the fit
+    /// costs.
     void find(SurfacePlanes<Dim>& planes, const Real* fraction, const std::uint8_t* marks, bool exact) const {
         parallel_blocks(planes.count(), [&](Index, Index first, Index last) {
             Block block(*this, planes, fraction, marks);
             block.sort(first, last);
             for (int way = 0; way < 2 * Dim; ++way) block.heights(way);
             block.fit(exact ? 10 : 0);
+            block.place();
         });
     }
 
@@ -54,7 +56,7 @@ private:
         const Real* fraction;
         const std::uint8_t* marks;
         std::array<List, 2 * Dim> ways{};  ///< 2 axis + (air above)
-        List rest{};
+        List rest{}, kept{};
 
         /// A pack of a list, its last item repeated.
         static std::array<Index, pack_lanes> items(const List& list, int first) noexcept {
@@ -88,8 +90,11 @@ private:
         /// Which axis lies nearest to the normal, and on which side the air is.
         void sort(Index first, Index last) noexcept {
             List regular;
-            for (Index i = first; i < last; ++i)
-                (marks[planes.cell[static_cast<std::size_t>(i)]] & cell_mark::ringed ? regular : rest).add(i);
+            for (Index i = first; i < last; ++i) {
+                const auto k = static_cast<std::size_t>(i);
+                const bool ringed = (marks[planes.cell[k]] & cell_mark::ringed) != 0;
+                (planes.has_normal[k] != 0 ? kept : ringed ? regular : rest).add(i);
+            }
             for (int i = 0; i < regular.count; i += pack_lanes) {
                 const auto item = items(regular, i);
                 const PackCells cell = cells(item);
@@ -129,18 +134,18 @@ private:
         Column column(const PackCells& cell, Offset step, Offset air, const std::array<Pack, 7>& height,
                       bool stretched) const noexcept {
             const Pack dry = Pack(1e-3), full = Pack(1 - 1e-3);
-            const Pack own = detail::gather(fraction, cell, step);
+            const Pack own = detail::values_at(fraction, cell, step);
             Pack amount = own;
             PackMask to_air = own > dry, to_liquid = own < full;
             for (int k = 1; k <= 3; ++k) {
                 if (any(to_air)) {
-                    const Pack f = detail::gather(fraction, cell, step + k * air);
+                    const Pack f = detail::values_at(fraction, cell, step + k * air);
                     const Pack part = stretched ? f * height[at(3 + k)] : f;
                     amount += select(to_air, part, Pack(0));
                     to_air = to_air & (f > dry);
                 }
                 if (any(to_liquid)) {
-                    const Pack f = detail::gather(fraction, cell, step - k * air);
+                    const Pack f = detail::values_at(fraction, cell, step - k * air);
                     const Pack whole = stretched ? height[at(3 - k)] : Pack(1);
                     amount += select(to_liquid, f * whole, whole);
                     to_liquid = to_liquid & (f < full);
@@ -186,12 +191,27 @@ private:
                     const Pack apart = t == vertical ? gap[0] + gap[1] : Pack(2);
                     normal[at(t)] = (low.amount - high.amount) / apart;
                 }
-                const Pack distance = plane_distance<Dim>(normal, detail::gather(fraction, cell));
+                const Pack distance = plane_distance<Dim>(normal, detail::values_at(fraction, cell));
                 const int lanes = std::min(pack_lanes, list.count - i);
                 keep(item, lanes, normal, distance);
                 const unsigned found = lanes_of(complete);
                 for (int lane = 0; lane < lanes; ++lane)
                     if ((found >> lane & 1) == 0) rest.add(item[at(lane)]);
+            }
+        }
+
+        /// Planes that keep their normal.
+        void place() noexcept {
+            for (int i = 0; i < kept.count; i += pack_lanes) {
+                const auto item = items(kept, i);
+                std::array<Pack, Dim> normal;
+                for (std::size_t a = 0; a < Dim; ++a)
+                    normal[a] = detail::values_at(planes.normal[a].data(), item);
+                const Pack distance = plane_distance<Dim>(normal, detail::values_at(fraction, cells(item)));
+                for (int lane = 0; lane < std::min(pack_lanes, kept.count - i); ++lane) {
+                    const auto k = static_cast<std::size_t>(item[at(lane)]);
+                    planes.distance[k] = planes.position[k] = distance[lane];
+                }
             }
         }
 
@@ -202,7 +222,7 @@ private:
                 const auto normal =
                     self.fit_.normals(attempts, fraction, marks, cell_mark::whole, cell, levels(item));
                 keep(item, std::min(pack_lanes, rest.count - i), normal,
-                     plane_distance<Dim>(normal, detail::gather(fraction, cell)));
+                     plane_distance<Dim>(normal, detail::values_at(fraction, cell)));
             }
         }
     };

@@ -31,6 +31,7 @@ struct SurfacePlanes {
     std::array<std::vector<Real>, Dim> normal{};  ///< in units of the cell, from liquid to air
     std::vector<Real> distance{};                 ///< of the plane that holds the cell's volume
     std::vector<Real> position{};                 ///< of the surface; another one in cells cut by walls
+    std::vector<std::uint8_t> has_normal{};       ///< whether the normal stands already
 
     Index count() const noexcept { return static_cast<Index>(cell.size()); }
     void resize(std::size_t planes) {
@@ -39,6 +40,7 @@ struct SurfacePlanes {
         for (auto& component : normal) component.resize(planes);
         distance.resize(planes);
         position.resize(planes);
+        has_normal.resize(planes);
     }
     CellPlane<Dim> plane(Index i) const noexcept {
         const auto k = static_cast<std::size_t>(i);
@@ -54,7 +56,7 @@ using PackCells = std::array<Index, pack_lanes>;
 
 /// Values of the cells that stand `step` from those of a pack.
 template <class Number>
-Pack gather(const Number* values, const PackCells& cells, Offset step = 0) noexcept {
+Pack values_at(const Number* values, const PackCells& cells, Offset step = 0) noexcept {
     return [&]<std::size_t... L>(std::index_sequence<L...>) {
         return Pack(Pack::Native{static_cast<Real>(values[cells[L] + step])...});
     }

@@ -27,7 +27,7 @@ public:
         problem.stretched = !sizes_.uniform();
         for (int k = 0; k < size; ++k) {
             const auto i = static_cast<std::size_t>(k);
-            problem.fraction[i] = detail::gather(fraction, cells, stencil_.step[i]);
+            problem.fraction[i] = detail::values_at(fraction, cells, stencil_.step[i]);
             for (int lane = 0; lane < pack_lanes; ++lane) {
                 const auto l = static_cast<std::size_t>(lane);
                 problem.weight[i].set(lane, marks[cells[l] + stencil_.step[i]] & asked ? 1 : 0);

@@ -1,7 +1,7 @@
 #pragma once
 // How VolumeOfFluid carries liquid: the bulk, the sweeps of the band, and what found no room.
 
-#include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/volume_of_fluid_class.hpp>
 
 #include <limits>
 
@@ -33,10 +33,10 @@ void VolumeOfFluid<Dim>::include_inflows() {
         }
 }
 
-/// Planes of all cells of the band that are neither full nor dry.
+/// Planes of all cells of the band that are neither full nor dry. Within a step they keep the normals that
+/// they had at its beginning.
 template <int Dim>
-void VolumeOfFluid<Dim>::reconstruct(bool exact) {
-    for (const Index c : planes_.cell) plane_of_[c] = -1;
+void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
     const auto cells = band_.cells();
     const auto levels = band_.levels();
     const auto count = static_cast<Index>(cells.size());
@@ -48,19 +48,28 @@ void VolumeOfFluid<Dim>::reconstruct(bool exact) {
         first[static_cast<std::size_t>(block) + 1] = number;
     });
     for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
+    std::swap(planes_, planes_before_);
     planes_.resize(static_cast<std::size_t>(first.back()));
+    const bool keep = within_step && !params_.fit_every_sweep;
     parallel_blocks(count, [&](Index block, Index begin, Index end) {
-        Index next = first[static_cast<std::size_t>(block)];
+        auto next = static_cast<std::size_t>(first[static_cast<std::size_t>(block)]);
         for (Index i = begin; i < end; ++i) {
             const auto k = static_cast<std::size_t>(i);
             if (!cut(cells[k])) continue;
-            planes_.cell[static_cast<std::size_t>(next)] = cells[k];
-            planes_.level[static_cast<std::size_t>(next)] = levels[k];
-            plane_of_[cells[k]] = next++;
+            const Index before = keep ? plane_of_[cells[k]] : -1;
+            planes_.cell[next] = cells[k];
+            planes_.level[next] = levels[k];
+            planes_.has_normal[next] = before >= 0;
+            if (before >= 0)
+                for (std::size_t a = 0; a < Dim; ++a)
+                    planes_.normal[a][next] = planes_before_.normal[a][static_cast<std::size_t>(before)];
+            ++next;
         }
     });
-    normals_.find(planes_, fraction_.data(), marks_.data(), exact);
-    if (open_volumes_) at_walls_.find(planes_, fraction_.data(), marks_.data(), plane_of_.data());
+    for (const Index c : planes_before_.cell) plane_of_[c] = -1;
+    for (Index i = 0; i < planes_.count(); ++i) plane_of_[planes_.cell[static_cast<std::size_t>(i)]] = i;
+    normals_.find(planes_, fraction_.data(), marks_.data(), !keep);
+    if (open_volumes_ && !keep) at_walls_.find(planes_, fraction_.data(), marks_.data(), plane_of_.data());
 }
 
 /// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
@@ -146,7 +155,7 @@ void VolumeOfFluid<Dim>::sweep(int number) {
             filled_[k] = fraction_[cells[k]] > 0.5;
         });
     } else {
-        reconstruct(params_.fit_every_sweep);
+        reconstruct(true);
         fluxes_of_band(axis);
     }
     fluxes_of_planes(axis);
@@ -207,8 +216,8 @@ void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
             for (int l = 0; l < pack_lanes; ++l) item[index(l)] = i + std::min(l, lanes - 1);
             CellPlane<Dim, Pack> plane;
             for (std::size_t a = 0; a < Dim; ++a)
-                plane.normal[a] = detail::gather(planes_.normal[a].data(), item);
-            plane.distance = detail::gather(planes_.distance.data(), item);
+                plane.normal[a] = detail::values_at(planes_.normal[a].data(), item);
+            plane.distance = detail::values_at(planes_.distance.data(), item);
             Pack up{}, down{}, room{};
             for (int l = 0; l < pack_lanes; ++l) {
                 const auto k = static_cast<std::size_t>(item[index(l)]);
@@ -310,8 +319,8 @@ Real VolumeOfFluid<Dim>::share_out(Offset c, Index level, Real amount) {
     return amount;
 }
 
-/// Full cells beyond the band took it that what flows through their faces is all liquid. Where a cell of the band beside
-/// them held a trace of air, too little to be a surface, they had a trace less.
+/// Full cells beyond the band took it that what flows through their faces is all liquid. Where a cell of the
+/// band beside them held a trace of air, too little to be a surface, they had a trace less.
 template <int Dim>
 void VolumeOfFluid<Dim>::even_out_rims() {
     for (Index i = 0; i < planes_.count(); ++i) {
@@ -324,7 +333,8 @@ void VolumeOfFluid<Dim>::even_out_rims() {
                 if (band_.holds(n) || fraction_[n] != 1 || (marks_[n] & cell_mark::inside) == 0) continue;
                 const Index level = planes_.level[k] + (a == vertical ? side : 0);
                 const Index face_level = planes_.level[k] + (a == vertical && side > 0 ? 1 : 0);
-                surplus_[n] += side * (moved_[index(a)][face] - swept(a, face, face_level)) / open_volume(n, level);
+                surplus_[n] +=
+                    side * (moved_[index(a)][face] - swept(a, face, face_level)) / open_volume(n, level);
             }
     }
 }

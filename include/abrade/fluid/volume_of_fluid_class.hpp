@@ -1,0 +1,361 @@
+#pragma once
+// The class VolumeOfFluid: what it holds and answers. What a step does stands in volume_sweeps.hpp; users
+// include volume_of_fluid.hpp, which has both.
+
+#include <abrade/fluid/surface_at_walls.hpp>
+#include <abrade/fluid/surface_band.hpp>
+#include <abrade/fluid/surface_marks.hpp>
+#include <abrade/fluid/surface_normals.hpp>
+
+#include <string>
+
+namespace abrade {
+
+/// What a step of VolumeOfFluid did.
+struct VolumeStep {
+    Real courant = 0;      ///< largest share of a cell at the surface that left it in the step [-]
+    Real moved_aside = 0;  ///< volume that found no room where it flowed and was given to neighbours [m3]
+    int left_over = 0;     ///< cells of the band whose neighbours could not take it either: it is `surplus`
+};
+
+/// Volume of fluid: f = liquid volume / open volume of a cell, 0 <= f <= 1.
+///
+///   f <- f - sum over axes of [Phi_high - Phi_low] / (open V),   Phi [m3]: liquid through a face in the
+///   step,
+/// by one sweep along each axis, their order rotating. The surface is a plane in each cell (SurfaceNormals);
+/// a sweep carries what stands in the slab that the face sweeps. Within a step sweep k also adds
+///   c (swept_high - swept_low) / (open V),   c = 1 where f > 1/2 at the step's beginning, else 0,
+/// the dilatation of one axis (Weymouth & Yue 2010, doi 10.1016/j.jcp.2009.12.018), so that f stays within
+/// its bounds in between. The last sweep takes back what the others added: the volume is conserved to
+/// round-off for any velocities, divergence or not.
+///
+/// What is then above 1 or below 0 is moved through faces to neighbours that have room. Where all neighbours
+/// are full, in the bulk, f is 1 and the rest is the cell's `surplus` (in shares of its open volume, of
+/// either sign):
+///   liquid volume = sum of (f + surplus) open V.
+/// In the bulk surplus changes by -dt div(u) in a step, so it is bounded by the sum of the divergences left;
+/// a projection whose target divergence is surplus / dt keeps it at what one step leaves. Beside the surface,
+/// and in dry cells, it stays below `wisp`, but where `left_over` tells of a cell.
+///
+/// Cells outside of the surface's band cost one light pass. Ghosts of `fraction()` at inflows are the user's.
+template <int Dim>
+class VolumeOfFluid {
+public:
+    static constexpr Real wisp = 1e-12;  ///< less than this is not a fraction but surplus [-]
+    /// Largest share of a cell that may leave it in a step [-]; `stable_step` takes it. Bounds of f hold
+    /// without anything moved aside up to here (Weymouth & Yue).
+    static constexpr Real courant_limit = 0.5;
+    /// Beyond this a slab is wider than its cell: refused.
+    static constexpr Real courant_end = 1;
+
+    struct Params {
+        /// Whether normals are found anew for every sweep, not once a step (docs/verification tells what
+        /// for).
+        bool fit_every_sweep = false;
+    };
+
+    VolumeOfFluid(const Grid<Dim>& grid, const Sides<Dim>& sides, const Params& params)
+        : params_(params), grid_(grid), sides_((sides.validate(), sides)), layout_(grid.layout()),
+          sizes_(grid), normals_(layout_, sizes_), at_walls_(layout_, sizes_), fraction_(layout_.total, 0),
+          surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
+          band_(layout_), wet_(layout_), active_(layout_), touched_(layout_) {
+        for (int a = 0; a < Dim; ++a) wraps_[index(a)] = sides_.periodic(a);
+        for (int a = 0; a < Dim; ++a)
+            for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
+                areas_[index(a)].push_back(sizes_.face(a, k));
+        for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
+            per_volume_.push_back(1 / sizes_.volume(k));
+        // Packs look beyond the end of a row.
+        for (auto& areas : areas_) areas.resize(areas.size() + pack_lanes, 0);
+        per_volume_.resize(per_volume_.size() + pack_lanes, 0);
+        swept_per_speed_ = areas_;
+        set_walls(nullptr, nullptr);
+    }
+
+    VolumeOfFluid(const Grid<Dim>& grid, const Sides<Dim>& sides) : VolumeOfFluid(grid, sides, Params{}) {}
+
+    /// Shares of faces and cells that walls leave open [-]; none: all open. They must outlive this. Call
+    /// `prepare` afterwards.
+    void set_walls(const FaceField<Dim>* open_faces, const Field<Real>* open_volumes) {
+        if ((open_faces == nullptr) != (open_volumes == nullptr))
+            fail({"VolumeOfFluid.set_walls", "both open faces and open volumes, or neither", "",
+                  "walls close faces and take volume"},
+                 "one of them");
+        open_faces_ = open_faces;
+        open_volumes_ = open_volumes;
+        marks_ = surface_marks(grid_, sides_, open_volumes_);
+    }
+
+    /// To be set by the user, then `prepare`.
+    Field<Real>& fraction() noexcept { return fraction_; }
+    const Field<Real>& fraction() const noexcept { return fraction_; }
+
+    /// Takes over fractions that were set from outside. Throws InputError where one is not from 0 to 1.
+    void prepare() {
+        grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) {
+            const Real f = fraction_[c];
+            if (!(f >= 0 && f <= 1)) fail_fraction(cell, f);
+            set_cell(c, marks_[c] & cell_mark::open ? f : 0);
+        });
+        wet_.find(fraction_);
+        locate();
+    }
+
+    /// One step. `velocity` [m/s]: component a of a cell on its lower face along a, also at the upper sides
+    /// and, where cells at the surface have air beside them, on the faces of that air. Throws InputError
+    /// beyond `courant_end`.
+    VolumeStep advance(const FaceField<Dim>& velocity, Real dt) {
+        require_not_negative(dt, "VolumeOfFluid.advance: dt", "s");
+        VolumeStep step{.courant = dt * outflow_rate(velocity)};
+        if (!(step.courant <= courant_end)) fail_courant(velocity, dt);
+        velocity_ = &velocity;
+        for (std::size_t a = 0; a < Dim; ++a)
+            for (std::size_t k = 0; k < areas_[a].size(); ++k) swept_per_speed_[a][k] = dt * areas_[a][k];
+        carry_bulk();
+        for (int sweep = 0; sweep < Dim; ++sweep) this->sweep(sweep);
+        settle(step);
+        ++steps_;
+        wet_.find_within(active_, fraction_);
+        locate();
+        return step;
+    }
+
+    /// The largest step [s] at which no more than `courant_limit` of a cell at the surface leaves it;
+    /// infinite where nothing moves there.
+    Real stable_step(const FaceField<Dim>& velocity) const {
+        const Real rate = outflow_rate(velocity);
+        return rate > 0 ? courant_limit / rate : std::numeric_limits<Real>::infinity();
+    }
+
+    /// Volume of liquid that went through each lower face in the last step [m3].
+    const FaceField<Dim>& moved() const noexcept { return moved_; }
+    /// Liquid beyond `fraction()`, in shares of the open volume [-].
+    const Field<Real>& surplus() const noexcept { return surplus_; }
+    const WetRows<Dim>& wet() const noexcept { return wet_; }
+    const SurfaceBand<Dim>& band() const noexcept { return band_; }
+    const SurfacePlanes<Dim>& planes() const noexcept { return planes_; }
+    const Grid<Dim>& grid() const noexcept { return grid_; }
+    const Sides<Dim>& sides() const noexcept { return sides_; }
+    const Field<std::uint8_t>& marks() const noexcept { return marks_; }
+    /// Number of a cell's plane, or -1.
+    Index plane_of(Offset cell) const noexcept { return plane_of_[cell]; }
+
+    /// Liquid in the box [m3].
+    Real volume() const {
+        std::vector<Real> plane(static_cast<std::size_t>(layout_.planes()), 0);
+        parallel_tasks(layout_.planes(), [&](Index p) {
+            Real sum = 0;
+            for (int r = 0; r < layout_.rows_per_plane(); ++r) {
+                const Offset start = layout_.row_start(p, r);
+                for (int i = 0; i < layout_.row_length(); ++i) {
+                    const Offset c = start + i;
+                    if ((marks_[c] & cell_mark::open) != 0)
+                        sum += (fraction_[c] + surplus_[c]) * open_volume(c, Dim == 3 ? r : i);
+                }
+            }
+            plane[static_cast<std::size_t>(p)] = sum;
+        });
+        Real total = 0;
+        for (const Real sum : plane) total += sum;
+        return total;
+    }
+
+    /// Whether the centre of a cell lies below the surface: f >= 1/2, or, in a cell that a wall cuts, what
+    /// the surface beside it tells. Pressure lives in these cells.
+    bool is_liquid(Offset cell) const noexcept {
+        const Index i = plane_of_[cell];
+        if (i < 0 || (marks_[cell] & cell_mark::whole) != 0) return fraction_[cell] >= 0.5;
+        return planes_.position[static_cast<std::size_t>(i)] >= 0;
+    }
+
+    /// Where the surface is between the centres of two neighbours, as a share of their distance from the
+    /// liquid one, f >= 1/2, to the other one, at `side` (-1 or 1) of it along `axis`. Exact for planes,
+    /// second order for curved surfaces; at least `least`.
+    Real surface_share(Offset liquid, Index level, int axis, int side, Real least = 1e-3) const noexcept {
+        const Offset air = liquid + side * layout_.stride[index(axis)];
+        const bool along_vertical = axis == vertical;
+        const Index air_level = along_vertical ? level + side : level;
+        const Real edge = sizes_.edge(axis, level), air_edge = sizes_.edge(axis, air_level);
+        const Real gap = along_vertical ? sizes_.gap(std::max(level, air_level)) : edge;
+        const Real face = 0.5 * edge / gap;
+        // Beyond its own half a plane counts only where it is the only one, and then no farther than the
+        // other centre.
+        const auto crossing = [&](Offset cell, Real from, Real direction, Real per_gap, bool& found) {
+            const Index i = plane_of_[cell];
+            found = i >= 0;
+            if (!found) return face;
+            const auto k = static_cast<std::size_t>(i);
+            const Real slope = planes_.normal[index(axis)][k] * direction;
+            const Real distance = planes_.position[k];
+            if (!(slope > 1e-9 * std::abs(distance))) return from == 0 ? Real(1) : Real(0);
+            return from + distance / slope * per_gap;
+        };
+        bool own = false, other = false;
+        const Real near = crossing(liquid, 0, side, edge / gap, own);
+        const Real far = crossing(air, 1, side, air_edge / gap, other);
+        Real share = face;
+        if (own && (!other || near <= face))
+            share = near;
+        else if (other && (!own || far >= face))
+            share = far;
+        else if (own)
+            share = 0.5 * (near + far);
+        return std::clamp(share, least, Real(1));
+    }
+
+private:
+    static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner;
+    static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
+
+    Real open_volume(Offset c, Index level) const noexcept {
+        return sizes_.volume(level) * (open_volumes_ ? (*open_volumes_)[c] : 1);
+    }
+    Real per_open_volume(Offset c, Index level) const noexcept {
+        const Real whole = per_volume_[index(level + Layout<Dim>::ghosts)];
+        return open_volumes_ ? whole / (*open_volumes_)[c] : whole;
+    }
+    /// Volume that a lower face sweeps in a step, positive upwards [m3].
+    Real swept(int axis, Offset c, Index level) const noexcept {
+        const Real volume =
+            (*velocity_)[index(axis)][c] * swept_per_speed_[index(axis)][index(level + Layout<Dim>::ghosts)];
+        return open_faces_ ? volume * (*open_faces_)[index(axis)][c] : volume;
+    }
+    void set_cell(Offset c, Real liquid) noexcept {
+        fraction_[c] = liquid < wisp ? 0 : liquid > 1 - wisp ? 1 : liquid;
+        surplus_[c] = liquid - fraction_[c];
+        // Adding a wisp to 1 rounds it; what lies between is exact.
+        if (fraction_[c] == liquid) surplus_[c] = 0;
+    }
+
+    /// Share of its open volume that leaves a cell at the surface per second, at most [1/s].
+    Real outflow_rate(const FaceField<Dim>& velocity) const {
+        const auto cells = band_.cells();
+        const auto count = static_cast<Index>(cells.size());
+        std::vector<Real> most(static_cast<std::size_t>(block_count(count)), 0);
+        parallel_blocks(count, [&](Index block, Index first, Index last) {
+            Real largest = 0;
+            for (Index i = first; i < last; ++i) {
+                const Real rate = rate_of(velocity, i);
+                if (!(rate <= largest)) largest = rate;  // keeps what is not a number
+            }
+            most[static_cast<std::size_t>(block)] = largest;
+        });
+        Real largest = 0;
+        for (const Real rate : most)
+            if (!(rate <= largest)) largest = rate;
+        return largest;
+    }
+    Real rate_of(const FaceField<Dim>& velocity, Index i) const noexcept {
+        const auto k = static_cast<std::size_t>(i);
+        const Offset c = band_.cells()[k];
+        if (fraction_[c] == 0) return 0;
+        const Index level = band_.levels()[k];
+        Real rate = 0;
+        for (int a = 0; a < Dim; ++a) {
+            const auto& u = velocity[index(a)];
+            const Offset up = c + layout_.stride[index(a)];
+            const Real low = open_faces_ ? (*open_faces_)[index(a)][c] : 1;
+            const Real high = open_faces_ ? (*open_faces_)[index(a)][up] : 1;
+            rate +=
+                (high * std::max(u[up], Real(0)) + low * std::max(-u[c], Real(0))) / sizes_.edge(a, level);
+        }
+        // Cells that are mostly wall do not rule the step: what is too much for them is moved aside.
+        return rate / (open_volumes_ ? std::max((*open_volumes_)[c], Real(0.5)) : 1);
+    }
+
+    // The surface moves in a step by less than a cell; wisps that are moved aside, by one more.
+    void locate() {
+        touched_ = active_;
+        active_ = wet_.dilated(2, wraps_);
+        include_inflows();
+        touched_.include(active_);
+        fill_ghosts(fraction_, touched_, sides_);
+        settled_.insert(settled_.end(), band_.cells().begin(), band_.cells().end());
+        band_.find(fraction_, marks_, active_, sides_);
+        // What has left the band with less air than makes a surface is full from now on; the rest is surplus.
+        for (const Index c : settled_)
+            if (fraction_[c] >= 1 - SurfaceBand<Dim>::smallest_void && !band_.holds(c)) {
+                surplus_[c] += fraction_[c] - 1;
+                fraction_[c] = 1;
+            }
+        settled_.clear();
+        reconstruct(false);
+    }
+    void include_inflows();
+    void reconstruct(bool within_step);
+    void carry_bulk();
+    void carry_row(Offset start, Index level, const RowRange& range, bool cells);
+    void sweep(int number);
+    void fluxes_of_band(int axis);
+    void fluxes_of_planes(int axis);
+    void join_periodic(int axis);
+    void even_out_rims();
+    void settle(VolumeStep& step);
+    struct Neighbours;
+    Real share_out(Offset c, Index level, Real amount);
+
+    [[noreturn]] void fail_fraction(const CellNumber<Dim>& cell, Real f) const {
+        fail({std::string("VolumeOfFluid.fraction") + text(cell), "from 0 to 1", "",
+              "give the share of the cell's open volume that is liquid"},
+             to_text(f));
+    }
+    [[noreturn]] void fail_courant(const FaceField<Dim>& velocity, Real dt) const {
+        Index worst = 0;
+        const auto count = static_cast<Index>(band_.cells().size());
+        for (Index i = 0; i < count; ++i)
+            if (!(rate_of(velocity, i) <= rate_of(velocity, worst))) worst = i;
+        fail({"VolumeOfFluid.advance: dt",
+              "small enough that no more than all of a cell at the surface leaves it; in cell " +
+                  text(number_of(band_.cells()[static_cast<std::size_t>(worst)])) + " " +
+                  short_text(rate_of(velocity, worst)) + " of it leave per second",
+              "s", "take at most stable_step()"},
+             to_text(dt));
+    }
+    CellNumber<Dim> number_of(Offset c) const noexcept {
+        CellNumber<Dim> cell{};
+        const auto digit = [&](int a, Offset rest) {
+            cell[index(a)] = static_cast<int>(rest / layout_.stride[index(a)]) - Layout<Dim>::ghosts;
+            return rest % layout_.stride[index(a)];
+        };
+        Offset rest = digit(0, c);
+        if constexpr (Dim == 3) rest = digit(2, rest);
+        digit(1, rest);
+        return cell;
+    }
+    static std::string text(const CellNumber<Dim>& cell) {
+        std::string result = "[";
+        for (std::size_t a = 0; a < Dim; ++a) result += (a ? ", " : "") + std::to_string(cell[a]);
+        return result + "]";
+    }
+
+    Params params_;
+    Grid<Dim> grid_;
+    Sides<Dim> sides_;
+    std::array<bool, Dim> wraps_{};
+    Layout<Dim> layout_;
+    CellSizes<Dim> sizes_;
+    std::array<std::vector<Real>, Dim> areas_;  ///< of faces, by level from the first ghost [m2]
+    std::vector<Real> per_volume_;              ///< likewise [1/m3]
+    const FaceField<Dim>* open_faces_ = nullptr;
+    const Field<Real>* open_volumes_ = nullptr;
+    SurfaceNormals<Dim> normals_;
+    SurfaceAtWalls<Dim> at_walls_;
+
+    Field<Real> fraction_, surplus_;
+    FaceField<Dim> moved_;
+    Field<std::uint8_t> marks_;
+    Field<Index> plane_of_;
+    SurfacePlanes<Dim> planes_, planes_before_;
+    SurfaceBand<Dim> band_;
+    WetRows<Dim> wet_, active_, touched_;  ///< touched: active now or in the step before
+    std::vector<std::uint8_t> filled_;     ///< [band cell] c of Weymouth and Yue
+    std::vector<Index> settled_;      ///< cells of the last band, and those that took what was moved aside
+    std::vector<std::uint8_t> bulk_;  ///< [band cell] full, and so are its neighbours
+    long steps_ = 0;
+
+    const FaceField<Dim>* velocity_ = nullptr;  ///< of the step at work
+    std::array<std::vector<Real>, Dim>
+        swept_per_speed_;  ///< dt times area, by level from the first ghost [m2 s]
+};
+
+}  // namespace abrade
