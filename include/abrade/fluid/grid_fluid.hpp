@@ -59,6 +59,8 @@ public:
             fastest_ = report_.courant;
         }
         finish(velocity_);
+        enters_ = rate_of_inflow();
+        fastest_ = std::max(fastest_, enters_);
         saved_velocity_ = velocity_;
         saved_pressure_ = pressure_;
         if constexpr (has_surface) {
@@ -133,7 +135,8 @@ public:
         check(dt);
         time_ += dt;
         ++steps_;
-        fastest_ = report_.courant / dt;
+        if (!params_.steady_sides) enters_ = rate_of_inflow();
+        fastest_ = std::max(report_.courant / dt, enters_);
         if constexpr (has_surface) find_heights();
     }
 
@@ -264,6 +267,19 @@ private:
                     });
     }
 
+    /// Largest |u| / h of what is given at sides [1/s]: it counts before the water inside has its speed.
+    Real rate_of_inflow() const {
+        Real most = 0;
+        for (int a = 0; a < Dim; ++a)
+            for (const bool high : {false, true})
+                if (params_.sides[a][static_cast<std::size_t>(high)] == Side::inflow)
+                    sides_.along_side(a, high, [&](Offset c, std::size_t) {
+                        const State u = velocity_[a][high ? c + layout().stride[a] : c];
+                        most = std::max(most, std::abs(static_cast<Real>(u)) / grid_->size(a, 0));
+                    });
+        return most;
+    }
+
     void save() {
         saved_velocity_ = velocity_;
         saved_pressure_ = pressure_;
@@ -376,7 +392,7 @@ private:
     std::conditional_t<has_surface, std::optional<detail::SurfaceWater<Dim>>, Nothing> water_{};
     std::vector<Real> heights_;  ///< [x][y] of the surface [m]
     typename Projection<Dim, State>::Report report_;
-    Real time_ = 0, fastest_ = 0;  ///< [s]; largest sum |u_a| / h_a [1/s]
+    Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Index steps_ = 0;
 };
 

@@ -3,32 +3,9 @@
 
 #include <abrade/fluid/multigrid.hpp>
 #include <abrade/fluid/row_value.hpp>
-#include <abrade/fluid/sides.hpp>
-
-#include <cstdint>
+#include <abrade/fluid/water_cells.hpp>
 
 namespace abrade {
-
-/// A face at which the pressure is known: between water and air, or where water leaves the box.
-struct OpenFace {
-    Offset face = 0;  ///< of the velocity component
-    Offset cell = 0;  ///< the wet cell beside it
-    int axis = 0;
-    Real slope =
-        0;  ///< 1 / distance from the cell's centre to the known pressure; negative if that lies above [1/m]
-    Real plain =
-        0;  ///< 1 / distance to the next centre, of the same sign [1/m]; 0: the old pressure has no part
-};
-
-/// Cells that take part in a projection and what lies between them.
-template <int Dim>
-struct WaterCells {
-    const Field<std::uint8_t>& wet;  ///< 1 where the pressure is unknown, ghosts included
-    const WetRows<Dim>& rows;        ///< hold them, and those of the last time
-    std::span<const OpenFace> open{};
-    const Field<Real>* open_volume = nullptr;   ///< share of each cell that walls leave open [-]; none: all
-    const FaceField<Dim>* open_area = nullptr;  ///< share of each face that walls leave open [-]; none: all
-};
 
 /// Solves  div(grad phi) = div(u) - target  and takes grad phi from u; phi = p dt / density.
 ///

@@ -182,7 +182,9 @@ public:
         // other centre.
         const auto crossing = [&](Offset cell, Real from, Real direction, Real per_gap, bool& found) {
             const Index i = plane_of_[cell];
-            found = i >= 0;
+            // A trace of air or of water tells nothing of where the surface is.
+            constexpr Real trace = SurfaceBand<Dim>::smallest_void;
+            found = i >= 0 && fraction_[cell] > trace && fraction_[cell] < 1 - trace;
             if (!found) return face;
             const auto k = static_cast<std::size_t>(i);
             const Real slope = planes_.normal[index(axis)][k] * direction;

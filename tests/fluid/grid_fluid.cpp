@@ -1,0 +1,189 @@
+// Water on a grid: rest, drops, closed boxes, films, errors that leave it as it was, bits that do not depend
+// on threads.
+#include <abrade/fluid/grid_fluid.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace abrade;
+
+namespace {
+
+constexpr Real g = 9.81;
+
+/// A basin of n x n cells of 1 m in all, filled below `surface`.
+GridFluid<2>::Params basin(int n, PlaceFunction<2> water) {
+    return {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)},
+            .sides = Sides<2>::all(Side::slip),
+            .water = std::move(water),
+            .gravity = {0, -g}};
+}
+
+template <class Flow>
+Real fastest(const Flow& flow) {
+    Real most = 0;
+    flow.grid().for_each([&](const auto&, Offset c) {
+        if (flow.liquid().fraction()[c] > 0)
+            for (const auto& u : flow.velocity()) most = std::max(most, std::abs(u[c]));
+    });
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("water at rest stays at rest, its pressure is that of the depth") {
+    auto params = basin(16, [](const Point<2>& x) { return 0.53 - x[1]; });
+    params.tolerance = 1e-10;
+    GridFluid<2> flow(params);
+    flow.advance(1);
+    MESSAGE("fastest " << fastest(flow) << " m/s after " << flow.steps() << " steps");
+    CHECK(fastest(flow) < 1e-6 * std::sqrt(g * 0.53));
+    const Offset c = flow.grid().layout().at({5, 2});
+    CHECK(flow.pressure()[c] == doctest::Approx(g * (0.53 - 2.5 / 16)).epsilon(1e-6).scale(0));
+    CHECK(flow.surface_at({0.4, 0}) == doctest::Approx(0.53).epsilon(1e-9));
+    CHECK(flow.sample({0.4, 0, 0.2}, 0).depth == doctest::Approx(0.33).epsilon(1e-9));
+}
+
+TEST_CASE("a drop smaller than a cell falls freely; it ends on the floor and no volume is lost") {
+    auto params = basin(16, {});
+    params.water = [](const Point<2>& x) { return 0.02 - (x - Point<2>(0.53, 0.78)).norm(); };
+    GridFluid<2> flow(params);
+    const Real volume = flow.liquid().volume();
+    CHECK(volume > 0);
+    const auto height = [&] {
+        Real sum = 0, all = 0;
+        flow.grid().for_each([&](const CellNumber<2>& cell, Offset c) {
+            sum += flow.liquid().fraction()[c] * flow.grid().centre(1, cell[1]);
+            all += flow.liquid().fraction()[c];
+        });
+        return sum / all;
+    };
+    const Real start = height();
+    flow.advance(0.2);
+    MESSAGE("fell " << start - height() << " m in 0.2 s, freely " << 0.5 * g * square(0.2));
+    CHECK(start - height() == doctest::Approx(0.5 * g * square(0.2)).epsilon(0.2));
+    flow.advance(1.5);
+    CHECK(height() < 2.0 / 16);
+    CHECK(flow.liquid().volume() == doctest::Approx(volume).epsilon(1e-6).scale(0));
+}
+
+TEST_CASE("a closed box full of water: the pressure is known but for a constant") {
+    auto params = basin(16, [](const Point<2>&) { return 1.0; });
+    params.tolerance = 1e-9;
+    GridFluid<2> flow(params);
+    flow.advance(0.05);
+    CHECK(fastest(flow) < 1e-7);
+    const auto p = [&](int k) { return flow.pressure()[flow.grid().layout().at({7, k})]; };
+    CHECK(p(2) - p(9) == doctest::Approx(g * 7 / 16).epsilon(1e-5));
+}
+
+TEST_CASE("a dry box and a single wet cell") {
+    GridFluid<2> dry(basin(8, {}));
+    dry.advance(0.1);
+    CHECK(dry.wet_cells() == 0);
+    GridFluid<2> one(basin(8, [](const Point<2>& x) {
+        return std::min(0.0625 - std::abs(x[0] - 0.5625), 0.0625 - std::abs(x[1] - 0.8125));
+    }));
+    CHECK(one.wet_cells() == 1);
+    one.advance(0.1);
+    CHECK(one.liquid().volume() == doctest::Approx(square(0.125)).epsilon(1e-9));
+    CHECK(std::isfinite(fastest(one)));
+}
+
+TEST_CASE("one copy goes on as the other") {
+    GridFluid<2> flow(basin(16, [](const Point<2>& x) { return std::min(0.4 - x[0], 0.6 - x[1]); }));
+    flow.advance(0.05);
+    GridFluid<2> copy = flow;
+    flow.advance(0.1), copy.advance(0.1);
+    flow.grid().for_each(
+        [&](const auto&, Offset c) { REQUIRE(flow.velocity()[1][c] == copy.velocity()[1][c]); });
+}
+
+TEST_CASE("the same bits for one thread and two") {
+    std::vector<Real> bits;
+    for (const int threads : {1, 2}) {
+        set_thread_count(threads);
+        GridFluid<3> flow({.grid = {.cells = {40, 12, 24}, .spacing = Point<3>::Constant(0.05)},
+                           .sides = Sides<3>::all(Side::slip),
+                           .wall = [](const Point<3>& x) { return (x - Point<3>(1, 0.3, 0)).norm() - 0.2; },
+                           .water = [](const Point<3>& x) { return std::min(0.6 - x[0], 0.8 - x[2]); },
+                           .gravity = {0, 0, -g}});
+        flow.advance(0.25);
+        std::vector<Real> now;
+        flow.grid().for_each([&](const auto&, Offset c) {
+            for (const auto& u : flow.velocity()) now.push_back(u[c]);
+            now.push_back(flow.liquid().fraction()[c]);
+        });
+        if (threads == 1)
+            bits = now;
+        else
+            CHECK(std::memcmp(bits.data(), now.data(), now.size() * sizeof(Real)) == 0);
+    }
+    set_thread_count(1);
+}
+
+TEST_CASE("steps name their limit") {
+    GridFluid<2> flow(basin(16, [](const Point<2>& x) { return 0.5 - x[1]; }));
+    CHECK(flow.stable_step().seconds > 0);
+    CHECK(flow.stable_step().limit == "CFL");
+    auto thick = basin(16, [](const Point<2>& x) { return 0.5 - x[1]; });
+    thick.viscosity = 1e4;
+    CHECK(GridFluid<2>(thick).stable_step().limit == "viscosity");
+    thick.largest_step = 1e-9;
+    CHECK(GridFluid<2>(thick).stable_step().limit == "largest_step");
+}
+
+TEST_CASE("a run that goes wrong names the cell, the speed and the cause, and is as it was") {
+    GridFluid<2, FullBox> flow(
+        {.grid = {.cells = {16, 16}, .spacing = Point<2>::Constant(1.0 / 16)},
+         .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
+         .density = 1,
+         .viscosity = 1e-2});
+    flow.advance(1);
+    const Real time = flow.time();
+    // A hundred times beyond the viscous limit: grows by large factors in each step.
+    std::string message;
+    Real before = 0;
+    try {
+        for (int k = 0; k < 200; ++k) {
+            before = flow.kinetic_energy();
+            flow.step(100 * flow.stable_step().seconds);
+        }
+    } catch (const FluidError& error) {
+        message = error.what();
+    }
+    MESSAGE(message);
+    CHECK(message.find("cell [") != std::string::npos);
+    CHECK(message.find("m/s") != std::string::npos);
+    CHECK(flow.kinetic_energy() == before);
+    CHECK(flow.time() >= time);
+}
+
+TEST_CASE("bad input names field, value, rule and remedy") {
+    const auto says = [](GridFluid<2>::Params params) -> std::string {
+        try {
+            GridFluid<2> flow(std::move(params));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const auto good = basin(8, [](const Point<2>& x) { return 0.5 - x[1]; });
+    auto params = good;
+    params.viscosity = -1;
+    CHECK(says(params).starts_with("GridFluid.viscosity must be finite and >= 0, got -1 Pa s; water has"));
+    params = good;
+    params.grid.spacing[1] = 0;
+    CHECK(says(params).starts_with("Grid.spacing.z must be finite and > 0, got 0 m"));
+    params = good;
+    params.sides[0] = {Side::periodic, Side::wall};
+    CHECK(says(params).find("periodic at both ends") != std::string::npos);
+    params = good;
+    params.sides[0][0] = Side::inflow;
+    CHECK(says(params).starts_with("GridFluid.side_velocity must be given where a side is an inflow"));
+    params = good;
+    params.wall = [](const Point<2>&) { return -1.0; };
+    CHECK(says(params).find("open cells") != std::string::npos);
+    params = good;
+    params.courant = 2;
+    CHECK(says(params).starts_with("GridFluid.courant must be in (0, 1], got 2"));
+}
