@@ -18,6 +18,13 @@ struct ChannelRun {
     std::string went_wrong;  ///< empty: nothing
     int code = 0;            ///< for the shell
     Snapshot last_good{};    ///< where it went wrong
+    /// Of the water then: name, unit and one number for each cell.
+    struct WaterColumn {
+        std::string name, unit;
+        std::vector<Real> values;
+    };
+    std::vector<WaterColumn> last_water{};
+    Real last_water_time = 0;  ///< [s]
 };
 
 /// Runs to the end, or until a user stops it; writes series at `stem`.

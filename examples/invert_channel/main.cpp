@@ -101,12 +101,18 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
 
 /// Puts the last good state of a run that failed, and what was recorded of it, beside where the results would
 /// have been.
-void keep_failed_run(const Snapshot& shot, OutputFolder& folder) {
+void keep_failed_run(const ChannelRun& run, OutputFolder& folder) {
     try {
+        const Snapshot& shot = run.last_good;
         const auto bodies = shot.body_fields(), sites = shot.site_fields();
-        const std::vector<FieldGroup> groups{{"bodies", bodies}, {"concrete", sites}};
+        std::vector<FieldView> water;
+        for (const auto& one : run.last_water) water.push_back({one.name, one.unit, 1, one.values});
+        std::vector<FieldGroup> groups{{"bodies", bodies}, {"concrete", sites}};
+        if (!water.empty()) groups.push_back({"water", water});
         save_fields(folder.path("last_good.h5"), groups,
-                    {{"time_s", shot.time}, {"step", std::int64_t{shot.step}}});
+                    {{"time_s", shot.time},
+                     {"step", std::int64_t{shot.step}},
+                     {"water_time_s", water.empty() ? shot.time : run.last_water_time}});
     } catch (const std::exception& error) {
         std::cerr << "the last good state is lost: " << error.what() << "\n";
     }
@@ -128,7 +134,7 @@ int run(const Options& options) {
     const ChannelRun run = fluid->run(config, folder.path("series"));
     if (run.code != 0) {
         std::cerr << "error: " << run.went_wrong << "\n";
-        keep_failed_run(run.last_good, folder);
+        keep_failed_run(run, folder);
         return run.code;
     }
     const ChannelResults& results = run.results;

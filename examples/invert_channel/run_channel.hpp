@@ -54,6 +54,14 @@ ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path&
     }
     if (run.code != 0) {
         run.last_good = sim.last_good();
+        const auto& water = sim.fluid_model();
+        if constexpr (requires { water.columns().fields(), water.time(); }) {
+            const auto columns = water.columns();
+            for (const FieldView& one : columns.fields())
+                run.last_water.push_back(
+                    {std::string(one.name), std::string(one.unit), {one.values.begin(), one.values.end()}});
+            run.last_water_time = water.time();
+        }
         return run;
     }
     look_at(sim.fluid_model(), false);

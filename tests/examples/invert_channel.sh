@@ -72,6 +72,11 @@ status=0
 grep -qE 'step [0-9]+ .*with id [0-9]+ .*overlaps' soft.log || fail "runaway overlap is not explained: $(cat soft.log)"
 [ ! -e soft ] && [ -s soft.failed/last_good.h5 ] || fail "runaway overlap: wrong files"
 
+status=0
+"$program" "${short[@]}" --fluid shallow --set run.end_time=0.3 --set contact.stiffness=30 --out wet > wet.log 2>&1 || status=$?
+[ $status -eq 3 ] && [ -s wet.failed/last_good.h5 ] || fail "a failed run in shallow water: exit code $status: $(cat wet.log)"
+grep -q surface wet.failed/last_good.h5 || fail "the water of a failed run is not kept"
+
 # --- pictures that fail take nothing with them: exit 1, data and summary are kept
 mkdir -p stub
 printf '#!/bin/sh\n[ "$1" = --version ] && { echo gnuplot 5.4; exit 0; }\nexit 1\n' > stub/gnuplot

@@ -2,6 +2,7 @@
 // Depth-averaged water, where its numbers stand: a grid of cells with ghosts around it, the bed in them and
 // at their faces, and tiles of it.
 
+#include <abrade/core/require.hpp>
 #include <abrade/fluid/shallow_water_kernel.hpp>
 
 #include <array>

@@ -1,6 +1,7 @@
 #pragma once
 // Depth-averaged water, what it is made from.
 
+#include <abrade/core/law.hpp>
 #include <abrade/fluid/shallow_water_sides.hpp>
 
 #include <functional>
