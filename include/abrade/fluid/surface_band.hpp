@@ -20,8 +20,8 @@ public:
 
     SurfaceBand() = default;
     explicit SurfaceBand(const Layout<Dim>& layout)
-        : layout_(layout), air_(layout.total, 0), edge_(layout.total, 0), band_(layout.total, 0),
-          searched_(layout) {}
+        : layout_(layout), air_(layout.total, 0), edge_(layout.total, 0), near_(layout.total, 0),
+          band_(layout.total, 0), searched_(layout) {}
 
     /// Finds the band within `rows`, which hold everything wet and one cell around it at least.
     void find(const Field<Real>& fraction, const Field<std::uint8_t>& marks, const WetRows<Dim>& rows,
@@ -30,6 +30,9 @@ public:
             const Offset start = layout_.row_start(plane, r) + range.begin;
             std::memset(edge_.data() + start, 0, static_cast<std::size_t>(range.length()));
             std::memset(band_.data() + start, 0, static_cast<std::size_t>(range.length()));
+        });
+        for_each_row_and_beyond(searched_, [&](Offset start, const RowRange& range) {
+            std::memset(near_.data() + start + range.begin, 0, static_cast<std::size_t>(range.length()));
         });
         searched_ = rows;
         rows.for_each_row([&](int plane, int r, const RowRange& range) {
@@ -108,28 +111,59 @@ private:
         }
     }
 
+    /// Eight cells at once, whose flags are the bytes of one number.
+    static std::uint64_t eight(const std::uint8_t* flags) noexcept {
+        std::uint64_t value;
+        std::memcpy(&value, flags, sizeof value);
+        return value;
+    }
+    /// Whole eights of a row: rows begin at one, as ghosts do that stand before them.
+    static RowRange eights(const RowRange& range) noexcept {
+        constexpr int ghosts = Layout<Dim>::ghosts;
+        const int begin = (range.begin + ghosts) / 8 * 8 - ghosts;
+        return {begin, begin + (range.end - begin + 7) / 8 * 8};
+    }
+
+    /// Calls body(offset of the row's cell 0, whole eights) for each row, and for rows of ghosts beside them.
+    void for_each_row_and_beyond(const WetRows<Dim>& rows, auto&& body) const {
+        const int planes = layout_.planes(), per_plane = layout_.rows_per_plane();
+        rows.for_each_row([&](int plane, int r, const RowRange& range) {
+            for (int p = plane == 0 ? -1 : plane; p <= (plane == planes - 1 ? planes : plane); ++p)
+                for (int q = Dim == 3 && r == 0 ? -1 : r;
+                     q <= (Dim == 3 && r == per_plane - 1 ? per_plane : r); ++q)
+                    body(layout_.row_start(p, q), eights(range));
+        });
+    }
+
+    /// To all cells around: first along rows, then from row to row.
     void spread(const Field<std::uint8_t>& marks, const WetRows<Dim>& rows) noexcept {
         constexpr int around = Dim == 3 ? 9 : 3;
         std::array<Offset, around> step;
         for (int k = 0; k < around; ++k)
             step[static_cast<std::size_t>(k)] = (k % 3 - 1) * layout_.stride[Layout<Dim>::outer] +
                                                 (Dim == 3 ? (k / 3 - 1) * layout_.stride[Dim - 1] : 0);
+        for_each_row_and_beyond(rows, [&](Offset start, const RowRange& range) {
+            const std::uint8_t* edge = edge_.data() + start;
+            std::uint8_t* near = near_.data() + start;
+            for (int i = range.begin; i < range.end; i += 8) {
+                const std::uint64_t any = eight(edge + i - 1) | eight(edge + i) | eight(edge + i + 1);
+                std::memcpy(near + i, &any, sizeof any);
+            }
+        });
         rows.for_each_row([&](int plane, int r, const RowRange& range) {
             const Offset start = layout_.row_start(plane, r);
-            const std::uint8_t* edge = edge_.data() + start;
+            const std::uint8_t* near = near_.data() + start;
             const std::uint8_t* mark = marks.data() + start;
             std::uint8_t* band = band_.data() + start;
             const auto steps = step;
-#if defined(_OPENMP)
-#pragma omp simd
-#endif
-            for (int i = range.begin; i < range.end; ++i) {
-                std::uint8_t near = 0;
-                for (std::size_t k = 0; k < around; ++k) {
-                    const std::uint8_t* row = edge + steps[k] + i;
-                    near = static_cast<std::uint8_t>(near | row[-1] | row[0] | row[1]);
-                }
-                band[i] = static_cast<std::uint8_t>(near & ((mark[i] & cell_mark::open) != 0));
+            const RowRange all = eights(range);
+            for (int i = all.begin; i < all.end; i += 8) {
+                std::uint64_t any = 0;
+                for (std::size_t k = 0; k < around; ++k) any |= eight(near + steps[k] + i);
+                static_assert(cell_mark::open == 2 && cell_mark::inside == 4);
+                const std::uint64_t here = eight(mark + i);
+                any &= here >> 1 & here >> 2 & 0x0101010101010101u;
+                std::memcpy(band + i, &any, sizeof any);
             }
         });
     }
@@ -165,7 +199,7 @@ private:
     }
 
     Layout<Dim> layout_{};
-    Field<std::uint8_t> air_, edge_, band_;
+    Field<std::uint8_t> air_, edge_, near_, band_;  ///< near: to an edge in the same row
     WetRows<Dim> searched_;
     std::vector<Index> cell_, level_;
 };

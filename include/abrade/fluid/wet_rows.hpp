@@ -126,7 +126,7 @@ private:
         for (int g = 0; g < count; ++g)
             for (int k = g - cells; k <= g + cells; ++k) {
                 if (k == g || (!wraps && (k < 0 || k >= count))) continue;
-                const int other = (k % count + count) % count * length;
+                const int other = (k < 0 || k >= count ? (k % count + count) % count : k) * length;
                 int* b = &*from + g * length;
                 int* e = &*to + g * length;
                 for (int i = 0; i < length; ++i) {
