@@ -129,7 +129,7 @@ private:
             const auto both = [&](const Point<Dim>& x) {
                 return params.wall ? std::min(params.wall(x), water(x)) : water(x);
             };
-            typename Walls<Dim>::Params how{.closed_below = 0, .bounded_slope = false};
+            typename Walls<Dim>::Params how{.closed_below = 0, .may_close_all = true, .bounded_slope = false};
             const Walls<Dim> filled(*grid_, both, how);
             grid_->for_each(
                 [&](const CellNumber<Dim>& cell, Offset c) {

@@ -35,9 +35,10 @@ template <int Dim>
 class Walls {
 public:
     struct Params {
-        Real closed_below = 1e-3;   ///< open share up to which a cell or face is closed [-]
-        int levels = 1;             ///< how often cells and faces are halved where the wall is not flat
-        Real flatness = 0.02;       ///< not flat: the distance at the centre is off by that share of the size
+        Real closed_below = 1e-3;  ///< open share up to which a cell or face is closed [-]
+        int levels = 1;            ///< how often cells and faces are halved where the wall is not flat
+        Real flatness = 0.02;      ///< not flat: the distance at the centre is off by that share of the size
+        bool may_close_all = false;  ///< that no cell is open is no error
         bool bounded_slope = true;  ///< |w(x) - w(y)| <= |x - y|: cells far from the wall need no look inside
 
         void validate() const {
@@ -168,7 +169,7 @@ private:
                                                {params_.levels, params_.flatness, params_.bounded_slope},
                                                cell_diagonal_};
         open_cells_ += renewal.run(wall, from, to, slabs);
-        require(open_cells_ > 0,
+        require(open_cells_ > 0 || params_.may_close_all,
                 {"Walls: open cells of the grid", "at least 1", "",
                  "is the distance above 0 in the water, and does the grid cover some of it?"},
                 open_cells_);
