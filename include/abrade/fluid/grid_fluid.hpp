@@ -189,9 +189,7 @@ public:
 
 private:
     using Stage = MomentumStage<Dim, State>;
-    struct Nothing {
-        Nothing(auto&&...) {}
-    };
+    struct Nothing {};
 
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     Real nu() const noexcept { return params_.viscosity / params_.density; }

@@ -233,11 +233,6 @@ private:
             float* const __restrict b = multigrid_.right_side().data() + start;
             const float* const __restrict inverse = m.inverse_diagonal.data() + start;
             State sum = 0;
-            const auto finish = [&](int i, State out) {
-                out = inverse[i] > 0 ? out : State(0);
-                b[i] = static_cast<float>(-out);
-                return out * out;
-            };
             if (open_area_ || surplus_) {
                 for (int i = r.begin; i < r.end; ++i) {
                     const auto share = [&](int a, const std::array<const Real*, 3>& side) {
@@ -254,7 +249,9 @@ private:
                             area0[i] / per0[i];
                     else if (surplus_)
                         out -= static_cast<State>((*surplus_)[start + i] / step_) * area0[i] / per0[i];
-                    sum += finish(i, out);
+                    out = inverse[i] > 0 ? out : State(0);
+                    b[i] = static_cast<float>(-out);
+                    sum += out * out;
                     State rate = std::abs(low[0][i]) * per0[i] + std::abs(low[1][i]) * per1[i];
                     if constexpr (Dim == 3) rate += std::abs(low[2][i]) * per2;
                     if (inverse[i] > 0) fastest = std::max(fastest, rate);

@@ -142,21 +142,10 @@ public:
     }
     const Snapshot& last_good() const noexcept { return last_good_; }
 
-    /// Shares of wall time [-]: contacts with their wear; bonds; motion with what the fluid does to it;
-    /// renewal of lists; a fluid that changes.
-    struct Shares {
-        Real contacts = 0, bonds = 0, motion = 0, renewal = 0, fluid = 0;
-    };
-    Shares wall_shares() const noexcept {
+    /// Timed steps stand for all.
+    WallShares wall_shares() const noexcept {
         if (!world_) return {};
-        const StepSeconds step = world_->timed();
-        const Real renewal = world_->renewal_seconds(), fluid = world_->fluid_seconds();
-        // Timed steps stand for all; what is left of the wall time goes by their shares.
-        const Real timed = step.contacts + step.bonds + step.motion;
-        if (!(timed > 0 && wall_seconds_ > 0)) return {};
-        const Real share = std::max(0.0, wall_seconds_ - renewal - fluid) / timed / wall_seconds_;
-        return {share * step.contacts, share * step.bonds, share * step.motion, renewal / wall_seconds_,
-                fluid / wall_seconds_};
+        return shares_of(wall_seconds_, world_->timed(), world_->renewal_seconds(), world_->fluid_seconds());
     }
 
     template <class X, class Y, class Z, class U, class V>
@@ -311,7 +300,9 @@ private:
 
     /// Finds the forces at the start, and what is wrong with it.
     void open() {
+        const auto start = Clock::now();
         advance_fluid(time_);  // one that begins earlier settles
+        wall_seconds_ += seconds_since(start);
         world_->open(time_);
         if (const Trouble trouble = world_->take_trouble(); trouble.cause == Trouble::Cause::overlap) {
             const TroubleText say(*world_, time_step_);
