@@ -139,22 +139,23 @@ void read_water(TomlReader& in, ChannelConfig& c) {
 void read_fluid(TomlReader& in, ChannelConfig& c) {
     std::vector<std::string_view> names;
     for (const ChannelFluid& one : channel_fluids) names.push_back(one.name);
-    c.fluid.model =
-        in.choice("fluid.model", names,
-                  {.fallback = "uniform", .help = "uniform: prescribed, shallow: depth-averaged, or none"});
+    c.fluid.model = in.choice(
+        "fluid.model", names,
+        {.fallback = "uniform",
+         .help = "uniform: prescribed, shallow: depth-averaged, grid: with a free surface, or none"});
     c.fluid.spacing = in.number(
         "fluid.spacing",
-        {.unit = "m", .fallback = 0.02, .help = "of the grid of shallow water", .bound = Bound::positive});
+        {.unit = "m", .fallback = 0.02, .help = "of the grid of water that flows", .bound = Bound::positive});
     c.fluid.inflow_depth =
         in.number("fluid.inflow_depth", {.unit = "m",
                                          .fallback = 0,
-                                         .help = "of shallow water at the upstream end, 0: of uniform flow",
+                                         .help = "of water that flows in upstream, 0: of uniform flow",
                                          .assumption = "not in the text",
                                          .bound = Bound::not_negative});
     c.fluid.settle =
         in.number("fluid.settle", {.unit = "s",
                                    .fallback = 0,
-                                   .help = "that shallow water runs before the stones begin, 0: three "
+                                   .help = "that water runs before the stones begin, 0: three "
                                            "times what uniform flow takes down the channel, and 1 s",
                                    .bound = Bound::not_negative});
     require(c.fluid.spacing <= 0.25 * c.invert.width,

@@ -49,6 +49,12 @@ holds "the ledger closes in shallow water" "$(value shallow/summary.json ledger_
 holds "stones are moved" "$(value shallow/summary.json mean_stone_speed_m_per_s) > 1"
 "$program" "${short[@]}" --fluid shallow --set fluid.settle=0.02 --set run.end_time=0.001 --out early > early.log 2>&1 || fail "water that has not settled"
 grep -q "off Manning's depth" early.log || fail "water that has not settled is not mentioned"
+"$program" "${short[@]}" --fluid grid --set fluid.spacing=0.04 --set run.end_time=0.03 --out grid > grid.log || fail "water on a grid: $(cat grid.log)"
+[ -s grid/water.png ] || fail "grid/water.png is missing or empty"
+[ "$(value grid/summary.json fluid)" = '"GridFluid"' ] || fail "the fluid is not water on a grid"
+holds "Manning's depth on a grid" "($(value grid/summary.json water_depth_m) / $(value grid/summary.json manning_depth_m) - 1)^2 < 0.01"
+holds "Manning's speed on a grid" "($(value grid/summary.json water_speed_m_per_s) / $(value grid/summary.json manning_speed_m_per_s) - 1)^2 < 0.01"
+holds "the ledger closes on a grid" "$(value grid/summary.json ledger_residual_relative) < 1e-6"
 "$program" "${short[@]}" --fluid none --set run.end_time=0.01 --out none > none.log || fail "a dry channel: $(cat none.log)"
 grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
 
