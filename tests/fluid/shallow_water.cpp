@@ -3,7 +3,7 @@
 #include <abrade/fluid/shallow_water.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 
-#include "message_of.hpp"
+#include "../message_of.hpp"
 
 #include <doctest/doctest.h>
 

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "message_of.hpp"
+#include "../message_of.hpp"
 
 using namespace abrade;
 
