@@ -83,13 +83,17 @@ public:
     Field() = default;
     explicit Field(Offset size, Number value = 0) : size_(size), data_(allocate(size)) { fill(value); }
     Field(const Field& other) : Field(other.size_) { *this = other; }
-    Field(Field&&) noexcept = default;
+    Field(Field&& other) noexcept : size_(std::exchange(other.size_, 0)), data_(std::move(other.data_)) {}
     Field& operator=(const Field& other) {
         if (size_ != other.size_) *this = Field(other.size_);
         std::memcpy(data_.get(), other.data_.get(), bytes());
         return *this;
     }
-    Field& operator=(Field&&) noexcept = default;
+    Field& operator=(Field&& other) noexcept {
+        size_ = std::exchange(other.size_, 0);
+        data_ = std::move(other.data_);
+        return *this;
+    }
 
     void fill(Number value) noexcept { std::fill_n(data_.get(), size_, value); }
     Number* data() noexcept { return data_.get(); }

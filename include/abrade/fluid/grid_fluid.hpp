@@ -2,6 +2,7 @@
 // Water on a staggered Cartesian grid.
 
 #include <abrade/fluid/fluid_model.hpp>
+#include <abrade/fluid/grid_place.hpp>
 #include <abrade/fluid/momentum.hpp>
 #include <abrade/fluid/surface_water.hpp>
 
@@ -42,6 +43,10 @@ public:
         if constexpr (has_surface) {
             water_.emplace(*grid_, params_);
             water_->find(projection_, pressure_, sides_);
+        } else if (params_.wall_law.kind == WallLaw::Kind::logarithmic) {
+            fail({"GridFluid.wall_law", "no_slip or slip in a FullBox", "",
+                  "take a FreeSurface with water everywhere"},
+                 "logarithmic");
         } else if (params_.wall) {
             fail({"GridFluid.wall", "left out of a FullBox", "", "take a FreeSurface with water everywhere"},
                  "given");
@@ -149,7 +154,8 @@ public:
         at[Dim - 1] = x[2];
         FluidSample sample{Vec3::Zero(), std::numeric_limits<Real>::infinity(), params_.density,
                            params_.viscosity};
-        for (int a = 0; a < Dim; ++a) sample.velocity[a == Dim - 1 ? 2 : a] = velocity_at(a, at);
+        for (int a = 0; a < Dim; ++a)
+            sample.velocity[a == Dim - 1 ? 2 : a] = face_value(*grid_, velocity_[a], a, at);
         if constexpr (has_surface) sample.depth = surface_at(at) - x[2];
         return sample;
     }
@@ -160,7 +166,8 @@ public:
         std::array<Real, 2> weight{};
         for (int a = 0; a < Dim - 1; ++a) {
             const auto k = static_cast<std::size_t>(a);
-            place(a, x[a], false, low[k], weight[k]);
+            const GridPlace at = place_among_centres(*grid_, a, x[a]);
+            low[k] = at.low, weight[k] = at.weight;
             high[k] = std::min(low[k] + 1, grid_->cells(a) - 1);
         }
         const auto height = [&](int i, int j) {
@@ -224,6 +231,7 @@ private:
         water.move(velocity_, dt);
         // Of the velocity as the pressure left it: water at rest feels no friction.
         water.friction().apply(velocity_, dt, nu());
+        sides_.fill(velocity_);
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
             Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), params_.gravity};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
@@ -238,10 +246,11 @@ private:
         stage(velocity_, stage_, 0, -dt);
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         finish(stage_);
-        water.carry_by(stage_, velocity_, dt);
+        water.carry_by(stage_, saved_velocity_, dt);
         // The old pressure is taken back: below the new surface it pushes anew.
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.find(projection_, pressure_, sides_);
+        push_leaving(dt);
         sides_.fill(velocity_);
         report_ =
             projection_.project(velocity_, pressure_, dt, params_.tolerance, true, &water.liquid().surplus());
@@ -278,15 +287,34 @@ private:
         return most;
     }
 
+    /// What leaves is pushed as the faces before it are about to be.
+    void push_leaving(Real dt) {
+        for (int a = 0; a < Dim; ++a)
+            for (const bool high : {false, true})
+                if (params_.sides[a][static_cast<std::size_t>(high)] == Side::outflow)
+                    sides_.along_side(a, high, [&](Offset c, std::size_t) {
+                        const Offset s = layout().stride[a], inside = high ? c : c + s,
+                                     face = high ? c + s : c;
+                        if (projection_.multigrid().matrix().face[a][inside] > 0)
+                            velocity_[a][face] -=
+                                dt * (pressure_[inside] - pressure_[inside - s]) / grid_->size(a, 0);
+                    });
+    }
+
     void save() {
         saved_velocity_ = velocity_;
         saved_pressure_ = pressure_;
         if constexpr (has_surface) saved_fraction_ = water_->liquid().fraction();
     }
     void check(Real dt) {
-        Real speed = 0;
-        for (int a = 0; a < Dim; ++a) speed = std::max(speed, report_.courant / dt * grid_->size(a, 0));
-        if (std::isfinite(report_.after) && report_.after <= 1 && speed <= params_.fastest) return;
+        Real size = 0;
+        for (int a = 0; a < Dim; ++a)
+            for (int i = 0; i < grid_->cells(a); ++i) size = std::max(size, grid_->size(a, i));
+        const bool found = std::isfinite(report_.after) && report_.after <= 1;
+        // The bound is cheap, the speed itself is not.
+        if (found &&
+            (report_.courant / dt * size <= params_.fastest || fastest_face().speed <= params_.fastest))
+            return;
         const std::string where = fastest_cell();
         const std::string cause = !std::isfinite(report_.after) ? "the velocity is not a number"
                                   : report_.after > 1
@@ -295,6 +323,7 @@ private:
                                       : "beyond GridFluid.fastest";
         velocity_ = saved_velocity_;
         pressure_ = saved_pressure_;
+        if (!params_.steady_sides) sides_.set_time(time_);
         if constexpr (has_surface) {
             water_->restore(saved_fraction_);
             water_->find(projection_, pressure_, sides_);
@@ -303,60 +332,27 @@ private:
                          " s, dt = " + short_text(dt) + " s): " + cause + "; " + where +
                          "; take a smaller courant, or a finer grid there");
     }
-    std::string fastest_cell() const {
-        Real most = -1;
-        std::string text = "no cell has a speed";
+    struct FastFace {
+        Real speed = -1;
+        int axis = 0;
+        CellNumber<Dim> cell{};
+    };
+    FastFace fastest_face() const {
+        FastFace most;
         grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
             for (int a = 0; a < Dim; ++a) {
                 const Real u = std::abs(static_cast<Real>(velocity_[a][c]));
-                if (u <= most) continue;
-                most = std::isnan(u) ? std::numeric_limits<Real>::infinity() : u;
-                text = "cell [";
-                for (int b = 0; b < Dim; ++b)
-                    text += (b ? ", " : "") + std::to_string(cell[static_cast<std::size_t>(b)]);
-                text += "] has " + short_text(u) + " m/s along " + Grid<Dim>::axis_name(a);
+                if (!std::isnan(most.speed) && !(u <= most.speed)) most = {u, a, cell};
             }
         });
-        return text;
+        return most;
     }
-
-    /// Between which numbers along an axis a place lies, and how near to the upper one. `faces`: among faces.
-    void place(int axis, Real x, bool faces, int& low, Real& weight) const noexcept {
-        const int n = grid_->cells(axis) - (faces ? 0 : 1);
-        const auto at = [&](int i) { return faces ? grid_->face(axis, i) : grid_->centre(axis, i); };
-        int begin = 0, end = n;
-        if (axis != Grid<Dim>::vertical || grid_->uniform()) {
-            begin = static_cast<int>(
-                std::clamp((x - at(0)) / grid_->size(axis, 0), Real(0), Real(std::max(0, n - 1))));
-        } else {
-            while (end - begin > 1) {
-                const int middle = (begin + end) / 2;
-                (at(middle) <= x ? begin : end) = middle;
-            }
-        }
-        low = begin;
-        weight = n > begin ? std::clamp((x - at(begin)) / (at(begin + 1) - at(begin)), Real(0), Real(1)) : 0;
-    }
-    Real velocity_at(int a, const Point<Dim>& x) const noexcept {
-        CellNumber<Dim> low{};
-        std::array<Real, Dim> weight{};
-        for (int b = 0; b < Dim; ++b) {
-            const auto k = static_cast<std::size_t>(b);
-            place(b, x[b], a == b, low[k], weight[k]);
-        }
-        const Offset from = layout().at(low);
-        Real sum = 0;
-        for (int corner = 0; corner < 1 << Dim; ++corner) {
-            Real share = 1;
-            Offset c = from;
-            for (int b = 0; b < Dim; ++b) {
-                const bool up = corner >> b & 1;
-                share *= up ? weight[static_cast<std::size_t>(b)] : 1 - weight[static_cast<std::size_t>(b)];
-                c += up ? layout().stride[b] : 0;
-            }
-            sum += share * static_cast<Real>(velocity_[a][c]);
-        }
-        return sum;
+    std::string fastest_cell() const {
+        const FastFace most = fastest_face();
+        std::string text = "cell [";
+        for (int b = 0; b < Dim; ++b)
+            text += (b ? ", " : "") + std::to_string(most.cell[static_cast<std::size_t>(b)]);
+        return text + "] has " + short_text(most.speed) + " m/s along " + Grid<Dim>::axis_name(most.axis);
     }
 
     void find_heights() {

@@ -83,7 +83,12 @@ public:
             const float beta = rho_before > 0 ? static_cast<float>(rho / rho_before) : 0;
             rho_before = rho;
             const Real curvature = search_along(a, beta);
-            if (!(curvature > 0) || !(rho > 0)) break;
+            if (!(curvature > 0) || !(rho > 0)) {
+                // What is not a number must not outlive the solution that it came from.
+                for (Level& level : levels_) level.x.fill(0), level.b.fill(0);
+                for (Field<float>* field : {&search_, &product_, &solution_}) field->fill(0);
+                break;
+            }
             const float step = static_cast<float>(rho / curvature);
             report.after = std::sqrt(sum_over_planes([&](int plane) { return take(step, plane); }));
             ++report.iterations;
@@ -132,8 +137,9 @@ private:
         c.dirichlet.fill(0);
         const auto parent = [&](int a, int i) { return fine.paired[a] ? i / 2 : i; };
         parallel_tasks(c.layout.planes(), [&](Index coarse_plane) {
-            for (int plane = 0; plane < lf.planes(); ++plane) {
-                if (parent(outer, plane) != coarse_plane) continue;
+            const int first = fine.paired[outer] ? 2 * coarse_plane : coarse_plane;
+            const int last = fine.paired[outer] ? std::min(first + 2, lf.planes()) : first + 1;
+            for (int plane = first; plane < last; ++plane) {
                 for (int row = 0; row < lf.rows_per_plane(); ++row) {
                     const Offset from = lf.row_start(plane, row);
                     const Offset to = c.layout.row_start(coarse_plane, Dim == 3 ? parent(Dim - 1, row) : 0);
@@ -161,7 +167,7 @@ private:
         Level& level = levels_[l];
         const Poisson<Dim>& m = level.matrix;
         const int rows = m.layout.rows_per_plane(), planes = m.layout.planes();
-        const int runs = runs_on(m.layout);
+        const int runs = runs_on(m);
         const bool last = l + 1 == levels_.size();
         if (last) {
             const Offset only = m.layout.at({});
@@ -179,19 +185,18 @@ private:
                     m.smooth(level.x, level.b, plane, row, stage & 1);
         });
         cycle(l + 1);
-        std::vector<Real>& partial = partial_;
-        if (l == 0) partial.assign(static_cast<std::size_t>(planes), 0);
+        if (l == 0) partial_.assign(static_cast<std::size_t>(planes), 0);
         detail::wavefront(planes, l == 0 ? 6 : 5, m.periodic[outer], runs, [&](int stage, int plane) {
             if (stage == 0) return prolong_plane(level, coarse, plane);
             if (stage == 5) {
-                partial[static_cast<std::size_t>(plane)] = dot(level.b, level.x, plane);
+                partial_[static_cast<std::size_t>(plane)] = dot(level.b, level.x, plane);
                 return;
             }
             for (int row = 0; row < rows; ++row) m.smooth(level.x, level.b, plane, row, stage & 1);
         });
         Real sum = 0;
         if (l == 0)
-            for (const Real p : partial) sum += p;
+            for (const Real p : partial_) sum += p;
         return sum;
     }
 
@@ -250,22 +255,21 @@ private:
     Real search_along(const Poisson<Dim>& a, float beta) {
         const Field<float>& z = levels_[0].x;
         partial_.assign(static_cast<std::size_t>(a.layout.planes()), 0);
-        detail::wavefront(a.layout.planes(), 2, a.periodic[outer], runs_on(a.layout),
-                          [&](int stage, int plane) {
-                              if (stage == 0) {
-                                  for_rows(plane, [&](Offset start, RowRange r) {
-                                      float* const __restrict p = search_.data() + start;
-                                      const float* const __restrict from = z.data() + start;
+        detail::wavefront(a.layout.planes(), 2, a.periodic[outer], runs_on(a), [&](int stage, int plane) {
+            if (stage == 0) {
+                for_rows(plane, [&](Offset start, RowRange r) {
+                    float* const __restrict p = search_.data() + start;
+                    const float* const __restrict from = z.data() + start;
 #pragma omp simd
-                                      for (int i = r.begin; i < r.end; ++i) p[i] = from[i] + beta * p[i];
-                                  });
-                                  return;
-                              }
-                              Real sum = 0;
-                              for (int row = 0; row < a.layout.rows_per_plane(); ++row)
-                                  sum += a.apply(search_, product_, plane, row);
-                              partial_[static_cast<std::size_t>(plane)] = sum;
-                          });
+                    for (int i = r.begin; i < r.end; ++i) p[i] = beta > 0 ? from[i] + beta * p[i] : from[i];
+                });
+                return;
+            }
+            Real sum = 0;
+            for (int row = 0; row < a.layout.rows_per_plane(); ++row)
+                sum += a.apply(search_, product_, plane, row);
+            partial_[static_cast<std::size_t>(plane)] = sum;
+        });
         Real sum = 0;
         for (const Real p : partial_) sum += p;
         return sum;
@@ -328,8 +332,9 @@ private:
     }
     /// Small levels are not worth waking a thread, and across an odd periodic axis equal colours are
     /// neighbours.
-    static int runs_on(const Layout<Dim>& layout) noexcept {
-        return layout.total < 20000 || layout.planes() % 2 ? 1 : thread_count();
+    static int runs_on(const Poisson<Dim>& m) noexcept {
+        const bool alone = m.layout.total < 20000 || (m.periodic[outer] && m.layout.planes() % 2 != 0);
+        return alone ? 1 : thread_count();
     }
 
     std::vector<Level> levels_;

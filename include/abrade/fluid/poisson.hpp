@@ -59,7 +59,6 @@ struct Poisson {
         x[row + n] = x[row];
     }
 
-    /// Calls body(c, g_sum(x)) ... see the uses below: `sum` of g times the neighbours' x.
     /// One half of a Gauss-Seidel sweep in red-black order on a row: cells of one colour get the value that
     /// meets their equation. Vectors compute both colours and store one.
     void smooth(Field<float>& x, const Field<float>& b, int plane, int row, int colour) const noexcept {
@@ -68,10 +67,11 @@ struct Poisson {
         const Offset start = layout.row_start(plane, row);
         join_row(x, start);
         const Terms t(*this, x, plane, row, start);
-        float* const __restrict out = x.data() + start;
+        float* const out = x.data() + start;
         const float* const __restrict right = b.data() + start;
         const float* const __restrict inverse = inverse_diagonal.data() + start;
         const int parity = (plane + row + colour) & 1;
+        // Lanes read neighbours of the other colour only, which no lane changes.
 #pragma omp simd
         for (int i = r.begin; i < r.end; ++i) {
             const float value = (right[i] + t.sum(i)) * inverse[i];

@@ -53,7 +53,6 @@ public:
         open_.assign(water.open.begin(), water.open.end());
         open_area_ = water.open_area;
         open_volume_ = water.open_volume;
-        rows_ = water.rows;
         Poisson<Dim>& m = multigrid_.matrix();
         const Layout<Dim>& l = grid_->layout();
         parallel_tasks(l.planes(), [&](Index plane) {
@@ -387,7 +386,6 @@ private:
     Sides<Dim> sides_;
     Multigrid<Dim> multigrid_;
     std::array<WetRows<Dim>, Dim> faces_;
-    WetRows<Dim> rows_;
     std::vector<OpenFace> open_;
     const FaceField<Dim>* open_area_ = nullptr;
     const Field<Real>* open_volume_ = nullptr;

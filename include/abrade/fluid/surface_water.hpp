@@ -30,6 +30,11 @@ public:
         for (int plane = 0; plane < layout().planes(); ++plane)
             for (int row = 0; row < layout().rows_per_plane(); ++row)
                 rows_.row(plane, row) = {0, layout().row_length()};
+        for (int a = 0; a < Dim; ++a)
+            if (sides_.periodic(a))
+                fail({std::string("GridFluid.sides.") + Grid<Dim>::axis_name(a),
+                      "not periodic where there is a surface", "", "take slip walls, or a FullBox"},
+                     "periodic");
         if (params.wall) {
             walls_ = std::make_shared<Walls<Dim>>(grid, params.wall);
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
@@ -202,6 +207,7 @@ private:
             const int number = a == outer ? plane : a == inner ? i : row, up = a == vertical;
             // `above`: 1 where the wet cell is the upper one, -1 where it is the lower.
             const auto add = [&](Offset wet, Offset face, int above, int upper, int wet_level) {
+                if (walls_ && walls_->open_area()[a][face] == 0) return;
                 const Real plain = above / grid_->gap(a, upper);
                 const Real share = liquid_.surface_share(wet, wet_level, a, -above, least_share);
                 open_.push_back({face, wet, a, plain / share, plain});

@@ -16,33 +16,36 @@ class VelocityExtension {
 public:
     static constexpr int layers = 3;
 
-    explicit VelocityExtension(const Layout<Dim>& layout) : layout_(layout), known_(layout.total, 0) {}
+    explicit VelocityExtension(const Layout<Dim>& layout)
+        : layout_(layout), known_(layout.total, 0), before_(layout) {}
 
     /// `wet`: cells whose pressure is known, ghosts included; `rows`: rows to be looked at; `held`: share of
     /// a cell that liquid fills; `open_area` may be none.
     template <class State>
     void extend(FaceField<Dim, State>& u, const Field<std::uint8_t>& wet, const WetRows<Dim>& rows,
                 const Field<State>& held, const FaceField<Dim>* open_area) {
+        // Where water has left nothing is known any more.
+        before_.for_each_row([&](int plane, int row, const RowRange& r) {
+            std::fill_n(known_.data() + layout_.row_start(plane, row) + r.begin, r.length(), std::uint8_t{0});
+        });
+        before_ = rows;
         for (int a = 0; a < Dim; ++a) {
             const Offset back = layout_.stride[a];
             faces_.clear();
-            // What is not wet is told apart: in the water, outside of it, closed.
-            rows.for_each_plane([](int) {});
             for (int plane = 0; plane < layout_.planes(); ++plane)
                 for (int row = 0; row < layout_.rows_per_plane(); ++row) {
                     const RowRange r = rows.row(plane, row);
                     const Offset start = layout_.row_start(plane, row);
                     for (int i = r.begin; i < r.end; ++i) {
                         const Offset c = start + i;
-                        if ((wet[c] | wet[c - back]) != 0) {
+                        if (open_area && (*open_area)[a][c] == 0) {
+                            known_[c] = 0;
+                            u[a][c] = 0;
+                        } else if ((wet[c] | wet[c - back]) != 0) {
                             known_[c] = 1;
                         } else {
                             known_[c] = 0;
-                            if (at_low_side(a, plane, row, i)) continue;
-                            if (open_area && (*open_area)[a][c] == 0)
-                                u[a][c] = 0;
-                            else
-                                faces_.push_back(c);
+                            if (!at_low_side(a, plane, row, i)) faces_.push_back(c);
                         }
                     }
                 }
@@ -78,6 +81,7 @@ private:
     }
     Layout<Dim> layout_;
     Field<std::uint8_t> known_;
+    WetRows<Dim> before_;  ///< looked at the last time
     std::vector<Offset> faces_, next_;
 };
 

@@ -106,7 +106,8 @@ private:
                 CellNumber<Dim> of = cell;
                 if (upper) ++of[a];
                 const Offset face = layout_.at(of), back = layout_.stride[a];
-                if (walls.open_area()[a][face] == 0) continue;
+                // A face at a side of the box is the side's.
+                if (walls.open_area()[a][face] == 0 || of[a] == 0 || of[a] == grid.cells(a)) continue;
                 const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
                 const Real distance = wall.normal.dot(grid.face_centre(a, of) - wall.point);
                 held_[a].push_back({face, std::max(distance, 0.05 * grid.size(a, cell[a])),
@@ -121,7 +122,7 @@ private:
                 grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
                     if (cell[b] != (end == 0 ? 0 : grid.cells(b) - 1)) return;
                     for (int a = 0; a < Dim; ++a)
-                        if (a != b && (!walls || walls->open_area()[a][c] > 0))
+                        if (a != b && cell[a] > 0 && (!walls || walls->open_area()[a][c] > 0))
                             held_[a].push_back({c, 0.5 * grid.size(b, cell[b]), 1 / grid.size(b, cell[b])});
                 });
             }
