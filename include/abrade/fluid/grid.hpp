@@ -86,7 +86,7 @@ public:
     Field(Field&& other) noexcept : size_(std::exchange(other.size_, 0)), data_(std::move(other.data_)) {}
     Field& operator=(const Field& other) {
         if (size_ != other.size_) *this = Field(other.size_);
-        std::memcpy(data_.get(), other.data_.get(), bytes());
+        if (size_ > 0) std::memcpy(data_.get(), other.data_.get(), bytes());
         return *this;
     }
     Field& operator=(Field&& other) noexcept {
