@@ -12,16 +12,12 @@ namespace {
 using Flow = GridFluid<3>;
 
 Flow grid_channel(const ChannelConfig& c) {
-    const UniformFlow uniform{c.water};
-    const Real depth = c.fluid.inflow_depth > 0 ? c.fluid.inflow_depth : uniform.depth();
-    const Real settle =
-        c.fluid.settle > 0 ? c.fluid.settle : 1 + 3 * c.invert.length / uniform.mean_velocity();
-    const auto cells = [&](Real length) {
-        return static_cast<int>(std::ceil(length / c.fluid.spacing - 1e-9));
-    };
+    const WaterStart start(c);
+    const UniformFlow& uniform = start.uniform;
+    const Real depth = start.depth;
     const Real half = 0.5 * c.invert.width;
-    const std::array<int, 3> count{cells(c.invert.length), cells(c.invert.width),
-                                   cells(std::max(2 * depth, depth + c.invert.bed_height(half)))};
+    const std::array<int, 3> count{cells_along(c, c.invert.length), cells_along(c, c.invert.width),
+                                   cells_along(c, std::max(2 * depth, depth + c.invert.bed_height(half)))};
     const Point<3> size(c.invert.length / count[0], c.invert.width / count[1], c.fluid.spacing);
     Sides<3> sides;
     sides[0] = {Side::inflow, Side::outflow};
@@ -44,7 +40,7 @@ Flow grid_channel(const ChannelConfig& c) {
                      .density = c.water.density,
                      .viscosity = c.water.viscosity,
                      .tolerance = 1e-5,
-                     .start_time = -settle}};
+                     .start_time = -start.settle}};
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());
     }

@@ -7,27 +7,21 @@ namespace abrade::examples {
 namespace {
 
 ShallowWater<2> shallow_channel(const ChannelConfig& c) {
-    const UniformFlow uniform{c.water};
-    const Real inflow = c.fluid.inflow_depth > 0 ? c.fluid.inflow_depth : uniform.depth();
-    const Real settle =
-        c.fluid.settle > 0 ? c.fluid.settle : 1 + 3 * c.invert.length / uniform.mean_velocity();
-    const auto cells = [&](Real length) {
-        return static_cast<Index>(std::ceil(length / c.fluid.spacing - 1e-9));
-    };
+    const WaterStart start(c);
     const Real half = 0.5 * c.invert.width;
     try {
         return ShallowWater<2>{
             {.low = {0, -half},
              .high = {c.invert.length, half},
-             .cells = {cells(c.invert.length), cells(c.invert.width)},
-             .sides = {{{WaterSide::inflow(c.water.discharge, inflow), WaterSide::outflow()},
+             .cells = {cells_along(c, c.invert.length), cells_along(c, c.invert.width)},
+             .sides = {{{WaterSide::inflow(c.water.discharge, start.depth), WaterSide::outflow()},
                         {WaterSide::wall(), WaterSide::wall()}}},
              .bed = [invert = c.invert](Real, Real y) { return invert.bed_height(y); },
              .gravity = c.invert.gravity(),
              .manning = c.water.manning,
              .density = c.water.density,
              .viscosity = c.water.viscosity,
-             .start_time = -settle}};
+             .start_time = -start.settle}};
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());
     }

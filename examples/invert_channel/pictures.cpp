@@ -11,6 +11,13 @@ namespace abrade::examples {
 
 namespace {
 
+Axis along_channel(const ChannelConfig& c) {
+    return {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length};
+}
+Axis across_channel(const ChannelConfig& c) {
+    return {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width};
+}
+
 namespace fs = std::filesystem;
 
 constexpr auto stone_colour = "#7a8b99";
@@ -18,7 +25,7 @@ constexpr auto stone_colour = "#7a8b99";
 /// Stones and the centre line's concrete from the side, the surface layer and the stones from above.
 void draw_snapshot(const ChannelConfig& c, const ChannelResults& r, const fs::path& side,
                    const fs::path& plan) {
-    const Axis x{.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length};
+    const Axis x = along_channel(c);
     const Axis fracture{.label = "fracture rate", .min = 0.0};
     CircleSet bed_side{.title = "", .circles = {}},
         stones_side{.title = "stones", .circles = {}, .colour = stone_colour, .outline = true};
@@ -56,36 +63,32 @@ void draw_snapshot(const ChannelConfig& c, const ChannelResults& r, const fs::pa
                        .sets = {bed_side, stones_side},
                        .lines = surface},
          side);
-    draw(
-        CirclePicture{
-            .title = "Plan view at the end",
-            .x = shown,
-            .y = {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width},
-            .colour = fracture,
-            .sets = {bed_plan, stones_plan}},
-        plan);
+    draw(CirclePicture{.title = "Plan view at the end",
+                       .x = shown,
+                       .y = across_channel(c),
+                       .colour = fracture,
+                       .sets = {bed_plan, stones_plan}},
+         plan);
 }
 
 void draw_water(const ChannelConfig& c, const ChannelWater& water, const fs::path& picture) {
-    ColourMap map{
-        .title = "Depth of water at the end",
-        .x = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length},
-        .y = {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width},
-        .colour = {.label = "depth", .unit = "m", .min = 0.0},
-        .columns = static_cast<std::size_t>(water.columns),
-        .values = water.depth_map};
+    ColourMap map{.title = "Depth of water at the end",
+                  .x = along_channel(c),
+                  .y = across_channel(c),
+                  .colour = {.label = "depth", .unit = "m", .min = 0.0},
+                  .columns = static_cast<std::size_t>(water.columns),
+                  .values = water.depth_map};
     map.equal_aspect = c.invert.length < 4;
     draw(map, picture);
 }
 
 void draw_depth_map(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
-    ColourMap map{
-        .title = "Abrasion depth",
-        .x = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length},
-        .y = {.label = "across", .unit = "m", .min = -0.5 * c.invert.width, .max = 0.5 * c.invert.width},
-        .colour = {.label = "abrasion depth", .unit = "mm", .min = 0.0},
-        .columns = static_cast<std::size_t>(r.along),
-        .values = {}};
+    ColourMap map{.title = "Abrasion depth",
+                  .x = along_channel(c),
+                  .y = across_channel(c),
+                  .colour = {.label = "abrasion depth", .unit = "mm", .min = 0.0},
+                  .columns = static_cast<std::size_t>(r.along),
+                  .values = {}};
     for (Index j = 0; j < r.across; ++j)
         for (Index i = 0; i < r.along; ++i)
             map.values.push_back(1e3 * r.depth_m[static_cast<std::size_t>(i * r.across + j)]);
@@ -110,7 +113,7 @@ void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs:
     const Real from = c.comparison.from, to = c.comparison.to, mean = r.centre_depth_mm_per_m3;
     LineChart chart{
         .title = "Abrasion depth at the centre line per volume of sediment passed",
-        .x = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = c.invert.length},
+        .x = along_channel(c),
         .y = {.label = "depth per converted sediment", .unit = "mm/m3", .min = 0.0},
         .curves = {},
         .bands = {{.title = "physical bracket for a worn band of " + short_number(width, 2) + " m",

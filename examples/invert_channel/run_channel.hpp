@@ -12,6 +12,21 @@
 
 namespace abrade::examples {
 
+/// What flowing water begins with, where the configuration leaves it open.
+struct WaterStart {
+    explicit WaterStart(const ChannelConfig& c)
+        : uniform(c.water), depth(c.fluid.inflow_depth > 0 ? c.fluid.inflow_depth : uniform.depth()),
+          settle(c.fluid.settle > 0 ? c.fluid.settle : 1 + 3 * c.invert.length / uniform.mean_velocity()) {}
+    UniformFlow uniform;
+    Real depth;   ///< at the centre line, upstream [m]
+    Real settle;  ///< before the stones begin [s]
+};
+
+/// Cells of a grid along a length [m].
+inline Index cells_along(const ChannelConfig& c, Real length) {
+    return static_cast<Index>(std::ceil(length / c.fluid.spacing - 1e-9));
+}
+
 /// `look_at(fluid, first)` sees the water as the stones begin, and at the end.
 template <FluidModel Fluid, class LookAt>
 ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path& stem, Fluid fluid,

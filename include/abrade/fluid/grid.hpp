@@ -60,6 +60,17 @@ struct Layout {
         return offset;
     }
 
+    /// Of the cell at an offset.
+    CellNumber<Dim> number(Offset offset) const noexcept {
+        CellNumber<Dim> cell{};
+        for (std::size_t k = 0; k < Dim; ++k) {
+            const std::size_t a = k == 0 ? 0 : Dim - k;  // by decreasing stride
+            cell[a] = static_cast<int>(offset / stride[a]) - ghosts;
+            offset %= stride[a];
+        }
+        return cell;
+    }
+
     int planes() const noexcept { return cells[outer]; }
     int rows_per_plane() const noexcept { return Dim == 3 ? cells[Dim - 1] : 1; }
     int row_length() const noexcept { return cells[inner]; }

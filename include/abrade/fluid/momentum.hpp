@@ -114,30 +114,23 @@ private:
         const RowValue<Dim, State> friction(values_[2], r.begin, r.end, [&](int i) {
             return s_.viscosity / (a == b ? grid_.size(a, cell(a, i) - 1) : grid_.gap(b, cell(b, i)));
         });
-        if (s_.open_area) {  // friction acts on what is open; the wall's own is added apart
-            const Real* const __restrict open = (*s_.open_area)[b].data() + start;
-            for (int i = r.begin; i < r.end; ++i) {
-                const State carried = upper[i] * w[i] + lower[i] * w[i - back];
-                const State far_low = u[i - 2 * across], low = u[i - across], high = u[i],
-                            far_high = u[i + across];
-                const bool rising = carried > 0;
-                const State value =
-                    Scheme::at_face(rising ? far_low : far_high, rising ? low : high, rising ? high : low);
-                const auto share = static_cast<State>(0.5 * (open[i] + open[i - back]));
-                out[i] = carried * value - share * friction[i] * (high - low);
-            }
-            return;
-        }
-#pragma omp simd
-        for (int i = r.begin; i < r.end; ++i) {
+        const auto through = [&](int i, State open) {
             const State carried = upper[i] * w[i] + lower[i] * w[i - back];
             const State far_low = u[i - 2 * across], low = u[i - across], high = u[i],
                         far_high = u[i + across];
             const bool rising = carried > 0;
             const State value =
                 Scheme::at_face(rising ? far_low : far_high, rising ? low : high, rising ? high : low);
-            out[i] = carried * value - friction[i] * (high - low);
+            return carried * value - open * friction[i] * (high - low);
+        };
+        if (s_.open_area) {  // friction acts on what is open; the wall's own is added apart
+            const Real* const __restrict open = (*s_.open_area)[b].data() + start;
+            for (int i = r.begin; i < r.end; ++i)
+                out[i] = through(i, static_cast<State>(0.5 * (open[i] + open[i - back])));
+            return;
         }
+#pragma omp simd
+        for (int i = r.begin; i < r.end; ++i) out[i] = through(i, 1);
     }
 
     void combine(int a, int plane, int row, RowRange r, const State* __restrict below) noexcept {

@@ -128,10 +128,7 @@ private:
         return axis == outer ? plane : axis == inner ? i : row;
     }
     Real face_area(const OpenFace& open) const noexcept {
-        const auto level =
-            static_cast<int>(Dim == 3 ? open.cell % grid_->layout().stride[0] / grid_->layout().stride[2]
-                                      : open.cell % grid_->layout().stride[0]) -
-            Layout<Dim>::ghosts;
+        const int level = grid_->layout().number(open.cell)[vertical];
         return area(open.axis, level) * (open_area_ ? (*open_area_)[open.axis][open.face] : 1);
     }
     void for_side(int axis, bool high, auto&& body) const {

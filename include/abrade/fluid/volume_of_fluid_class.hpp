@@ -308,21 +308,10 @@ private:
             if (!(rate_of(velocity, i) <= rate_of(velocity, worst))) worst = i;
         fail({"VolumeOfFluid.advance: dt",
               "small enough that no more than all of a cell at the surface leaves it; in cell " +
-                  text(number_of(band_.cells()[static_cast<std::size_t>(worst)])) + " " +
+                  text(layout_.number(band_.cells()[static_cast<std::size_t>(worst)])) + " " +
                   short_text(rate_of(velocity, worst)) + " of it leave per second",
               "s", "take at most stable_step()"},
              to_text(dt));
-    }
-    CellNumber<Dim> number_of(Offset c) const noexcept {
-        CellNumber<Dim> cell{};
-        const auto digit = [&](int a, Offset rest) {
-            cell[index(a)] = static_cast<int>(rest / layout_.stride[index(a)]) - Layout<Dim>::ghosts;
-            return rest % layout_.stride[index(a)];
-        };
-        Offset rest = digit(0, c);
-        if constexpr (Dim == 3) rest = digit(2, rest);
-        digit(1, rest);
-        return cell;
     }
     static std::string text(const CellNumber<Dim>& cell) {
         std::string result = "[";

@@ -86,21 +86,8 @@ private:
         return std::sqrt(sum);
     }
 
-    CellNumber<Dim> number_of(Offset c) const noexcept {
-        CellNumber<Dim> cell{};
-        constexpr int g = Layout<Dim>::ghosts;
-        cell[0] = static_cast<int>(c / layout_.stride[0]) - g;
-        Offset rest = c % layout_.stride[0];
-        if constexpr (Dim == 3) {
-            cell[2] = static_cast<int>(rest / layout_.stride[2]) - g;
-            rest %= layout_.stride[2];
-        }
-        cell[1] = static_cast<int>(rest) - g;
-        return cell;
-    }
-
     void add(const Grid<Dim>& grid, const Walls<Dim>& walls, const WallCell<Dim>& wall) {
-        const CellNumber<Dim> cell = number_of(wall.cell);
+        const CellNumber<Dim> cell = layout_.number(wall.cell);
         for (int a = 0; a < Dim; ++a)
             for (const bool upper : {false, true}) {
                 CellNumber<Dim> of = cell;
