@@ -16,8 +16,8 @@ Flow grid_channel(const ChannelConfig& c) {
     const UniformFlow& uniform = start.uniform;
     const Real depth = start.depth;
     const Real half = 0.5 * c.invert.width;
-    const std::array<int, 3> count{cells_along(c, c.invert.length), cells_along(c, c.invert.width),
-                                   cells_along(c, std::max(2 * depth, depth + c.invert.bed_height(half)))};
+    const CellNumber<3> count{cells_along(c, c.invert.length), cells_along(c, c.invert.width),
+                              cells_along(c, std::max(2 * depth, depth + c.invert.bed_height(half)))};
     const Point<3> size(c.invert.length / count[0], c.invert.width / count[1], c.fluid.spacing);
     Sides<3> sides;
     sides[0] = {Side::inflow, Side::outflow};

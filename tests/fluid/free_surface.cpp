@@ -29,7 +29,7 @@ Grid<Dim> grid_of(const CellNumber<Dim>& cells, bool cubes, bool stretched) {
 template <int Dim>
 void check_planes(bool stretched) {
     CellNumber<Dim> cells;
-    for (int a = 0; a < Dim; ++a) cells[static_cast<std::size_t>(a)] = 7 + a;
+    for (int a = 0; a < Dim; ++a) cells[a] = 7 + a;
     const Grid<Dim> grid = grid_of<Dim>(cells, false, stretched);
     std::mt19937 random(1);
     std::normal_distribution<Real> normal;
@@ -58,8 +58,7 @@ void check_planes(bool stretched) {
                 const CellPlane<Dim> found = water.planes().plane(water.plane_of(c));
                 Point<Dim> m;
                 for (int a = 0; a < Dim; ++a)
-                    m[a] = found.normal[static_cast<std::size_t>(a)] /
-                           grid.size(a, cell[static_cast<std::size_t>(a)]);
+                    m[a] = found.normal[static_cast<std::size_t>(a)] / grid.size(a, cell[a]);
                 worst = std::max({worst, (m.normalized() - n).norm(),
                                   std::abs(found.distance / m.norm() + distance(grid.centre(cell))) / 0.1});
                 ++planes;
@@ -68,8 +67,8 @@ void check_planes(bool stretched) {
             for (int a = 0; a < Dim; ++a)
                 for (const int side : {-1, 1}) {
                     CellNumber<Dim> other = cell;
-                    other[static_cast<std::size_t>(a)] += side;
-                    const int i = other[static_cast<std::size_t>(a)];
+                    other[a] += side;
+                    const int i = other[a];
                     if (i < 0 || i >= grid.cells(a) || water.fraction()[grid.layout().at(other)] >= 0.5)
                         continue;
                     const Real here = distance(grid.centre(cell)), there = distance(grid.centre(other));
@@ -111,12 +110,11 @@ FaceField<Dim> stirred(const Grid<Dim>& grid, const Sides<Dim>& sides, Real nois
         1);
     for (int a = 0; a < Dim; ++a)
         grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            const auto axis = static_cast<std::size_t>(a);
-            u[axis][c] += noise * uniform(random);
+            u[a][c] += noise * uniform(random);
             // One face at both ends of a periodic axis; none at walls.
-            if (cell[axis] == 0) {
-                if (is_closed(sides[a][0])) u[axis][c] = 0;
-                u[axis][c + grid.cells(a) * grid.layout().stride[axis]] = u[axis][c];
+            if (cell[a] == 0) {
+                if (is_closed(sides[a][0])) u[a][c] = 0;
+                u[a][c + grid.cells(a) * grid.layout().stride[a]] = u[a][c];
             }
         });
     return u;
@@ -422,7 +420,7 @@ TEST_CASE("a planar surface is exact up to walls that cut cells") {
             for (int a = 0; a < 2; ++a)
                 for (const int side : {-1, 1}) {
                     CellNumber<2> other = cell;
-                    other[static_cast<std::size_t>(a)] += side;
+                    other[a] += side;
                     const Offset o = grid.layout().at(other);
                     const Real there = water_level(grid.centre(other));
                     if (open[o] < 0.02 || there <= 0) continue;

@@ -13,8 +13,8 @@ namespace {
 
 /// A box of cubes; `wet` says which cells take part, the others are air at e = 0 unless `closed`.
 template <int Dim>
-Multigrid<Dim> system_of(const std::array<int, Dim>& cells, auto&& wet, bool closed,
-                         std::array<bool, Dim> periodic = {}, Real theta_low = 1) {
+Multigrid<Dim> system_of(const CellNumber<Dim>& cells, auto&& wet, bool closed,
+                         PerAxis<bool, Dim> periodic = {}, Real theta_low = 1) {
     const Layout<Dim> l(cells);
     Multigrid<Dim> solver(l, Point<Dim>::Constant(1), periodic);
     Poisson<Dim>& m = solver.matrix();
@@ -37,7 +37,7 @@ Multigrid<Dim> system_of(const std::array<int, Dim>& cells, auto&& wet, bool clo
 }
 
 template <int Dim>
-void fill_random(Multigrid<Dim>& solver, const std::type_identity_t<std::array<int, Dim>>& cells) {
+void fill_random(Multigrid<Dim>& solver, const CellNumber<Dim>& cells) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> value(-1, 1);
     const Grid<Dim> grid({.cells = cells, .spacing = Point<Dim>::Constant(1)});
@@ -49,7 +49,7 @@ void fill_random(Multigrid<Dim>& solver, const std::type_identity_t<std::array<i
 
 /// Smooth and rough parts together, as a flow leaves them.
 template <int Dim>
-int iterations(const std::array<int, Dim>& cells, auto&& wet, bool closed, Real theta_low = 1) {
+int iterations(const CellNumber<Dim>& cells, auto&& wet, bool closed, Real theta_low = 1) {
     auto solver = system_of<Dim>(cells, wet, closed, {}, theta_low);
     fill_random(solver, cells);
     auto first = solver.solve(0, 0);
@@ -59,7 +59,7 @@ int iterations(const std::array<int, Dim>& cells, auto&& wet, bool closed, Real 
 }  // namespace
 
 TEST_CASE("the same solution as Eigen's conjugate gradients with incomplete Cholesky") {
-    constexpr std::array<int, 3> cells{13, 10, 7};
+    constexpr CellNumber<3> cells{13, 10, 7};
     const auto wet = [](const CellNumber<3>& c) { return c[2] < 3 + c[0] % 4; };
     auto solver = system_of<3>(cells, wet, false, {}, 0.1);
     fill_random(solver, cells);
@@ -142,7 +142,7 @@ TEST_CASE("a periodic box is solved but for a constant, odd sizes too") {
 }
 
 TEST_CASE("the same bits for one thread and two") {
-    constexpr std::array<int, 3> cells{48, 32, 24};
+    constexpr CellNumber<3> cells{48, 32, 24};
     std::vector<float> one;
     for (const int threads : {1, 2}) {
         set_thread_count(threads);

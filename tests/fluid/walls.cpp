@@ -24,8 +24,6 @@ using Three = std::integral_constant<int, 3>;
 template <int Dim>
 using Shape = std::function<Real(const Point<Dim>&)>;
 
-constexpr std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
-
 template <int Dim>
 Grid<Dim> unit_box(int cells) {
     typename Grid<Dim>::Params params;
@@ -39,7 +37,7 @@ template <int Dim>
 Grid<Dim> uneven_box() {
     typename Grid<Dim>::Params params;
     for (int a = 0; a < Dim; ++a) {
-        params.cells[at(a)] = 11 + 3 * a;
+        params.cells[a] = 11 + 3 * a;
         params.low[a] = -0.4 + 0.1 * a;
         params.spacing[a] = 0.07 + 0.02 * a;
     }
@@ -55,8 +53,7 @@ Grid<Dim> uneven_box() {
 template <int Dim>
 Grid<Dim> flat_cells() {
     typename Grid<Dim>::Params params;
-    for (int a = 0; a < Dim; ++a)
-        params.cells[at(a)] = 14 + 9 * a, params.spacing[a] = 1.0 / params.cells[at(a)];
+    for (int a = 0; a < Dim; ++a) params.cells[a] = 14 + 9 * a, params.spacing[a] = 1.0 / params.cells[a];
     for (int k = 0; k <= params.cells[Dim - 1]; ++k)
         params.levels.push_back(std::pow(static_cast<Real>(k) / params.cells[Dim - 1], 1.5));
     return Grid<Dim>(params);
@@ -82,9 +79,9 @@ Surface surface_of(const Walls<Dim>& walls) {
         Point<Dim> left;
         Real largest = 0;
         for (int a = 0; a < Dim; ++a) {
-            const Real face = grid.volume(c) / grid.size(a, c[at(a)]);
-            const Field<Real>& share = walls.open_area()[at(a)];
-            left[a] = face * (share[cell + grid.layout().stride[at(a)]] - share[cell]);
+            const Real face = grid.volume(c) / grid.size(a, c[a]);
+            const Field<Real>& share = walls.open_area()[a];
+            left[a] = face * (share[cell + grid.layout().stride[a]] - share[cell]);
             largest = std::max(largest, face);
         }
         for (const WallCell<Dim>& wall : walls.wall_cells(cell, 1)) {
@@ -132,16 +129,16 @@ Real error_of_plane(const Walls<Dim>& walls, const Point<Dim>& p, const Point<Di
     Real worst = 0;
     grid.for_each([&](const CellNumber<Dim>& c, Offset cell) {
         Point<Dim> low;
-        for (int a = 0; a < Dim; ++a) low[a] = grid.face(a, c[at(a)]);
+        for (int a = 0; a < Dim; ++a) low[a] = grid.face(a, c[a]);
         const auto compare = [&](int without, Real share) {
             std::vector<Real> along;
             for (int a = 0; a < Dim; ++a)
-                if (a != without) along.push_back(n[a] * grid.size(a, c[at(a)]));
+                if (a != without) along.push_back(n[a] * grid.size(a, c[a]));
             const auto [expected, magnified] = share_above(along, n.dot(low - p));
             worst = std::max(worst, std::abs(share - expected) / magnified);
         };
         compare(-1, walls.open_volume()[cell]);
-        for (int a = 0; a < Dim; ++a) compare(a, walls.open_area()[at(a)][cell]);
+        for (int a = 0; a < Dim; ++a) compare(a, walls.open_area()[a][cell]);
     });
     return worst;
 }
@@ -156,7 +153,7 @@ template <int Dim>
 bool same(const Walls<Dim>& a, const Walls<Dim>& b) {
     bool equal = same<Dim>(a.open_volume(), b.open_volume()) && a.open_cells() == b.open_cells();
     for (int axis = 0; axis < Dim; ++axis)
-        equal = equal && same<Dim>(a.open_area()[at(axis)], b.open_area()[at(axis)]);
+        equal = equal && same<Dim>(a.open_area()[axis], b.open_area()[axis]);
     const auto as_one = [](const WallCell<Dim>& x, const WallCell<Dim>& y) {
         return x.cell == y.cell && x.area == y.area && x.normal == y.normal && x.point == y.point;
     };
@@ -292,7 +289,7 @@ TEST_CASE("a packing of spheres: halved cells find edges and gaps that corners d
     std::array<Real, 4> error{};
     for (int levels = 0; levels < 4; ++levels) {
         const Walls<3> walls(unit_box<3>(20), packing, all_of_it<3>(levels));
-        error[at(levels)] = std::abs(1 - solid - walls.total_volume()) / solid;
+        error[static_cast<std::size_t>(levels)] = std::abs(1 - solid - walls.total_volume()) / solid;
         CHECK(surface_of(walls).gap < 1e-14);
     }
     MESSAGE("40 spheres of 1.2 to 2.4 cells: volume off by " << error[0] << ", " << error[1] << ", "
@@ -395,8 +392,8 @@ TEST_CASE("small cells and faces are closed together") {
     grid.for_each([&](const CellNumber<3>&, Offset cell) {
         Real largest = 0;
         for (int a = 0; a < 3; ++a)
-            for (const Offset next : {Offset{0}, grid.layout().stride[at(a)]}) {
-                const Real share = walls.open_area()[at(a)][cell + next];
+            for (const Offset next : {Offset{0}, grid.layout().stride[a]}) {
+                const Real share = walls.open_area()[a][cell + next];
                 largest = std::max(largest, share);
                 small += share > 0 && share < 0.05;
             }

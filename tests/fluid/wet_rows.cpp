@@ -40,7 +40,7 @@ struct Drops {
             fraction[grid.layout().at(c)] = 0.5;
         }
     }
-    bool near(const CellNumber<Dim>& cell, int reach, const std::array<bool, Dim>& periodic) const {
+    bool near(const CellNumber<Dim>& cell, int reach, const PerAxis<bool, Dim>& periodic) const {
         for (const auto& w : wet) {
             bool all = true;
             for (std::size_t a = 0; a < Dim; ++a) {
@@ -55,7 +55,7 @@ struct Drops {
 };
 
 template <int Dim>
-void check_drops(const CellNumber<Dim>& cells, const std::array<bool, Dim>& periodic) {
+void check_drops(const CellNumber<Dim>& cells, const PerAxis<bool, Dim>& periodic) {
     const Drops<Dim> drops(cells, 4);
     WetRows<Dim> rows(drops.grid.layout());
     rows.find(drops.fraction);

@@ -3,7 +3,8 @@
 
 #include <abrade/core/require.hpp>
 
-#include <array>
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -19,9 +20,26 @@ namespace abrade {
 template <int Dim>
 using Point = Eigen::Matrix<Real, Dim, 1>;
 
+/// One value for each axis, or for each end of one. Unlike std::array it is indexed by signed integers, as
+/// axes are counted, and its Dim can be deduced.
+template <class Value, int Dim>
+struct PerAxis {
+    Value values[Dim];
+
+    constexpr Value& operator[](std::integral auto axis) noexcept { return values[axis]; }
+    constexpr const Value& operator[](std::integral auto axis) const noexcept { return values[axis]; }
+    constexpr Value* begin() noexcept { return values; }
+    constexpr Value* end() noexcept { return values + Dim; }
+    constexpr const Value* begin() const noexcept { return values; }
+    constexpr const Value* end() const noexcept { return values + Dim; }
+    static constexpr int size() noexcept { return Dim; }
+    constexpr void fill(const Value& value) noexcept { std::fill_n(values, Dim, value); }
+    bool operator==(const PerAxis&) const = default;
+};
+
 /// Numbers of a cell along the axes; the first cell inside the box is 0, ghosts are below and above.
 template <int Dim>
-using CellNumber = std::array<int, Dim>;
+using CellNumber = PerAxis<int, Dim>;
 
 /// Distance between two cells in memory.
 using Offset = std::ptrdiff_t;
@@ -36,12 +54,12 @@ struct Layout {
     static constexpr int ghosts = 2;
     static constexpr int outer = 0, inner = 1;  ///< axis across planes, axis along rows
 
-    std::array<int, Dim> cells{};      ///< along each axis, without ghosts
-    std::array<Offset, Dim> stride{};  ///< from a cell to the next one along each axis
-    Offset total = 0;                  ///< with ghosts and padding
+    PerAxis<int, Dim> cells{};      ///< along each axis, without ghosts
+    PerAxis<Offset, Dim> stride{};  ///< from a cell to the next one along each axis
+    Offset total = 0;               ///< with ghosts and padding
 
     Layout() = default;
-    explicit Layout(const std::array<int, Dim>& count) : cells(count) {
+    explicit Layout(const PerAxis<int, Dim>& count) : cells(count) {
         constexpr Offset lanes = 8;  // rows begin at multiples, so that ghosts of two rows share no pack
         stride[inner] = 1;
         const Offset row = (count[inner] + 2 * ghosts + lanes - 1) / lanes * lanes;
@@ -63,8 +81,8 @@ struct Layout {
     /// Of the cell at an offset.
     CellNumber<Dim> number(Offset offset) const noexcept {
         CellNumber<Dim> cell{};
-        for (std::size_t k = 0; k < Dim; ++k) {
-            const std::size_t a = k == 0 ? 0 : Dim - k;  // by decreasing stride
+        for (int k = 0; k < Dim; ++k) {
+            const int a = k == 0 ? 0 : Dim - k;  // by decreasing stride
             cell[a] = static_cast<int>(offset / stride[a]) - ghosts;
             offset %= stride[a];
         }
@@ -130,7 +148,7 @@ private:
 /// A vector per cell, component by component. On a staggered grid component a of a cell stands on the face
 /// between it and its lower neighbour along axis a.
 template <int Dim, class Number = Real>
-using FaceField = std::array<Field<Number>, Dim>;
+using FaceField = PerAxis<Field<Number>, Dim>;
 
 template <int Dim, class Number = Real>
 FaceField<Dim, Number> face_field(const Layout<Dim>& layout, Number value = 0) {
@@ -146,7 +164,7 @@ public:
     static constexpr int vertical = Dim - 1;
 
     struct Params {
-        std::array<int, Dim> cells{};                  ///< along each axis
+        PerAxis<int, Dim> cells{};                     ///< along each axis
         Point<Dim> low = Point<Dim>::Zero();           ///< lower corner [m]
         Point<Dim> spacing = Point<Dim>::Constant(0);  ///< size of a cell along each axis [m]
         std::vector<Real> levels{};  ///< [cells + 1] heights of the faces [m]; none: uniform
@@ -260,7 +278,7 @@ private:
 
     Params params_;
     Layout<Dim> layout_;
-    std::array<std::vector<Real>, Dim> faces_, size_, centre_, gap_;
+    PerAxis<std::vector<Real>, Dim> faces_, size_, centre_, gap_;
 };
 
 }  // namespace abrade

@@ -162,13 +162,12 @@ public:
 
     /// Height of the water's surface at a place in the plane: floor and what stands on it [m].
     Real surface_at(const Point<Dim>& x) const noexcept requires has_surface {
-        std::array<int, 2> low{}, high{};
-        std::array<Real, 2> weight{};
+        PerAxis<int, 2> low{}, high{};
+        PerAxis<Real, 2> weight{};
         for (int a = 0; a < Dim - 1; ++a) {
-            const auto k = static_cast<std::size_t>(a);
             const GridPlace at = place_among_centres(*grid_, a, x[a]);
-            low[k] = at.low, weight[k] = at.weight;
-            high[k] = std::min(low[k] + 1, grid_->cells(a) - 1);
+            low[a] = at.low, weight[a] = at.weight;
+            high[a] = std::min(low[a] + 1, grid_->cells(a) - 1);
         }
         const auto height = [&](int i, int j) {
             return heights_[static_cast<std::size_t>(i) *
@@ -267,7 +266,7 @@ private:
     void leave(FaceField<Dim, State>& u) const {
         for (int a = 0; a < Dim; ++a)
             for (const bool high : {false, true})
-                if (params_.sides[a][static_cast<std::size_t>(high)] == Side::outflow)
+                if (params_.sides[a][high] == Side::outflow)
                     sides_.along_side(a, high, [&](Offset c, std::size_t) {
                         const Offset next = c + layout().stride[a];
                         high ? u[a][next] = u[a][c] : u[a][c] = u[a][next];
@@ -279,7 +278,7 @@ private:
         Real most = 0;
         for (int a = 0; a < Dim; ++a)
             for (const bool high : {false, true})
-                if (params_.sides[a][static_cast<std::size_t>(high)] == Side::inflow)
+                if (params_.sides[a][high] == Side::inflow)
                     sides_.along_side(a, high, [&](Offset c, std::size_t) {
                         const State u = velocity_[a][high ? c + layout().stride[a] : c];
                         most = std::max(most, std::abs(static_cast<Real>(u)) / grid_->size(a, 0));
@@ -291,7 +290,7 @@ private:
     void push_leaving(Real dt) {
         for (int a = 0; a < Dim; ++a)
             for (const bool high : {false, true})
-                if (params_.sides[a][static_cast<std::size_t>(high)] == Side::outflow)
+                if (params_.sides[a][high] == Side::outflow)
                     sides_.along_side(a, high, [&](Offset c, std::size_t) {
                         const Offset s = layout().stride[a], inside = high ? c : c + s,
                                      face = high ? c + s : c;
@@ -350,8 +349,7 @@ private:
     std::string fastest_cell() const {
         const FastFace most = fastest_face();
         std::string text = "cell [";
-        for (int b = 0; b < Dim; ++b)
-            text += (b ? ", " : "") + std::to_string(most.cell[static_cast<std::size_t>(b)]);
+        for (int b = 0; b < Dim; ++b) text += (b ? ", " : "") + std::to_string(most.cell[b]);
         return text + "] has " + short_text(most.speed) + " m/s along " + Grid<Dim>::axis_name(most.axis);
     }
 

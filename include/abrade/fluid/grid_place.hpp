@@ -50,11 +50,10 @@ GridPlace place_among_faces(const Grid<Dim>& grid, int axis, Real x) noexcept {
 template <int Dim, class Number>
 Real face_value(const Grid<Dim>& grid, const Field<Number>& component, int a, const Point<Dim>& x) noexcept {
     CellNumber<Dim> low{};
-    std::array<Real, Dim> weight{};
+    PerAxis<Real, Dim> weight{};
     for (int b = 0; b < Dim; ++b) {
-        const auto k = static_cast<std::size_t>(b);
         const GridPlace at = b == a ? place_among_faces(grid, b, x[b]) : place_among_centres(grid, b, x[b]);
-        low[k] = at.low, weight[k] = at.weight;
+        low[b] = at.low, weight[b] = at.weight;
     }
     const Offset from = grid.layout().at(low);
     Real sum = 0;
@@ -62,10 +61,9 @@ Real face_value(const Grid<Dim>& grid, const Field<Number>& component, int a, co
         Real share = 1;
         Offset c = from;
         for (int b = 0; b < Dim; ++b) {
-            const auto k = static_cast<std::size_t>(b);
             const bool up = corner >> b & 1;
-            share *= up ? weight[k] : 1 - weight[k];
-            c += up ? grid.layout().stride[k] : 0;
+            share *= up ? weight[b] : 1 - weight[b];
+            c += up ? grid.layout().stride[b] : 0;
         }
         if (share > 0) sum += share * static_cast<Real>(component[c]);
     }

@@ -210,7 +210,7 @@ private:
 /// Computes one stage on the faces that `faces[a]` names, for each component a.
 /// Same bits for any number of threads.
 template <class Scheme, int Dim, class State>
-void advance_momentum(const Grid<Dim>& grid, const std::type_identity_t<std::array<WetRows<Dim>, Dim>>& faces,
+void advance_momentum(const Grid<Dim>& grid, const PerAxis<WetRows<Dim>, Dim>& faces,
                       const MomentumStage<Dim, State>& stage) {
     const int planes = grid.layout().planes();
     const int runs = std::clamp(planes / 8, 1, thread_count());

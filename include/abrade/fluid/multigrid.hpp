@@ -24,8 +24,8 @@ class Multigrid {
 
 public:
     /// `lengths`: mean size of a cell along each axis [m]. `periodic`: axes whose ends meet.
-    Multigrid(const Layout<Dim>& fine, const Point<Dim>& lengths, const std::array<bool, Dim>& periodic) {
-        std::array<int, Dim> cells = fine.cells;
+    Multigrid(const Layout<Dim>& fine, const Point<Dim>& lengths, const PerAxis<bool, Dim>& periodic) {
+        PerAxis<int, Dim> cells = fine.cells;
         Point<Dim> size = lengths;
         levels_.emplace_back(fine, periodic);
         while (*std::max_element(cells.begin(), cells.end()) > 1) {
@@ -100,9 +100,9 @@ private:
     struct Level {
         Poisson<Dim> matrix;
         Field<float> x, b;
-        std::array<bool, Dim> paired{};  ///< with the next coarser level
+        PerAxis<bool, Dim> paired{};  ///< with the next coarser level
 
-        Level(const Layout<Dim>& layout, const std::array<bool, Dim>& periodic)
+        Level(const Layout<Dim>& layout, const PerAxis<bool, Dim>& periodic)
             : matrix(layout, periodic), x(layout.total), b(layout.total) {}
     };
 

@@ -17,14 +17,14 @@ struct Poisson {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner;
 
     Layout<Dim> layout;
-    std::array<bool, Dim> periodic{};
-    std::array<Field<float>, Dim> face;  ///< g of a cell's lower face
-    Field<float> dirichlet;              ///< d
-    Field<float> inverse_diagonal;       ///< 1 / (sum g + d), 0 where that is 0
-    std::vector<RowRange> rows;          ///< [plane * rows_per_plane + row] cells that take part
+    PerAxis<bool, Dim> periodic{};
+    PerAxis<Field<float>, Dim> face;  ///< g of a cell's lower face
+    Field<float> dirichlet;           ///< d
+    Field<float> inverse_diagonal;    ///< 1 / (sum g + d), 0 where that is 0
+    std::vector<RowRange> rows;       ///< [plane * rows_per_plane + row] cells that take part
 
     Poisson() = default;
-    Poisson(const Layout<Dim>& l, const std::array<bool, Dim>& repeats)
+    Poisson(const Layout<Dim>& l, const PerAxis<bool, Dim>& repeats)
         : layout(l), periodic(repeats), face(face_field<Dim, float>(l)), dirichlet(l.total),
           inverse_diagonal(l.total), rows(static_cast<std::size_t>(l.planes() * l.rows_per_plane())) {}
 
@@ -37,7 +37,7 @@ struct Poisson {
 
     /// From a cell to its neighbours across a periodic side or not.
     struct Neighbours {
-        std::array<Offset, Dim> low, high;
+        PerAxis<Offset, Dim> low, high;
     };
     Neighbours neighbours(int plane, int row) const noexcept {
         Neighbours n;
@@ -140,7 +140,7 @@ struct Poisson {
 private:
     /// Pointers of one row, so that loops over it are loops over plain arrays.
     struct Terms {
-        std::array<const float*, Dim> low_face, high_face, low, high;
+        PerAxis<const float*, Dim> low_face, high_face, low, high;
         const float *x, *dirichlet;
 
         Terms(const Poisson& m, const Field<float>& values, int plane, int row, Offset start) noexcept

@@ -37,7 +37,7 @@ public:
         std::vector<OpenFace> found;
         for (int a = 0; a < Dim; ++a)
             for (const int end : {0, 1}) {
-                if (sides_[a][static_cast<std::size_t>(end)] != Side::outflow) continue;
+                if (sides_[a][end] != Side::outflow) continue;
                 for_side(a, end == 1, [&](const CellNumber<Dim>& cell, Offset c) {
                     if (!wet[c]) return;
                     const Real slope = 2 / grid_->size(a, cell[a]);
@@ -65,7 +65,7 @@ public:
     }
 
     /// Faces between two wet cells.
-    const std::array<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }
+    const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }
     std::span<const OpenFace> open_faces() const noexcept { return open_; }
     const Multigrid<Dim>& multigrid() const noexcept { return multigrid_; }
     Index wet_cells() const noexcept { return wet_cells_; }
@@ -106,9 +106,9 @@ public:
     }
 
 private:
-    static std::array<bool, Dim> periodic_axes(const Sides<Dim>& sides) {
-        std::array<bool, Dim> repeats;
-        for (int a = 0; a < Dim; ++a) repeats[static_cast<std::size_t>(a)] = sides.periodic(a);
+    static PerAxis<bool, Dim> periodic_axes(const Sides<Dim>& sides) {
+        PerAxis<bool, Dim> repeats;
+        for (int a = 0; a < Dim; ++a) repeats[a] = sides.periodic(a);
         return repeats;
     }
     static Point<Dim> mean_size(const Grid<Dim>& grid) {
@@ -217,8 +217,8 @@ private:
             const auto area2 = value(2, [&](int i) { return Dim == 3 ? area(Dim - 1, level(i)) : 0; });
             const auto per0 = value(3, [&](int i) { return 1 / grid_->size(0, number(0, plane, row, i)); });
             const auto per1 = value(4, [&](int i) { return 1 / grid_->size(1, number(1, plane, row, i)); });
-            std::array<const State*, 3> low{}, high{};
-            std::array<const Real*, 3> low_open{}, high_open{};
+            PerAxis<const State*, 3> low{}, high{};
+            PerAxis<const Real*, 3> low_open{}, high_open{};
             for (int a = 0; a < Dim; ++a) {
                 low[a] = u[a].data() + start, high[a] = low[a] + m.layout.stride[a];
                 if (open_area_)
@@ -231,7 +231,7 @@ private:
             State sum = 0;
             if (open_area_ || surplus_) {
                 for (int i = r.begin; i < r.end; ++i) {
-                    const auto share = [&](int a, const std::array<const Real*, 3>& side) {
+                    const auto share = [&](int a, const PerAxis<const Real*, 3>& side) {
                         return open_area_ ? static_cast<State>(side[a][i]) : State(1);
                     };
                     State out =
@@ -382,7 +382,7 @@ private:
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
     Multigrid<Dim> multigrid_;
-    std::array<WetRows<Dim>, Dim> faces_;
+    PerAxis<WetRows<Dim>, Dim> faces_;
     std::vector<OpenFace> open_;
     const FaceField<Dim>* open_area_ = nullptr;
     const Field<Real>* open_volume_ = nullptr;

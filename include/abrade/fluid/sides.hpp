@@ -30,23 +30,21 @@ constexpr bool is_closed(Side side) noexcept { return side == Side::wall || side
 template <int Dim>
 struct Sides {
     /// [axis][0: low, 1: high]
-    std::array<std::array<Side, 2>, Dim> kind{};
+    PerAxis<PerAxis<Side, 2>, Dim> kind{};
 
     static Sides all(Side side) noexcept {
         Sides sides;
         for (auto& ends : sides.kind) ends = {side, side};
         return sides;
     }
-    const std::array<Side, 2>& operator[](int axis) const noexcept {
-        return kind[static_cast<std::size_t>(axis)];
-    }
-    std::array<Side, 2>& operator[](int axis) noexcept { return kind[static_cast<std::size_t>(axis)]; }
+    const PerAxis<Side, 2>& operator[](int axis) const noexcept { return kind[axis]; }
+    PerAxis<Side, 2>& operator[](int axis) noexcept { return kind[axis]; }
     bool periodic(int axis) const noexcept { return (*this)[axis][0] == Side::periodic; }
 
     /// Throws InputError where one end of an axis is periodic and the other is not.
     void validate() const {
         for (int a = 0; a < Dim; ++a) {
-            const auto& [low, high] = (*this)[a];
+            const auto& [low, high] = (*this)[a].values;
             if ((low == Side::periodic) == (high == Side::periodic)) continue;
             fail({std::string("Sides.") + Grid<Dim>::axis_name(a), "periodic at both ends or at none", "",
                   "what leaves at one end must come back at the other"},

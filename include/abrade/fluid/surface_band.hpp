@@ -57,7 +57,7 @@ public:
             const std::uint8_t* mark = marks.data() + start;
             const std::uint8_t* air = air_.data() + start;
             std::uint8_t* edge = edge_.data() + start;
-            const std::array<Offset, Dim> s = layout_.stride;
+            const PerAxis<Offset, Dim> s = layout_.stride;
 #if defined(_OPENMP)
 #pragma omp simd
 #endif
@@ -89,17 +89,16 @@ private:
             for (const int end : {0, 1}) {
                 if (sides[a][end] != Side::inflow) continue;
                 CellNumber<Dim> cell{};
-                const int n = layout_.cells[static_cast<std::size_t>(a)];
+                const int n = layout_.cells[a];
                 walk<0>(cell, a, end == 0 ? -1 : n, end == 0 ? 0 : n - 1, body);
             }
     }
     template <int Axis>
     void walk(CellNumber<Dim>& cell, int axis, int ghost, int inside, auto& body) const {
         if constexpr (Axis == Dim) {
-            const auto a = static_cast<std::size_t>(axis);
-            cell[a] = ghost;
+            cell[axis] = ghost;
             const Offset beyond = layout_.at(cell);
-            cell[a] = inside;
+            cell[axis] = inside;
             body(beyond, layout_.at(cell));
         } else if (Axis == axis) {
             walk<Axis + 1>(cell, axis, ghost, inside, body);

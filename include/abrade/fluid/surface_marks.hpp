@@ -13,21 +13,20 @@ namespace detail {
 
 /// Marks `mark` where all cells within reach[axis] along the axes are whole.
 template <int Dim>
-void mark_surrounded(Field<std::uint8_t>& marks, const Grid<Dim>& grid,
-                     const std::type_identity_t<CellNumber<Dim>>& reach, std::uint8_t mark) {
+void mark_surrounded(Field<std::uint8_t>& marks, const Grid<Dim>& grid, const CellNumber<Dim>& reach,
+                     std::uint8_t mark) {
     const Layout<Dim>& layout = grid.layout();
     Field<std::uint8_t> now(layout.total, 0), next(layout.total, 0);
     grid.for_each([&](const CellNumber<Dim>&, Offset c) { now[c] = marks[c] & cell_mark::whole; },
                   Layout<Dim>::ghosts);
     for (int a = 0; a < Dim; ++a) {
-        const auto axis = static_cast<std::size_t>(a);
-        const Offset step = layout.stride[axis];
-        const int far = reach[axis], edge = Layout<Dim>::ghosts - far;  // no farther than the ghosts
+        const Offset step = layout.stride[a];
+        const int far = reach[a], edge = Layout<Dim>::ghosts - far;  // no farther than the ghosts
         next.fill(0);
         // Cells beyond other sides are looked at later, along their axes.
         grid.for_each(
             [&](const CellNumber<Dim>& cell, Offset c) {
-                if (cell[axis] < -edge || cell[axis] >= layout.cells[axis] + edge) return;
+                if (cell[a] < -edge || cell[a] >= layout.cells[a] + edge) return;
                 std::uint8_t all = 1;
                 for (int k = -far; k <= far; ++k) all = static_cast<std::uint8_t>(all & now[c + k * step]);
                 next[c] = all;
@@ -58,11 +57,11 @@ Field<std::uint8_t> surface_marks(const Grid<Dim>& grid, const Sides<Dim>& sides
             int beyond = 0;
             bool given = true;  // by an inflow
             for (int a = 0; a < Dim; ++a) {
-                const int i = cell[static_cast<std::size_t>(a)];
+                const int i = cell[a];
                 const int end = i < 0 ? 0 : i >= grid.cells(a) ? 1 : -1;
                 if (end < 0) continue;
                 ++beyond;
-                given = given && sides[a][static_cast<std::size_t>(end)] == Side::inflow;
+                given = given && sides[a][end] == Side::inflow;
             }
             if (beyond == 0)
                 marks[c] = static_cast<std::uint8_t>(of(c) | cell_mark::inside);
@@ -84,7 +83,7 @@ Field<std::uint8_t> surface_marks(const Grid<Dim>& grid, const Sides<Dim>& sides
     detail::mark_surrounded(marks, grid, reach, cell_mark::ringed);
     for (int a = 0; a < Dim; ++a) {
         reach.fill(1);
-        reach[static_cast<std::size_t>(a)] = 3;
+        reach[a] = 3;
         detail::mark_surrounded(marks, grid, reach, cell_mark::deep(a));
     }
     return marks;

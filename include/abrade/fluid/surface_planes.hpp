@@ -80,8 +80,7 @@ struct Stencil {
     Stencil() = default;
     explicit Stencil(const Layout<Dim>& layout) {
         for (int k = 0; k < size; ++k)
-            for (int a = 0; a < Dim; ++a)
-                step[static_cast<std::size_t>(k)] += along(a, k) * layout.stride[static_cast<std::size_t>(a)];
+            for (int a = 0; a < Dim; ++a) step[static_cast<std::size_t>(k)] += along(a, k) * layout.stride[a];
     }
     /// -1, 0 or 1.
     static constexpr int along(int axis, int k) noexcept {

@@ -51,7 +51,7 @@ public:
     const Field<Real>& held_before() const noexcept { return before_; }
     const FaceField<Dim>* open_area() const noexcept { return walls_ ? &walls_->open_area() : nullptr; }
     const FaceField<Dim>& carrier() const noexcept { return carrier_; }  ///< [m3] in the stage at work
-    const std::array<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }  ///< that carry momentum
+    const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }  ///< that carry momentum
     const WallFriction<Dim>& friction() const noexcept { return friction_; }
     const WetRows<Dim>& rows() const noexcept { return rows_; }
 
@@ -174,8 +174,8 @@ private:
 
     /// Rows that hold water and what is near, and faces that carry momentum.
     void find_rows() {
-        std::array<bool, Dim> wraps;
-        for (int a = 0; a < Dim; ++a) wraps[static_cast<std::size_t>(a)] = sides_.periodic(a);
+        PerAxis<bool, Dim> wraps;
+        for (int a = 0; a < Dim; ++a) wraps[a] = sides_.periodic(a);
         const WetRows<Dim>& wet = liquid_.wet();
         rows_ = wet.dilated(VelocityExtension<Dim>::layers, wraps);
         for (int a = 0; a < Dim; ++a) {
@@ -226,7 +226,7 @@ private:
     FaceField<Dim> carrier_;
     Field<std::uint8_t> wet_;
     WetRows<Dim> rows_, rows_before_;
-    std::array<WetRows<Dim>, Dim> faces_;
+    PerAxis<WetRows<Dim>, Dim> faces_;
     VelocityExtension<Dim> extension_;
     std::vector<OpenFace> open_;
 };

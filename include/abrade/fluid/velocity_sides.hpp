@@ -94,7 +94,7 @@ public:
 private:
     Offset step(int axis) const noexcept { return grid_->layout().stride[axis]; }
     int cells(int axis) const noexcept { return grid_->cells(axis); }
-    Side kind(int axis, bool high) const noexcept { return sides_[axis][static_cast<std::size_t>(high)]; }
+    Side kind(int axis, bool high) const noexcept { return sides_[axis][high]; }
     std::vector<Real>& table(int a, int b, bool high) noexcept {
         return tables_[static_cast<std::size_t>((a * Dim + b) * 2 + high)];
     }

@@ -322,7 +322,7 @@ private:
     Params params_;
     Grid<Dim> grid_;
     Sides<Dim> sides_;
-    std::array<bool, Dim> wraps_{};
+    PerAxis<bool, Dim> wraps_{};
     Layout<Dim> layout_;
     CellSizes<Dim> sizes_;
     std::array<std::vector<Real>, Dim> areas_;  ///< of faces, by level from the first ghost [m2]

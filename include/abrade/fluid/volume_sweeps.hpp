@@ -107,7 +107,7 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         const Real* first = table.data() + Layout<Dim>::ghosts;
         return Dim == 3 ? Pack(first[level]) : Pack::load_from_anywhere(first + i);
     };
-    const std::array<Offset, Dim> step = layout_.stride;
+    const PerAxis<Offset, Dim> step = layout_.stride;
     for (int i = range.begin; i < range.end; i += pack_lanes) {
         const Pack own = Pack::load(f + i);
         Pack gone = Pack(0);

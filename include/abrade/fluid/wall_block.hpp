@@ -19,9 +19,9 @@ struct CellRange {
 
 /// Axes from the one across planes to the one along rows.
 template <int Dim>
-constexpr std::size_t axis_in_memory(int n) noexcept {
+constexpr int axis_in_memory(int n) noexcept {
     const int middle = 2;
-    return static_cast<std::size_t>(n == 0 ? Layout<Dim>::outer : n == Dim - 1 ? Layout<Dim>::inner : middle);
+    return n == 0 ? Layout<Dim>::outer : n == Dim - 1 ? Layout<Dim>::inner : middle;
 }
 
 /// Calls body(cell) for each, in the order of memory.
@@ -30,7 +30,7 @@ void each_cell(const CellRange<Dim>& range, auto&& body, CellNumber<Dim> cell = 
     if constexpr (Level == Dim) {
         body(std::as_const(cell));
     } else {
-        constexpr std::size_t a = axis_in_memory<Dim>(Level);
+        constexpr int a = axis_in_memory<Dim>(Level);
         for (cell[a] = range.low[a]; cell[a] < range.high[a]; ++cell[a])
             each_cell<Dim, Level + 1>(range, body, cell);
     }
@@ -83,30 +83,28 @@ private:
 
     std::size_t at(const Cell& cell) const noexcept {
         std::size_t place = 0;
-        for (std::size_t a = 0; a < Dim; ++a)
+        for (int a = 0; a < Dim; ++a)
             place = place * corners_along + static_cast<std::size_t>(cell[a] - cells_.low[a]);
         return place;
     }
-    const Face& face(int axis, const Cell& cell) const noexcept {
-        return face_[static_cast<std::size_t>(axis)][at(cell)];
-    }
+    const Face& face(int axis, const Cell& cell) const noexcept { return face_[axis][at(cell)]; }
     /// With the upper end along `axis`, or along all of them (-1).
     CellRange<Dim> with_upper_end(int axis) const noexcept {
         CellRange<Dim> range = cells_;
         for (int a = 0; a < Dim; ++a)
-            if (axis < 0 || a == axis) ++range.high[static_cast<std::size_t>(a)];
+            if (axis < 0 || a == axis) ++range.high[a];
         return range;
     }
     Point<Dim> corner(const Cell& cell) const noexcept {
         Point<Dim> x;
-        for (int a = 0; a < Dim; ++a) x[a] = grid_.face(a, cell[static_cast<std::size_t>(a)]);
+        for (int a = 0; a < Dim; ++a) x[a] = grid_.face(a, cell[a]);
         return x;
     }
     /// Along the given axes, from a cell's lower corner.
     template <int Size>
     Piece<Dim, Size> piece(const Cell& cell, const std::array<int, Size>& axes) const noexcept {
         Piece<Dim, Size> box{corner(cell), Point<Dim>::Zero(), axes};
-        for (const int a : axes) box.size[a] = grid_.size(a, cell[static_cast<std::size_t>(a)]);
+        for (const int a : axes) box.size[a] = grid_.size(a, cell[a]);
         return box;
     }
     template <int Size>
@@ -114,14 +112,14 @@ private:
         Corners<Size> d;
         for (std::size_t k = 0; k < d.size(); ++k) {
             Cell c = cell;
-            for (std::size_t s = 0; s < Size; ++s) c[static_cast<std::size_t>(axes[s])] += (k >> s) & 1;
+            for (std::size_t s = 0; s < Size; ++s) c[axes[s]] += (k >> s) & 1;
             d[k] = distance_[at(c)];
         }
         return d;
     }
 
     void cut_face(int axis, const Cell& cell, auto& wall, const Subdivision& rule) noexcept {
-        Face& f = face_[static_cast<std::size_t>(axis)][at(cell)];
+        Face& f = face_[axis][at(cell)];
         if (const Real here = distance_[at(cell)]; std::abs(here) > far_) {
             f = {here > 0 ? 1.0 : 0.0, false};
             return;
@@ -182,7 +180,7 @@ private:
     Content content_ = Content::cut;
     // Where nothing is cut they are never read, so they are not cleared.
     std::array<Real, corners> distance_;  ///< at lower corners [m]
-    std::array<std::array<Face, corners>, Dim> face_;
+    PerAxis<std::array<Face, corners>, Dim> face_;
     std::array<Real, corners> volume_;
     std::array<bool, corners> is_cut_;
     std::array<Point<Dim>, corners> point_;

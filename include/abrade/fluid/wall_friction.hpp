@@ -52,7 +52,7 @@ public:
 
     /// Slows `u` down over a step [s]; `viscosity` is kinematic [m2/s].
     void apply(FaceField<Dim>& u, Real step, Real viscosity) const {
-        std::array<std::vector<Real>, Dim> slower;  // of what they are now, all components
+        PerAxis<std::vector<Real>, Dim> slower;  // of what they are now, all components
         for (int a = 0; a < Dim; ++a) {
             slower[a].reserve(held_[a].size());
             for (const Held& h : held_[a]) {
@@ -105,7 +105,7 @@ private:
     void add_sides(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>* walls) {
         for (int b = 0; b < Dim; ++b)
             for (const int end : {0, 1}) {
-                if (sides[b][static_cast<std::size_t>(end)] != Side::wall) continue;
+                if (sides[b][end] != Side::wall) continue;
                 grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
                     if (cell[b] != (end == 0 ? 0 : grid.cells(b) - 1)) return;
                     for (int a = 0; a < Dim; ++a)
@@ -132,7 +132,7 @@ private:
 
     Layout<Dim> layout_;
     WallLaw law_;
-    std::array<std::vector<Held>, Dim> held_;
+    PerAxis<std::vector<Held>, Dim> held_;
 };
 
 }  // namespace abrade

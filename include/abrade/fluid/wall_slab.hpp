@@ -5,7 +5,6 @@
 #include <abrade/fluid/wall_block.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -53,9 +52,9 @@ template <int Dim>
 CellRange<Dim> cells_of_block(const Grid<Dim>& grid, const CellNumber<Dim>& block) noexcept {
     constexpr int side = WallBlock<Dim>::side, ghosts = Layout<Dim>::ghosts;
     CellRange<Dim> range;
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (int a = 0; a < Dim; ++a) {
         range.low[a] = block[a] * side - ghosts;
-        range.high[a] = std::min(range.low[a] + side, grid.cells(static_cast<int>(a)) + ghosts);
+        range.high[a] = std::min(range.low[a] + side, grid.cells(a) + ghosts);
     }
     return range;
 }
@@ -108,10 +107,9 @@ struct WallRenewal {
     }
 
 private:
-    static std::size_t at(int axis) noexcept { return static_cast<std::size_t>(axis); }
     bool inside(const Cell& cell) const noexcept {
         for (int a = 0; a < Dim; ++a)
-            if (cell[at(a)] < 0 || cell[at(a)] >= grid.cells(a)) return false;
+            if (cell[a] < 0 || cell[a] >= grid.cells(a)) return false;
         return true;
     }
 
@@ -134,7 +132,7 @@ private:
             if (inside(c)) slab.opened -= shares.volume[cell] > 0;
             shares.volume[cell] = volume;
             shares.too_small[cell] = volume <= closed_below;
-            for (int a = 0; a < Dim; ++a) shares.area[at(a)][cell] = area(a);
+            for (int a = 0; a < Dim; ++a) shares.area[a][cell] = area(a);
             return cell;
         };
         if (block.content() == Content::cut) {
@@ -159,9 +157,8 @@ private:
         each_cell<Dim>(cells, [&](const Cell& c) {
             const Offset cell = layout.at(c);
             for (int a = 0; a < Dim; ++a) {
-                Real& share = shares.area[at(a)][cell];
-                const bool neighbour_closed =
-                    c[at(a)] > -ghosts && shares.too_small[cell - layout.stride[at(a)]];
+                Real& share = shares.area[a][cell];
+                const bool neighbour_closed = c[a] > -ghosts && shares.too_small[cell - layout.stride[a]];
                 if (share <= closed_below || shares.too_small[cell] || neighbour_closed) share = 0;
             }
         });
@@ -174,9 +171,9 @@ private:
             bool open = false;
             for (int a = 0; a < Dim; ++a) {
                 // Faces beyond the last ghosts are not stored, and count as open.
-                const bool has_upper = c[at(a)] + 1 < grid.cells(a) + ghosts;
-                open = open || shares.area[at(a)][cell] > 0 || !has_upper ||
-                       shares.area[at(a)][cell + layout.stride[at(a)]] > 0;
+                const bool has_upper = c[a] + 1 < grid.cells(a) + ghosts;
+                open = open || shares.area[a][cell] > 0 || !has_upper ||
+                       shares.area[a][cell + layout.stride[a]] > 0;
             }
             if (shares.too_small[cell] || !open) shares.volume[cell] = 0;
             if (inside(c)) slab.opened += shares.volume[cell] > 0;
@@ -205,9 +202,8 @@ private:
         Real moment = -Dim * shares.volume[cell] * whole,
              faces = 0;  // of faces about the centre, less Dim V [m3]
         for (int a = 0; a < Dim; ++a) {
-            const Real size = grid.size(a, c[at(a)]), face = whole / size;
-            const Real lower = shares.area[at(a)][cell],
-                       upper = shares.area[at(a)][cell + grid.layout().stride[at(a)]];
+            const Real size = grid.size(a, c[a]), face = whole / size;
+            const Real lower = shares.area[a][cell], upper = shares.area[a][cell + grid.layout().stride[a]];
             area[a] = face * (upper - lower);
             moment += 0.5 * size * face * (upper + lower);
             faces = std::max(faces, face);
@@ -217,7 +213,7 @@ private:
         const Point<Dim> normal = area / total;
         Point<Dim> point = near + (moment / total - normal.dot(near - centre)) * normal;
         for (int a = 0; a < Dim; ++a)  // walls that turn within the cell
-            point[a] = std::clamp(point[a], grid.face(a, c[at(a)]), grid.face(a, c[at(a)] + 1));
+            point[a] = std::clamp(point[a], grid.face(a, c[a]), grid.face(a, c[a] + 1));
         slab.wall_cells.push_back({cell, total, normal, point});
     }
 };

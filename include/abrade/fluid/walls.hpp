@@ -6,7 +6,6 @@
 #include <abrade/fluid/wall_slab.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -183,7 +182,7 @@ private:
         const Layout<Dim>& layout = grid_.layout();
         const auto renewed = [&](Offset cell) {
             for (int n = 0; n < Dim; ++n) {
-                const std::size_t a = detail::axis_in_memory<Dim>(n);  // by decreasing stride
+                const int a = detail::axis_in_memory<Dim>(n);  // by decreasing stride
                 const auto number = static_cast<int>(cell / layout.stride[a]) - ghosts;
                 if (number < low[a] || number >= high[a]) return false;
                 cell %= layout.stride[a];

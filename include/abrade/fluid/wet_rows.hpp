@@ -59,7 +59,7 @@ public:
     }
 
     /// Grown by `cells` along every axis, diagonals included; across those ends where the box is periodic.
-    WetRows dilated(int cells, const std::array<bool, Dim>& periodic = {}) const {
+    WetRows dilated(int cells, const PerAxis<bool, Dim>& periodic = {}) const {
         const int n = layout_.row_length(), rows = layout_.rows_per_plane(), planes = layout_.planes();
         // A dry row begins behind all others and ends before them, so that hulls are minima and maxima.
         constexpr int far = 1 << 30;
