@@ -4,6 +4,7 @@
 #include <abrade/core/require.hpp>
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstring>
@@ -24,16 +25,20 @@ using Point = Eigen::Matrix<Real, Dim, 1>;
 /// axes are counted, and its Dim can be deduced.
 template <class Value, int Dim>
 struct PerAxis {
-    Value values[Dim];
+    std::array<Value, Dim> values;
 
-    constexpr Value& operator[](std::integral auto axis) noexcept { return values[axis]; }
-    constexpr const Value& operator[](std::integral auto axis) const noexcept { return values[axis]; }
-    constexpr Value* begin() noexcept { return values; }
-    constexpr Value* end() noexcept { return values + Dim; }
-    constexpr const Value* begin() const noexcept { return values; }
-    constexpr const Value* end() const noexcept { return values + Dim; }
+    constexpr Value& operator[](std::integral auto axis) noexcept {
+        return values[static_cast<std::size_t>(axis)];
+    }
+    constexpr const Value& operator[](std::integral auto axis) const noexcept {
+        return values[static_cast<std::size_t>(axis)];
+    }
+    constexpr Value* begin() noexcept { return values.data(); }
+    constexpr Value* end() noexcept { return values.data() + Dim; }
+    constexpr const Value* begin() const noexcept { return values.data(); }
+    constexpr const Value* end() const noexcept { return values.data() + Dim; }
     static constexpr int size() noexcept { return Dim; }
-    constexpr void fill(const Value& value) noexcept { std::fill_n(values, Dim, value); }
+    constexpr void fill(const Value& value) noexcept { values.fill(value); }
     bool operator==(const PerAxis&) const = default;
 };
 
