@@ -53,42 +53,48 @@ using Offset = std::ptrdiff_t;
 /// in 3-D); within a row cells along the second axis, which is y in 3-D and z in 2-D. So a long channel is
 /// cut into many thin planes, several of which stay in cache at once. Around the box stand two layers of
 /// ghosts: limited second-order fluxes reach two cells upstream.
+///
+/// Cell 0 of a row stands at a multiple of `lanes`, and so many cells before it belong to no other row but for
+/// the ghosts of that before: a loop may work on whole packs, beyond the end of its row.
 template <int Dim>
 struct Layout {
     static_assert(Dim == 2 || Dim == 3, "fluids are two- or three-dimensional");
     static constexpr int ghosts = 2;
+    static constexpr int lanes = 16;
     static constexpr int outer = 0, inner = 1;  ///< axis across planes, axis along rows
 
     PerAxis<int, Dim> cells{};      ///< along each axis, without ghosts
     PerAxis<Offset, Dim> stride{};  ///< from a cell to the next one along each axis
-    Offset total = 0;               ///< with ghosts and padding
+    Offset first = 0;                  ///< of cell 0 along all axes
+    Offset total = 0;                  ///< with ghosts and padding
 
     Layout() = default;
     explicit Layout(const PerAxis<int, Dim>& count) : cells(count) {
-        constexpr Offset lanes = 8;  // rows begin at multiples, so that ghosts of two rows share no pack
         stride[inner] = 1;
-        const Offset row = (count[inner] + 2 * ghosts + lanes - 1) / lanes * lanes;
+        const Offset row = (count[inner] + lanes - 1) / lanes * lanes + lanes;
         if constexpr (Dim == 3) {
             stride[2] = row;
             stride[outer] = row * (count[2] + 2 * ghosts);
         } else {
             stride[outer] = row;
         }
-        total = stride[outer] * (count[outer] + 2 * ghosts);
+        first = lanes + ghosts * stride[outer] + (Dim == 3 ? ghosts * row : 0);
+        total = stride[outer] * (count[outer] + 2 * ghosts) + lanes;
     }
 
     Offset at(const CellNumber<Dim>& cell) const noexcept {
-        Offset offset = 0;
-        for (int a = 0; a < Dim; ++a) offset += (cell[a] + ghosts) * stride[a];
+        Offset offset = first;
+        for (int a = 0; a < Dim; ++a) offset += cell[a] * stride[a];
         return offset;
     }
 
-    /// Of the cell at an offset.
+    /// Of the cell at an offset, ghosts included.
     CellNumber<Dim> number(Offset offset) const noexcept {
         CellNumber<Dim> cell{};
+        offset -= lanes / 2;  // ghosts above a row stand where the next one's padding begins
         for (int k = 0; k < Dim; ++k) {
             const int a = k == 0 ? 0 : Dim - k;  // by decreasing stride
-            cell[a] = static_cast<int>(offset / stride[a]) - ghosts;
+            cell[a] = static_cast<int>(offset / stride[a]) - (a == inner ? lanes / 2 : ghosts);
             offset %= stride[a];
         }
         return cell;
@@ -99,8 +105,8 @@ struct Layout {
     int row_length() const noexcept { return cells[inner]; }
     /// Offset of cell 0 of a row; plane and row may be those of ghosts.
     Offset row_start(int plane, int row) const noexcept {
-        Offset offset = (plane + ghosts) * stride[outer] + ghosts;
-        if constexpr (Dim == 3) offset += (row + ghosts) * stride[2];
+        Offset offset = first + plane * stride[outer];
+        if constexpr (Dim == 3) offset += row * stride[2];
         return offset;
     }
     Index cell_count() const noexcept {

@@ -135,6 +135,11 @@ private:
         const Layout<Dim>& lf = f.layout;
         for (auto& component : c.face) component.fill(0);
         c.dirichlet.fill(0);
+        c.amid = f.amid;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            if (!fine.paired[a]) continue;
+            for (std::size_t b = 0; b < Dim; ++b) c.amid[b] *= a == b ? 0.5f : 2.0f;
+        }
         const auto parent = [&](int a, int i) { return fine.paired[a] ? i / 2 : i; };
         parallel_tasks(c.layout.planes(), [&](Index coarse_plane) {
             const int first = fine.paired[outer] ? 2 * coarse_plane : coarse_plane;
@@ -205,13 +210,13 @@ private:
         const Layout<Dim>&lf = m.layout, &lc = coarse.matrix.layout;
         thread_local std::vector<float> buffer;
         const int n = lf.row_length();
-        buffer.resize(static_cast<std::size_t>(n) + 2);
+        buffer.resize(static_cast<std::size_t>(n + Layout<Dim>::lanes));
         for (int row = 0; row < lf.rows_per_plane(); ++row) {
             RowRange r = m.range(plane, row);
             if (r.empty()) continue;
             float* const left = buffer.data();
             m.residual(fine.x, fine.b, plane, row, left);
-            float* const to = coarse.b.data() + lc.row_start(fine.paired[outer] ? plane / 2 : plane,
+            float* const __restrict to = coarse.b.data() + lc.row_start(fine.paired[outer] ? plane / 2 : plane,
                                                              fine.paired[Dim - 1] ? row / 2 : row);
             if (!fine.paired[inner]) {
                 for (int i = r.begin; i < r.end; ++i) to[i] += left[i];
@@ -219,6 +224,7 @@ private:
             }
             if (r.begin & 1) left[--r.begin] = 0;
             if (r.end & 1) left[r.end++] = 0;
+            #pragma omp simd
             for (int j = r.begin / 2; j < r.end / 2; ++j) to[j] += left[2 * j] + left[2 * j + 1];
         }
     }
@@ -228,12 +234,14 @@ private:
         const Layout<Dim>&lf = m.layout, &lc = coarse.matrix.layout;
         for (int row = 0; row < lf.rows_per_plane(); ++row) {
             const RowRange r = m.range(plane, row);
-            float* const to = fine.x.data() + lf.row_start(plane, row);
-            const float* const from = coarse.x.data() + lc.row_start(fine.paired[outer] ? plane / 2 : plane,
+            float* const __restrict to = fine.x.data() + lf.row_start(plane, row);
+            const float* const __restrict from = coarse.x.data() + lc.row_start(fine.paired[outer] ? plane / 2 : plane,
                                                                      fine.paired[Dim - 1] ? row / 2 : row);
-            if (fine.paired[inner])
-                for (int i = r.begin; i < r.end; ++i) to[i] += from[i / 2];
-            else
+            if (fine.paired[inner]) {
+                // What a pair has beyond the range is set anew by the sweeps that follow.
+#pragma omp simd
+                for (int j = r.begin / 2; j < (r.end + 1) / 2; ++j) to[2 * j] += from[j], to[2 * j + 1] += from[j];
+            } else
                 for (int i = r.begin; i < r.end; ++i) to[i] += from[i];
         }
     }

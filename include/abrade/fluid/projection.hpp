@@ -55,6 +55,7 @@ public:
         open_volume_ = water.open_volume;
         Poisson<Dim>& m = multigrid_.matrix();
         const Layout<Dim>& l = grid_->layout();
+        for (int a = 0; a < Dim; ++a) m.amid[a] = static_cast<float>(area(a, 0) / grid_->gap(a, 0));
         parallel_tasks(l.planes(), [&](Index plane) {
             for (int row = 0; row < l.rows_per_plane(); ++row) conduct(water, plane, row);
         });

@@ -10,23 +10,21 @@ namespace abrade {
 template <int Dim, class Number>
 void copy_layer(Field<Number>& field, const Layout<Dim>& layout, int axis, int from, int to) noexcept {
     constexpr int ghosts = Layout<Dim>::ghosts;
-    const auto a = static_cast<std::size_t>(axis);
-    Number* data = field.data();
+    // The ghosts above a row stand in the first half of what pads the next one.
+    Number* data = field.data() + Layout<Dim>::lanes / 2;
     const Offset planes = layout.planes() + 2 * ghosts, plane = layout.stride[Layout<Dim>::outer];
     if (axis == Layout<Dim>::outer) {
         std::copy_n(data + (from + ghosts) * plane, plane, data + (to + ghosts) * plane);
     } else if (axis != Layout<Dim>::inner) {
-        const Offset row = layout.stride[a];
+        const Offset row = layout.stride[axis];
         for (Offset p = 0; p < planes; ++p)
             std::copy_n(data + p * plane + (from + ghosts) * row, row,
                         data + p * plane + (to + ghosts) * row);
     } else {
-        const Offset rows = layout.rows_per_plane() + (Dim == 3 ? 2 * ghosts : 0);
-        const Offset row = layout.stride[Dim == 3 ? 2 : 0];
-        for (Offset p = 0; p < planes; ++p)
-            for (Offset r = 0; r < rows; ++r) {
-                Number* first = data + p * plane + (Dim == 3 ? r * row : 0) + ghosts;
-                first[to] = first[from];
+        for (int p = -ghosts; p < layout.planes() + ghosts; ++p)
+            for (int r = Dim == 3 ? -ghosts : 0; r < layout.rows_per_plane() + (Dim == 3 ? ghosts : 0); ++r) {
+                Number* row = field.data() + layout.row_start(p, r);
+                row[to] = row[from];
             }
     }
 }

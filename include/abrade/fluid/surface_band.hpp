@@ -116,11 +116,9 @@ private:
         std::memcpy(&value, flags, sizeof value);
         return value;
     }
-    /// Whole eights of a row: rows begin at one, as ghosts do that stand before them.
+    /// Whole eights of a row.
     static RowRange eights(const RowRange& range) noexcept {
-        constexpr int ghosts = Layout<Dim>::ghosts;
-        const int begin = (range.begin + ghosts) / 8 * 8 - ghosts;
-        return {begin, begin + (range.end - begin + 7) / 8 * 8};
+        return {range.begin / 8 * 8, (range.end + 7) / 8 * 8};
     }
 
     /// Calls body(offset of the row's cell 0, whole eights) for each row, and for rows of ghosts beside them.

@@ -79,11 +79,10 @@ void VolumeOfFluid<Dim>::carry_bulk() {
     const int rows = layout_.rows_per_plane(), planes = layout_.planes(), n = layout_.row_length();
     touched_.for_each_row([&](int p, int r, const RowRange& range) {
         const Offset start = layout_.row_start(p, r);
-        // Whole packs, which begin where a cache line does: what lies before and behind the range is dry, and
-        // faces of ghosts that follow are those of the upper side.
-        constexpr int ghosts = Layout<Dim>::ghosts, lanes = pack_lanes;
-        RowRange all{(range.begin + ghosts) / lanes * lanes - ghosts, range.end + (range.end == n)};
-        all.end = all.begin + (all.length() + lanes - 1) / lanes * lanes;
+        // Whole packs: what lies before and behind the range is dry, and faces of ghosts that follow are those
+        // of the upper side.
+        RowRange all{range.begin / pack_lanes * pack_lanes, range.end + (range.end == n)};
+        all.end = (all.end + pack_lanes - 1) / pack_lanes * pack_lanes;
         carry_row(start, r, all, true);
         if (p == planes - 1) carry_row(start + layout_.stride[0], r, all, false);
         if (Dim == 3 && r == rows - 1) carry_row(start + layout_.stride[Dim - 1], r, all, false);
