@@ -54,8 +54,8 @@ using Offset = std::ptrdiff_t;
 /// cut into many thin planes, several of which stay in cache at once. Around the box stand two layers of
 /// ghosts: limited second-order fluxes reach two cells upstream.
 ///
-/// Cell 0 of a row stands at a multiple of `lanes`, and so many cells before it belong to no other row but for
-/// the ghosts of that before: a loop may work on whole packs, beyond the end of its row.
+/// Cell 0 of a row stands at a multiple of `lanes`, and so many cells before it belong to no other row but
+/// for the ghosts of that before: a loop may work on whole packs, beyond the end of its row.
 template <int Dim>
 struct Layout {
     static_assert(Dim == 2 || Dim == 3, "fluids are two- or three-dimensional");
@@ -65,8 +65,8 @@ struct Layout {
 
     PerAxis<int, Dim> cells{};      ///< along each axis, without ghosts
     PerAxis<Offset, Dim> stride{};  ///< from a cell to the next one along each axis
-    Offset first = 0;                  ///< of cell 0 along all axes
-    Offset total = 0;                  ///< with ghosts and padding
+    Offset first = 0;               ///< of cell 0 along all axes
+    Offset total = 0;               ///< with ghosts and padding
 
     Layout() = default;
     explicit Layout(const PerAxis<int, Dim>& count) : cells(count) {

@@ -70,6 +70,7 @@ public:
         saved_pressure_ = pressure_;
         if constexpr (has_surface) {
             saved_fraction_ = water_->liquid().fraction();
+            dry_heights_ = dry_heights();
             find_heights();
         }
     }
@@ -169,11 +170,7 @@ public:
             low[a] = at.low, weight[a] = at.weight;
             high[a] = std::min(low[a] + 1, grid_->cells(a) - 1);
         }
-        const auto height = [&](int i, int j) {
-            return heights_[static_cast<std::size_t>(i) *
-                                static_cast<std::size_t>(Dim == 3 ? grid_->cells(1) : 1) +
-                            static_cast<std::size_t>(j)];
-        };
+        const auto height = [&](int i, int j) { return heights_[column(i, j)]; };
         const auto along = [&](int j) {
             return (1 - weight[0]) * height(low[0], j) + weight[0] * height(high[0], j);
         };
@@ -219,7 +216,8 @@ private:
         stage(velocity_, stage_, 0);
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         sides_.fill(stage_);
-        stage(stage_, velocity_, 0.5);
+        stage(stage_, saved_velocity_, 0.5);
+        std::swap(velocity_, saved_velocity_);
         sides_.fill(velocity_);
         report_ = projection_.project(velocity_, pressure_, dt, params_.tolerance);
         finish(velocity_);
@@ -230,7 +228,7 @@ private:
         water.move(velocity_, dt);
         // Of the velocity as the pressure left it: water at rest feels no friction.
         water.friction().apply(velocity_, dt, nu());
-        sides_.fill(velocity_);
+        sides_.fill(velocity_, &water.rows());
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
             Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), params_.gravity};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
@@ -250,7 +248,7 @@ private:
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.find(projection_, pressure_, sides_);
         push_leaving(dt);
-        sides_.fill(velocity_);
+        sides_.fill(velocity_, &water.rows());
         report_ =
             projection_.project(velocity_, pressure_, dt, params_.tolerance, true, &water.liquid().surplus());
         finish(velocity_);
@@ -258,8 +256,12 @@ private:
 
     /// Air beside the water, ghosts.
     void finish(FaceField<Dim, State>& u) {
-        if constexpr (has_surface) water_->extend(u);
-        sides_.fill(u);
+        if constexpr (has_surface) {
+            water_->extend(u);
+            sides_.fill(u, &water_->rows());
+        } else {
+            sides_.fill(u);
+        }
     }
 
     /// Faces through which water leaves go on as the ones before them.
@@ -267,7 +269,7 @@ private:
         for (int a = 0; a < Dim; ++a)
             for (const bool high : {false, true})
                 if (params_.sides[a][high] == Side::outflow)
-                    sides_.along_side(a, high, [&](Offset c, std::size_t) {
+                    sides_.along_side({a, high}, [&](Offset c, std::size_t) {
                         const Offset next = c + layout().stride[a];
                         high ? u[a][next] = u[a][c] : u[a][c] = u[a][next];
                     });
@@ -279,7 +281,7 @@ private:
         for (int a = 0; a < Dim; ++a)
             for (const bool high : {false, true})
                 if (params_.sides[a][high] == Side::inflow)
-                    sides_.along_side(a, high, [&](Offset c, std::size_t) {
+                    sides_.along_side({a, high}, [&](Offset c, std::size_t) {
                         const State u = velocity_[a][high ? c + layout().stride[a] : c];
                         most = std::max(most, std::abs(static_cast<Real>(u)) / grid_->size(a, 0));
                     });
@@ -291,7 +293,7 @@ private:
         for (int a = 0; a < Dim; ++a)
             for (const bool high : {false, true})
                 if (params_.sides[a][high] == Side::outflow)
-                    sides_.along_side(a, high, [&](Offset c, std::size_t) {
+                    sides_.along_side({a, high}, [&](Offset c, std::size_t) {
                         const Offset s = layout().stride[a], inside = high ? c : c + s,
                                      face = high ? c + s : c;
                         if (projection_.multigrid().matrix().face[a][inside] > 0)
@@ -300,10 +302,29 @@ private:
                     });
     }
 
+    /// What a step that goes wrong is to leave behind. Without a surface the velocity is kept by the step.
     void save() {
-        saved_velocity_ = velocity_;
-        saved_pressure_ = pressure_;
-        if constexpr (has_surface) saved_fraction_ = water_->liquid().fraction();
+        if constexpr (has_surface) {
+            saved_rows_ = water_->rows();
+            saved_rows_.copy(velocity_, saved_velocity_);
+            saved_rows_.copy(pressure_, saved_pressure_);
+            saved_rows_.copy(water_->liquid().fraction(), saved_fraction_);
+        } else {
+            saved_pressure_ = pressure_;
+        }
+    }
+    void restore() {
+        if (!params_.steady_sides) sides_.set_time(time_);
+        if constexpr (has_surface) {
+            saved_rows_.copy(saved_velocity_, velocity_);
+            saved_rows_.copy(saved_pressure_, pressure_);
+            water_->restore(saved_fraction_, saved_rows_);
+            water_->find(projection_, pressure_, sides_);
+            finish(velocity_);
+        } else {
+            std::swap(velocity_, saved_velocity_);
+            std::swap(pressure_, saved_pressure_);
+        }
     }
     void check(Real dt) {
         Real size = 0;
@@ -320,13 +341,7 @@ private:
                                       ? "the pressure was not found, a cell gains " +
                                             short_text(report_.after) + " of its volume in a step"
                                       : "beyond GridFluid.fastest";
-        velocity_ = saved_velocity_;
-        pressure_ = saved_pressure_;
-        if (!params_.steady_sides) sides_.set_time(time_);
-        if constexpr (has_surface) {
-            water_->restore(saved_fraction_);
-            water_->find(projection_, pressure_, sides_);
-        }
+        restore();
         throw FluidError("step " + std::to_string(steps_) + " (t = " + short_text(time_) +
                          " s, dt = " + short_text(dt) + " s): " + cause + "; " + where +
                          "; take a smaller courant, or a finer grid there");
@@ -353,23 +368,31 @@ private:
         return text + "] has " + short_text(most.speed) + " m/s along " + Grid<Dim>::axis_name(most.axis);
     }
 
+    std::size_t column(int plane, int across) const noexcept {
+        return static_cast<std::size_t>(plane) * static_cast<std::size_t>(Dim == 3 ? grid_->cells(1) : 1) +
+               static_cast<std::size_t>(across);
+    }
+    /// Of the walls alone.
+    std::vector<Real> dry_heights() const {
+        std::vector<Real> heights(column(grid_->cells(0), 0), grid_->low(Dim - 1));
+        if (const Walls<Dim>* walls = water_->walls())
+            grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
+                heights[column(cell[0], Dim == 3 ? cell[1] : 0)] +=
+                    grid_->size(Dim - 1, cell[Dim - 1]) * (1 - walls->open_volume()[c]);
+            });
+        return heights;
+    }
     void find_heights() {
-        const int across = Dim == 3 ? grid_->cells(1) : 1;
-        heights_.resize(static_cast<std::size_t>(grid_->cells(0) * across));
-        parallel_tasks(grid_->cells(0), [&](Index i) {
-            Real* const heights = heights_.data() + static_cast<std::size_t>(i * across);
-            std::fill_n(heights, across, grid_->low(Dim - 1));
-            CellNumber<Dim> cell{};
-            cell[0] = i;
-            const Field<Real>& held = water_->held();
-            const Walls<Dim>* walls = water_->walls();
-            for (int k = 0; k < grid_->cells(Dim - 1); ++k) {
-                cell[Dim - 1] = k;
-                const Offset start = layout().at(cell);
-                const Real size = grid_->size(Dim - 1, k);
-                for (int j = 0; j < across; ++j)
-                    heights[j] +=
-                        size * (held[start + j] + (walls ? 1 - walls->open_volume()[start + j] : 0));
+        heights_ = dry_heights_;
+        water_->rows().for_each_row([&](int plane, int row, const RowRange& r) {
+            const Real* const held = water_->held().data() + layout().row_start(plane, row);
+            if constexpr (Dim == 3) {
+                const Real size = grid_->size(Dim - 1, row);
+                Real* const heights = heights_.data() + column(plane, 0);
+                for (int j = r.begin; j < r.end; ++j) heights[j] += size * held[j];
+            } else {
+                for (int k = r.begin; k < r.end; ++k)
+                    heights_[column(plane, 0)] += grid_->size(Dim - 1, k) * held[k];
             }
         });
     }
@@ -382,7 +405,8 @@ private:
     Field<State> pressure_, saved_pressure_;
     Field<Real> saved_fraction_;
     std::conditional_t<has_surface, std::optional<detail::SurfaceWater<Dim>>, Nothing> water_{};
-    std::vector<Real> heights_;  ///< [x][y] of the surface [m]
+    WetRows<Dim> saved_rows_;
+    std::vector<Real> heights_, dry_heights_;  ///< [x][y] of the surface; of walls alone [m]
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Index steps_ = 0;

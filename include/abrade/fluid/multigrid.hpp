@@ -216,15 +216,16 @@ private:
             if (r.empty()) continue;
             float* const left = buffer.data();
             m.residual(fine.x, fine.b, plane, row, left);
-            float* const __restrict to = coarse.b.data() + lc.row_start(fine.paired[outer] ? plane / 2 : plane,
-                                                             fine.paired[Dim - 1] ? row / 2 : row);
+            float* const __restrict to =
+                coarse.b.data() +
+                lc.row_start(fine.paired[outer] ? plane / 2 : plane, fine.paired[Dim - 1] ? row / 2 : row);
             if (!fine.paired[inner]) {
                 for (int i = r.begin; i < r.end; ++i) to[i] += left[i];
                 continue;
             }
             if (r.begin & 1) left[--r.begin] = 0;
             if (r.end & 1) left[r.end++] = 0;
-            #pragma omp simd
+#pragma omp simd
             for (int j = r.begin / 2; j < r.end / 2; ++j) to[j] += left[2 * j] + left[2 * j + 1];
         }
     }
@@ -235,12 +236,14 @@ private:
         for (int row = 0; row < lf.rows_per_plane(); ++row) {
             const RowRange r = m.range(plane, row);
             float* const __restrict to = fine.x.data() + lf.row_start(plane, row);
-            const float* const __restrict from = coarse.x.data() + lc.row_start(fine.paired[outer] ? plane / 2 : plane,
-                                                                     fine.paired[Dim - 1] ? row / 2 : row);
+            const float* const __restrict from =
+                coarse.x.data() +
+                lc.row_start(fine.paired[outer] ? plane / 2 : plane, fine.paired[Dim - 1] ? row / 2 : row);
             if (fine.paired[inner]) {
                 // What a pair has beyond the range is set anew by the sweeps that follow.
 #pragma omp simd
-                for (int j = r.begin / 2; j < (r.end + 1) / 2; ++j) to[2 * j] += from[j], to[2 * j + 1] += from[j];
+                for (int j = r.begin / 2; j < (r.end + 1) / 2; ++j)
+                    to[2 * j] += from[j], to[2 * j + 1] += from[j];
             } else
                 for (int i = r.begin; i < r.end; ++i) to[i] += from[i];
         }

@@ -19,11 +19,11 @@ struct Poisson {
     Layout<Dim> layout;
     PerAxis<bool, Dim> periodic{};
     PerAxis<Field<float>, Dim> face;  ///< g of a cell's lower face
-    Field<float> dirichlet;              ///< d
-    Field<float> inverse_diagonal;       ///< 1 / (sum g + d), 0 where that is 0
+    Field<float> dirichlet;           ///< d
+    Field<float> inverse_diagonal;    ///< 1 / (sum g + d), 0 where that is 0
     PerAxis<float, Dim> amid{};       ///< g between cells that lie amid others
-    std::vector<RowRange> rows;          ///< [plane * rows_per_plane + row] cells that take part
-    std::vector<RowRange> even_rows;     ///< and those of them whose faces all conduct `amid`
+    std::vector<RowRange> rows;       ///< [plane * rows_per_plane + row] cells that take part
+    std::vector<RowRange> even_rows;  ///< and those of them whose faces all conduct `amid`
 
     Poisson() = default;
     Poisson(const Layout<Dim>& l, const PerAxis<bool, Dim>& repeats)
@@ -201,8 +201,8 @@ private:
             return sum * diagonal[i];
         }
         float product(int i) const noexcept {
-            float sum =
-                dirichlet[i] * x[i] + (along[i] * (x[i] - x[i - 1]) + along[i + 1] * (x[i] - x[i + 1])) + drop(0, i);
+            float sum = dirichlet[i] * x[i] +
+                        (along[i] * (x[i] - x[i - 1]) + along[i + 1] * (x[i] - x[i + 1])) + drop(0, i);
             if constexpr (Dim == 3) sum += drop(1, i);
             return sum;
         }

@@ -23,8 +23,7 @@ public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides),
           friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
-          carrier_(face_field<Dim>(grid.layout())), wet_(grid.layout().total), rows_(grid.layout()),
-          extension_(grid.layout()) {
+          wet_(grid.layout().total), rows_(grid.layout()), extension_(grid.layout()) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         // The projection begins with a full box.
         for (int plane = 0; plane < layout().planes(); ++plane)
@@ -50,19 +49,19 @@ public:
     const Field<Real>& held() const noexcept { return walls_ ? held_ : liquid_.fraction(); }
     const Field<Real>& held_before() const noexcept { return before_; }
     const FaceField<Dim>* open_area() const noexcept { return walls_ ? &walls_->open_area() : nullptr; }
-    const FaceField<Dim>& carrier() const noexcept { return carrier_; }  ///< [m3] in the stage at work
+    /// Of momentum, in the stage at work [m3].
+    const FaceField<Dim>& carrier() const noexcept { return liquid_.moved(); }
     const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }  ///< that carry momentum
     const WallFriction<Dim>& friction() const noexcept { return friction_; }
     const WetRows<Dim>& rows() const noexcept { return rows_; }
 
     /// Moves the liquid with the velocity over a step.
     void move(const FaceField<Dim>& velocity, Real step) {
-        before_ = held();
+        rows_.copy(held(), before_);
         liquid_.advance(velocity, step);
         rows_before_ = rows_;
         find_rows();
         hold();
-        carrier_ = liquid_.moved();
     }
 
     /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
@@ -77,7 +76,7 @@ public:
             const Offset back = layout().stride[a];
             rows_.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = layout().row_start(plane, row);
-                Real* const __restrict c = carrier_[a].data() + start;
+                Real* const __restrict c = liquid_.moved()[a].data() + start;
                 const Real *const u = velocity[a].data() + start, *const v = stage[a].data() + start;
                 const Real *const f = held().data() + start, *const g = before_.data() + start;
                 for (int i = r.begin; i < r.end; ++i) {
@@ -116,9 +115,14 @@ public:
 
     void extend(FaceField<Dim>& u) { extension_.extend(u, wet_, rows_, held(), open_area()); }
 
-    /// Puts back fractions as they were saved.
-    void restore(const Field<Real>& fraction) {
-        liquid_.fraction() = fraction;
+    /// Puts back fractions as they were saved, in the rows of then.
+    void restore(const Field<Real>& fraction, const WetRows<Dim>& rows) {
+        const auto clear = [&](int plane, int row, const RowRange& r) {
+            std::fill_n(liquid_.fraction().data() + layout().row_start(plane, row) + r.begin, r.length(),
+                        0.0);
+        };
+        rows_.for_each_row(clear);
+        rows.copy(fraction, liquid_.fraction());
         settle();
     }
 
@@ -164,12 +168,18 @@ private:
         rows_before_ = rows_;
         find_rows();
         hold();
-        before_ = held();
     }
     void hold() {
         if (!walls_) return;
-        const Field<Real>&f = liquid_.fraction(), &v = walls_->open_volume();
-        for (Offset c = 0; c < f.size(); ++c) held_[c] = f[c] * v[c];
+        WetRows<Dim> rows = rows_;
+        rows.include(rows_before_);
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout().row_start(plane, row);
+            const Real* const __restrict f = liquid_.fraction().data() + start;
+            const Real* const __restrict v = walls_->open_volume().data() + start;
+            Real* const __restrict held = held_.data() + start;
+            for (int i = r.begin; i < r.end; ++i) held[i] = f[i] * v[i];
+        });
     }
 
     /// Rows that hold water and what is near, and faces that carry momentum.
@@ -223,7 +233,6 @@ private:
     std::shared_ptr<const Walls<Dim>> walls_;  ///< shared among copies; the liquid points to them
     WallFriction<Dim> friction_;
     Field<Real> held_, before_;
-    FaceField<Dim> carrier_;
     Field<std::uint8_t> wet_;
     WetRows<Dim> rows_, rows_before_;
     PerAxis<WetRows<Dim>, Dim> faces_;

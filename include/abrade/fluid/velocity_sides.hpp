@@ -3,6 +3,7 @@
 
 #include <abrade/fluid/grid.hpp>
 #include <abrade/fluid/sides.hpp>
+#include <abrade/fluid/wet_rows.hpp>
 
 #include <functional>
 
@@ -11,6 +12,14 @@ namespace abrade {
 /// Velocity at a point of a side at a time [m/s]: of a wall that moves along itself, or of what flows in.
 template <int Dim>
 using SideVelocity = std::function<Point<Dim>(const Point<Dim>&, Real)>;
+
+/// A side of the box, or what of it lies beside rows that are wet.
+template <int Dim>
+struct SidePart {
+    int axis = 0;
+    bool high = false;
+    const WetRows<Dim>* rows = nullptr;  ///< none: all of it
+};
 
 /// Fills ghosts of a staggered velocity, and its normal component on sides that fix it. Tangential ghosts
 /// mirror, so that the mean of both sides of a wall is the wall's velocity.
@@ -43,16 +52,19 @@ public:
             }
     }
 
+    /// `rows`: where water is and what it may reach; none: everywhere.
     template <class State>
-    void fill(FaceField<Dim, State>& u) const {
+    void fill(FaceField<Dim, State>& u, const WetRows<Dim>* rows = nullptr) const {
         // Axis by axis, ghosts of the former ones included: so corners get theirs.
         for (int b = 0; b < Dim; ++b)
             for (int a = 0; a < Dim; ++a)
                 if (sides_.periodic(b))
                     copy_around(u[a], b);
                 else
-                    for (const bool high : {false, true})
-                        a == b ? normal(u[a], b, high) : tangential(u[a], a, b, high);
+                    for (const bool high : {false, true}) {
+                        const SidePart<Dim> side{b, high, rows};
+                        a == b ? normal(u[a], side) : tangential(u[a], a, side);
+                    }
     }
 
     /// Ghosts of a cell field beyond periodic sides.
@@ -71,23 +83,44 @@ public:
             else
                 for (const bool high : {false, true}) {
                     const Offset out = high ? step(b) : -step(b);
-                    along_side(b, high, [&](Offset c, std::size_t) { x[c + out] = x[c + 2 * out] = x[c]; });
+                    along_side({b, high}, [&](Offset c, std::size_t) { x[c + out] = x[c + 2 * out] = x[c]; });
                 }
     }
 
     /// Calls body(offset, k) for the cells beside a side, ghosts of the other axes included; k counts them.
-    void along_side(int axis, bool high, auto&& body) const {
-        constexpr int g = Layout<Dim>::ghosts;
+    void along_side(const SidePart<Dim>& side, auto&& body) const {
+        constexpr int g = Layout<Dim>::ghosts, inner = Layout<Dim>::inner;
+        const int axis = side.axis, last = cells(inner);
+        const bool high = side.high;
         const Plane p = plane_of(axis);
         CellNumber<Dim> corner;
         corner.fill(-g);
         corner[axis] = high ? cells(axis) - 1 : 0;
         const int first = p.first == axis ? 1 : cells(p.first) + 2 * g, second = cells(p.second) + 2 * g;
         const Offset from = grid_->layout().at(corner);
-        std::size_t k = 0;
+        // What is wet of the row that cell `number` stands in, or of the nearest one inside.
+        const auto wet = [&](const CellNumber<Dim>& number) {
+            const auto inside = [&](int a) { return std::clamp(number[a], 0, cells(a) - 1); };
+            return side.rows->row(inside(0), Dim == 3 ? inside(Dim - 1) : 0);
+        };
+        CellNumber<Dim> number = corner;
         for (int i = 0; i < first; ++i) {
             const Offset line = from + i * step(p.first);
-            for (int j = 0; j < second; ++j) body(line + j * step(p.second), k++);
+            const auto count = static_cast<std::size_t>(i) * static_cast<std::size_t>(second);
+            RowRange part{0, second};
+            if (p.first != axis) number[p.first] = i - g;
+            if (side.rows && axis != inner) {  // lines are rows
+                const RowRange r = wet(number);
+                part = r.empty() ? RowRange{} : RowRange{r.begin, r.end + 2 * g};
+            }
+            for (int j = part.begin; j < part.end; ++j) {
+                if (side.rows && axis == inner) {  // lines go from row to row
+                    number[p.second] = j - g;
+                    const RowRange r = wet(number);
+                    if (r.empty() || (high ? r.end < last : r.begin > 0)) continue;
+                }
+                body(line + j * step(p.second), count + static_cast<std::size_t>(j));
+            }
         }
     }
 
@@ -117,7 +150,7 @@ private:
         constexpr int g = Layout<Dim>::ghosts;
         const Plane p = plane_of(axis);
         const auto second = static_cast<std::size_t>(cells(p.second) + 2 * g);
-        along_side(axis, high, [&](Offset c, std::size_t k) {
+        along_side({axis, high}, [&](Offset c, std::size_t k) {
             CellNumber<Dim> cell;
             cell[p.first] = static_cast<int>(k / second) - g;
             cell[p.second] = static_cast<int>(k % second) - g;
@@ -129,7 +162,7 @@ private:
     template <class State>
     void copy_around(Field<State>& x, int b) const {
         const Offset s = step(b), around = cells(b) * s;
-        along_side(b, false, [&](Offset c, std::size_t) {
+        along_side({b, false}, [&](Offset c, std::size_t) {
             x[c - 2 * s] = x[c - 2 * s + around];
             x[c - s] = x[c - s + around];
             x[c + around] = x[c];
@@ -138,11 +171,13 @@ private:
     }
 
     template <class State>
-    void normal(Field<State>& u, int b, bool high) const {
+    void normal(Field<State>& u, const SidePart<Dim>& part) const {
+        const int b = part.axis;
+        const bool high = part.high;
         const Offset s = step(b), to_face = high ? s : 0, in = high ? -s : s;
         const Side side = kind(b, high);
         if (side == Side::outflow) {  // as it leaves, so beyond
-            along_side(b, high, [&](Offset c, std::size_t) {
+            along_side(part, [&](Offset c, std::size_t) {
                 const Offset face = c + to_face;
                 u[face - in] = u[face];
                 if (!high) u[face - 2 * in] = u[face];
@@ -150,7 +185,7 @@ private:
             return;
         }
         const std::vector<Real>& values = table(b, b, high);
-        along_side(b, high, [&](Offset c, std::size_t k) {
+        along_side(part, [&](Offset c, std::size_t k) {
             const Offset face = c + to_face;
             u[face] = values.empty() ? State(0) : static_cast<State>(values[k]);
             u[face - in] = 2 * u[face] - u[face + in];
@@ -159,18 +194,20 @@ private:
     }
 
     template <class State>
-    void tangential(Field<State>& u, int a, int b, bool high) const {
+    void tangential(Field<State>& u, int a, const SidePart<Dim>& part) const {
+        const int b = part.axis;
+        const bool high = part.high;
         const Offset out = high ? step(b) : -step(b);
         const Side side = kind(b, high);
         if (side == Side::slip || side == Side::outflow) {
-            along_side(b, high, [&](Offset c, std::size_t) {
+            along_side(part, [&](Offset c, std::size_t) {
                 u[c + out] = u[c];
                 u[c + 2 * out] = side == Side::slip ? u[c - out] : u[c];
             });
             return;
         }
         const std::vector<Real>& values = table(a, b, high);
-        along_side(b, high, [&](Offset c, std::size_t k) {
+        along_side(part, [&](Offset c, std::size_t k) {
             const State twice = values.empty() ? State(0) : static_cast<State>(2 * values[k]);
             u[c + out] = twice - u[c];
             u[c + 2 * out] = twice - u[c - out];

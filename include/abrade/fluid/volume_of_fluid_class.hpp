@@ -129,6 +129,7 @@ public:
 
     /// Volume of liquid that went through each lower face in the last step [m3].
     const FaceField<Dim>& moved() const noexcept { return moved_; }
+    FaceField<Dim>& moved() noexcept { return moved_; }  ///< until the next step nobody asks for it here
     /// Liquid beyond `fraction()`, in shares of the open volume [-].
     const Field<Real>& surplus() const noexcept { return surplus_; }
     const WetRows<Dim>& wet() const noexcept { return wet_; }

@@ -79,8 +79,8 @@ void VolumeOfFluid<Dim>::carry_bulk() {
     const int rows = layout_.rows_per_plane(), planes = layout_.planes(), n = layout_.row_length();
     touched_.for_each_row([&](int p, int r, const RowRange& range) {
         const Offset start = layout_.row_start(p, r);
-        // Whole packs: what lies before and behind the range is dry, and faces of ghosts that follow are those
-        // of the upper side.
+        // Whole packs: what lies before and behind the range is dry, and faces of ghosts that follow are
+        // those of the upper side.
         RowRange all{range.begin / pack_lanes * pack_lanes, range.end + (range.end == n)};
         all.end = (all.end + pack_lanes - 1) / pack_lanes * pack_lanes;
         carry_row(start, r, all, true);

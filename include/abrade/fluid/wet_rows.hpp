@@ -86,6 +86,19 @@ public:
         for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i] = hull(rows_[i], other.rows_[i]);
     }
 
+    /// Copies what lies in the ranges.
+    template <class Number>
+    void copy(const Field<Number>& from, Field<Number>& to) const {
+        for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout_.row_start(plane, row) + r.begin;
+            std::copy_n(from.data() + start, r.length(), to.data() + start);
+        });
+    }
+    template <class Number>
+    void copy(const FaceField<Dim, Number>& from, FaceField<Dim, Number>& to) const {
+        for (int a = 0; a < Dim; ++a) copy(from[a], to[a]);
+    }
+
     /// Cells in all ranges.
     std::int64_t cells() const noexcept {
         std::int64_t count = 0;
