@@ -262,6 +262,12 @@ public:
         walk<0>(cell, beyond, body);
     }
 
+    /// Calls body(cell, offset) for the cells beside a side of the box.
+    void for_each_beside(int axis, bool high, auto&& body) const {
+        CellNumber<Dim> cell;
+        walk<0>(cell, axis, high, body);
+    }
+
     static char axis_name(int axis) noexcept { return Dim == 3 ? "xyz"[axis] : "xz"[axis]; }
 
 private:
@@ -283,6 +289,20 @@ private:
             for (int i = -beyond; i < cells(Axis) + beyond; ++i) {
                 cell[Axis] = i;
                 walk<Axis + 1>(cell, beyond, body);
+            }
+        }
+    }
+
+    template <int Axis>
+    void walk(CellNumber<Dim>& cell, int axis, bool high, auto& body) const {
+        if constexpr (Axis == Dim) {
+            body(std::as_const(cell), layout_.at(cell));
+        } else {
+            const int first = Axis == axis && high ? cells(Axis) - 1 : 0;
+            const int end = Axis == axis ? first + 1 : cells(Axis);
+            for (int i = first; i < end; ++i) {
+                cell[Axis] = i;
+                walk<Axis + 1>(cell, axis, high, body);
             }
         }
     }

@@ -2,8 +2,8 @@
 // Water on a staggered Cartesian grid.
 
 #include <abrade/fluid/fluid_model.hpp>
-#include <abrade/fluid/grid_place.hpp>
 #include <abrade/fluid/momentum.hpp>
+#include <abrade/fluid/surface_heights.hpp>
 #include <abrade/fluid/surface_water.hpp>
 
 #include <optional>
@@ -70,8 +70,8 @@ public:
         saved_pressure_ = pressure_;
         if constexpr (has_surface) {
             saved_fraction_ = water_->liquid().fraction();
-            dry_heights_ = dry_heights();
-            find_heights();
+            heights_ = detail::SurfaceHeights<Dim>(*grid_, water_->walls());
+            heights_.find(*grid_, water_->rows(), water_->held());
         }
     }
 
@@ -143,7 +143,7 @@ public:
         ++steps_;
         if (!params_.steady_sides) enters_ = rate_of_inflow();
         fastest_ = std::max(report_.courant / dt, enters_);
-        if constexpr (has_surface) find_heights();
+        if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
     }
 
     /// Water at a point; in two dimensions at its x and z. Beyond the box as at its edge. t is not asked:
@@ -163,19 +163,7 @@ public:
 
     /// Height of the water's surface at a place in the plane: floor and what stands on it [m].
     Real surface_at(const Point<Dim>& x) const noexcept requires has_surface {
-        PerAxis<int, 2> low{}, high{};
-        PerAxis<Real, 2> weight{};
-        for (int a = 0; a < Dim - 1; ++a) {
-            const GridPlace at = place_among_centres(*grid_, a, x[a]);
-            low[a] = at.low, weight[a] = at.weight;
-            high[a] = std::min(low[a] + 1, grid_->cells(a) - 1);
-        }
-        const auto height = [&](int i, int j) { return heights_[column(i, j)]; };
-        const auto along = [&](int j) {
-            return (1 - weight[0]) * height(low[0], j) + weight[0] * height(high[0], j);
-        };
-        if constexpr (Dim == 2) return along(0);
-        return (1 - weight[1]) * along(low[1]) + weight[1] * along(high[1]);
+        return heights_.at(*grid_, x);
     }
 
     Real kinetic_energy() const {  ///< [J]; in two dimensions per width
@@ -368,35 +356,6 @@ private:
         return text + "] has " + short_text(most.speed) + " m/s along " + Grid<Dim>::axis_name(most.axis);
     }
 
-    std::size_t column(int plane, int across) const noexcept {
-        return static_cast<std::size_t>(plane) * static_cast<std::size_t>(Dim == 3 ? grid_->cells(1) : 1) +
-               static_cast<std::size_t>(across);
-    }
-    /// Of the walls alone.
-    std::vector<Real> dry_heights() const {
-        std::vector<Real> heights(column(grid_->cells(0), 0), grid_->low(Dim - 1));
-        if (const Walls<Dim>* walls = water_->walls())
-            grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
-                heights[column(cell[0], Dim == 3 ? cell[1] : 0)] +=
-                    grid_->size(Dim - 1, cell[Dim - 1]) * (1 - walls->open_volume()[c]);
-            });
-        return heights;
-    }
-    void find_heights() {
-        heights_ = dry_heights_;
-        water_->rows().for_each_row([&](int plane, int row, const RowRange& r) {
-            const Real* const held = water_->held().data() + layout().row_start(plane, row);
-            if constexpr (Dim == 3) {
-                const Real size = grid_->size(Dim - 1, row);
-                Real* const heights = heights_.data() + column(plane, 0);
-                for (int j = r.begin; j < r.end; ++j) heights[j] += size * held[j];
-            } else {
-                for (int k = r.begin; k < r.end; ++k)
-                    heights_[column(plane, 0)] += grid_->size(Dim - 1, k) * held[k];
-            }
-        });
-    }
-
     Params params_;
     std::shared_ptr<const Grid<Dim>> grid_;  ///< shared among copies, parts of which point to it
     VelocitySides<Dim> sides_;
@@ -406,7 +365,7 @@ private:
     Field<Real> saved_fraction_;
     std::conditional_t<has_surface, std::optional<detail::SurfaceWater<Dim>>, Nothing> water_{};
     WetRows<Dim> saved_rows_;
-    std::vector<Real> heights_, dry_heights_;  ///< [x][y] of the surface; of walls alone [m]
+    std::conditional_t<has_surface, detail::SurfaceHeights<Dim>, Nothing> heights_{};
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Index steps_ = 0;

@@ -76,7 +76,11 @@ public:
         Report report;
         report.before = report.after =
             std::sqrt(sum_over_planes([&](int plane) { return squares(fine.b, plane); }));
-        solution_.fill(0);
+        parallel_planes(a.layout.planes(), [&](int plane) {
+            for_rows(plane, [&](Offset start, RowRange r) {
+                std::fill_n(solution_.data() + start + r.begin, r.length(), 0.0f);
+            });
+        });
         Real rho_before = 0;
         while (report.after > target && report.iterations < limit) {
             const Real rho = cycle(0);
@@ -132,39 +136,68 @@ private:
     static void coarsen(const Level& fine, Level& coarse) {
         const Poisson<Dim>& f = fine.matrix;
         Poisson<Dim>& c = coarse.matrix;
-        const Layout<Dim>& lf = f.layout;
-        for (auto& component : c.face) component.fill(0);
-        c.dirichlet.fill(0);
+        const Layout<Dim>&lf = f.layout, &lc = c.layout;
         c.amid = f.amid;
-        for (std::size_t a = 0; a < Dim; ++a) {
+        for (int a = 0; a < Dim; ++a) {
             if (!fine.paired[a]) continue;
-            for (std::size_t b = 0; b < Dim; ++b) c.amid[b] *= a == b ? 0.5f : 2.0f;
+            for (int b = 0; b < Dim; ++b) c.amid[b] *= a == b ? 0.5f : 2.0f;
         }
-        const auto parent = [&](int a, int i) { return fine.paired[a] ? i / 2 : i; };
-        parallel_tasks(c.layout.planes(), [&](Index coarse_plane) {
-            const int first = fine.paired[outer] ? 2 * coarse_plane : coarse_plane;
-            const int last = fine.paired[outer] ? std::min(first + 2, lf.planes()) : first + 1;
-            for (int plane = first; plane < last; ++plane) {
-                for (int row = 0; row < lf.rows_per_plane(); ++row) {
-                    const Offset from = lf.row_start(plane, row);
-                    const Offset to = c.layout.row_start(coarse_plane, Dim == 3 ? parent(Dim - 1, row) : 0);
-                    const RowRange r = f.range(plane, row);
-                    for (int i = r.begin; i < r.end; ++i) {
-                        const Offset p = to + parent(inner, i);
-                        c.dirichlet[p] += 0.5f * f.dirichlet[from + i];
-                        for (int a = 0; a < Dim; ++a) {
-                            const int number = a == outer ? plane : a == inner ? i : row;
-                            if (!fine.paired[a])
-                                c.face[a][p] += f.face[a][from + i];
-                            else if (number % 2 == 0)
-                                c.face[a][p] += 0.5f * f.face[a][from + i];
-                        }
-                    }
-                }
+        /// Fine numbers that make up a coarse one.
+        const auto children = [&](int a, int i) {
+            const int first = fine.paired[a] ? 2 * i : i;
+            return RowRange{first, std::min(first + (fine.paired[a] ? 2 : 1), lf.cells[a])};
+        };
+        parallel_tasks(lc.planes(), [&](Index coarse_plane) {
+            const RowRange planes = children(outer, coarse_plane);
+            for (int coarse_row = 0; coarse_row < lc.rows_per_plane(); ++coarse_row) {
+                const RowRange rows = Dim == 3 ? children(Dim - 1, coarse_row) : RowRange{0, 1};
+                RowRange all;
+                for (int plane = planes.begin; plane < planes.end; ++plane)
+                    for (int row = rows.begin; row < rows.end; ++row) all = hull(all, f.range(plane, row));
+                if (fine.paired[inner] && !all.empty()) all = {all.begin / 2, (all.end + 1) / 2};
+                all = hull(all, c.range(coarse_plane, coarse_row));
+                c.look_at(coarse_plane, coarse_row, all);
+                if (all.empty()) continue;
+                const Offset to = lc.row_start(coarse_plane, coarse_row);
+                for (auto& component : c.face)
+                    std::fill_n(component.data() + to + all.begin, all.length() + 1, 0.0f);
+                std::fill_n(c.dirichlet.data() + to + all.begin, all.length(), 0.0f);
+                for (int plane = planes.begin; plane < planes.end; ++plane)
+                    for (int row = rows.begin; row < rows.end; ++row) gather(fine, coarse, {plane, row}, to);
             }
         });
         close_periodic(c);
-        parallel_tasks(c.layout.planes(), [&](Index plane) { c.complete(plane); });
+        parallel_tasks(lc.planes(), [&](Index plane) { c.complete(plane); });
+    }
+
+    struct RowNumber {
+        int plane, row;
+    };
+    /// Adds what a fine row conducts to the coarse row that starts at `to`.
+    static void gather(const Level& fine, Level& coarse, RowNumber at, Offset to) {
+        const Poisson<Dim>& f = fine.matrix;
+        const RowRange r = f.range(at.plane, at.row);
+        const Offset from = f.layout.row_start(at.plane, at.row);
+        const bool pairs = fine.paired[inner];
+        const auto parent = [&](int i) { return pairs ? i / 2 : i; };
+        const float* const dirichlet = f.dirichlet.data() + from;
+        float* const tied = coarse.matrix.dirichlet.data() + to;
+        for (int i = r.begin; i < r.end; ++i) tied[parent(i)] += 0.5f * dirichlet[i];
+        for (int a = 0; a < Dim; ++a) {
+            const float* const face = f.face[a].data() + from;
+            float* const sum = coarse.matrix.face[a].data() + to;
+            if (a == inner) {
+                if (pairs)
+                    for (int j = (r.begin + 1) / 2; j < (r.end + 1) / 2; ++j) sum[j] += 0.5f * face[2 * j];
+                else
+                    for (int i = r.begin; i < r.end; ++i) sum[i] += face[i];
+                continue;
+            }
+            const int number = a == outer ? at.plane : at.row;
+            if (fine.paired[a] && number % 2 != 0) continue;  // inside the coarse cell
+            const float share = fine.paired[a] ? 0.5f : 1.0f;
+            for (int i = r.begin; i < r.end; ++i) sum[parent(i)] += share * face[i];
+        }
     }
 
     /// x of level l from its b, one V-cycle; returns b . x.

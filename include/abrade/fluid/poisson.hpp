@@ -28,7 +28,8 @@ struct Poisson {
     Poisson() = default;
     Poisson(const Layout<Dim>& l, const PerAxis<bool, Dim>& repeats)
         : layout(l), periodic(repeats), face(face_field<Dim, float>(l)), dirichlet(l.total),
-          inverse_diagonal(l.total), rows(static_cast<std::size_t>(l.planes() * l.rows_per_plane())),
+          inverse_diagonal(l.total),
+          rows(static_cast<std::size_t>(l.planes() * l.rows_per_plane()), {0, l.row_length()}),
           even_rows(rows) {}
 
     RowRange range(int plane, int row) const noexcept { return rows[index(plane, row)]; }
@@ -118,13 +119,17 @@ struct Poisson {
         return static_cast<double>(sum);
     }
 
+    /// Before `complete`: which cells of a row may take part, those of the last time included.
+    void look_at(int plane, int row, RowRange cells) noexcept { rows[index(plane, row)] = cells; }
+
     /// From faces, `dirichlet` and `amid` all the rest on a plane: the inverse diagonal, the ranges of rows.
     void complete(int plane) noexcept {
         for (int row = 0; row < layout.rows_per_plane(); ++row) {
+            const RowRange within = range(plane, row);
+            if (within.empty()) continue;
             const Offset start = layout.row_start(plane, row);
-            const int n = layout.row_length();
-            RowRange r{n, 0};
-            for (int i = 0; i < n; ++i) {
+            RowRange r{within.end, within.begin};
+            for (int i = within.begin; i < within.end; ++i) {
                 const Offset c = start + i;
                 float sum = dirichlet[c];
                 for (int a = 0; a < Dim; ++a) sum += face[a][c] + face[a][c + layout.stride[a]];

@@ -38,7 +38,7 @@ public:
         for (int a = 0; a < Dim; ++a)
             for (const int end : {0, 1}) {
                 if (sides_[a][end] != Side::outflow) continue;
-                for_side(a, end == 1, [&](const CellNumber<Dim>& cell, Offset c) {
+                grid_->for_each_beside(a, end == 1, [&](const CellNumber<Dim>& cell, Offset c) {
                     if (!wet[c]) return;
                     const Real slope = 2 / grid_->size(a, cell[a]);
                     found.push_back(
@@ -132,16 +132,12 @@ private:
         const int level = grid_->layout().number(open.cell)[vertical];
         return area(open.axis, level) * (open_area_ ? (*open_area_)[open.axis][open.face] : 1);
     }
-    void for_side(int axis, bool high, auto&& body) const {
-        grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            if (cell[axis] == (high ? grid_->cells(axis) - 1 : 0)) body(cell, c);
-        });
-    }
 
     /// Conductances of a row's lower faces.
     void conduct(const WaterCells<Dim>& water, int plane, int row) {
         Poisson<Dim>& m = multigrid_.matrix();
         const RowRange r = water.rows.row(plane, row);
+        m.look_at(plane, row, r);
         if (r.empty()) return;
         const Layout<Dim>& l = grid_->layout();
         const Offset start = l.row_start(plane, row);

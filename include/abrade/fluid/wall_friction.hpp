@@ -106,8 +106,7 @@ private:
         for (int b = 0; b < Dim; ++b)
             for (const int end : {0, 1}) {
                 if (sides[b][end] != Side::wall) continue;
-                grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
-                    if (cell[b] != (end == 0 ? 0 : grid.cells(b) - 1)) return;
+                grid.for_each_beside(b, end == 1, [&](const CellNumber<Dim>& cell, Offset c) {
                     for (int a = 0; a < Dim; ++a)
                         if (a != b && cell[a] > 0 && (!walls || walls->open_area()[a][c] > 0))
                             held_[a].push_back({c, 0.5 * grid.size(b, cell[b]), 1 / grid.size(b, cell[b])});
