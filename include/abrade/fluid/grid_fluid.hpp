@@ -64,6 +64,7 @@ public:
             fastest_ = report_.courant;
         }
         finish(velocity_);
+        if constexpr (has_surface) find_pressure_of_weight();
         enters_ = rate_of_inflow();
         fastest_ = std::max(fastest_, enters_);
         saved_velocity_ = velocity_;
@@ -191,6 +192,26 @@ private:
             for (Side& side : ends)
                 if (side == Side::wall) side = Side::slip;
         return sides;
+    }
+
+    /// The pressure that holds the water's weight: so the first step is none of falling.
+    void find_pressure_of_weight() {
+        if (params_.gravity.isZero()) return;
+        for (int a = 0; a < Dim; ++a) {
+            stage_[a].fill(params_.gravity[a]);
+            for (const bool high : {false, true}) {
+                const Side side = params_.sides[a][high];
+                if (side == Side::periodic || side == Side::outflow) continue;
+                sides_.along_side({a, high}, [&](Offset c, std::size_t) {
+                    stage_[a][high ? c + layout().stride[a] : c] = 0;
+                });
+            }
+        }
+        if (const FaceField<Dim>* open = water_->open_area())
+            grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
+                for (int a = 0; a < Dim; ++a) stage_[a][c] *= (*open)[a][c] > 0;
+            });
+        projection_.project(stage_, pressure_, 1, 1e-12);
     }
 
     void step_full(Real dt) {

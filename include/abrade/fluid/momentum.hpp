@@ -3,7 +3,7 @@
 // step.
 
 #include <abrade/fluid/advection_schemes.hpp>
-#include <abrade/fluid/row_value.hpp>
+#include <abrade/fluid/level_table.hpp>
 #include <abrade/fluid/wet_rows.hpp>
 
 namespace abrade {
@@ -36,173 +36,204 @@ struct MomentumStage {
 namespace detail {
 
 /// Fluxes through sides of the control volumes are computed once and kept until both neighbours have had
-/// them.
+/// them. Loops go over whole packs; what lies in them beyond a row's range is computed and thrown away.
 template <class Scheme, int Dim, class State>
 class MomentumRows {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner, middle = 2;
-    static constexpr int vertical = Grid<Dim>::vertical;
+    static constexpr int vertical = Grid<Dim>::vertical, lanes = Layout<Dim>::lanes;
+    using Table = LevelTable<Dim, State>;
     /// Below this share of a control volume there is no momentum to speak of: the velocity is taken from
     /// outside.
     static constexpr Real least_mass = 1e-9;
+    /// And below this one what is carried into it is kept among what is around.
+    static constexpr Real sliver = 0.5;
 
 public:
     MomentumRows(const Grid<Dim>& grid, const MomentumStage<Dim, State>& stage)
-        : grid_(grid), layout_(grid.layout()), s_(stage), pitch_(layout_.row_length() + 16) {}
+        : layout_(grid.layout()), s_(stage), pitch_(layout_.row_length() + 2 * lanes) {
+        for (int a = 0; a < Dim; ++a) {
+            const int up = a == vertical;
+            lower_half_[a] = Table(grid, [&](int k) { return half(grid, a, k, false); });
+            upper_half_[a] = Table(grid, [&](int k) { return half(grid, a, k, true); });
+            push_[a] = Table(grid, [&](int k) { return s_.pressure_weight / grid.gap(a, up ? k : 0); });
+            for (int b = 0; b < Dim; ++b) {
+                const int along = b == vertical;
+                lower_[a][b] = Table(grid, [&](int k) {
+                    return (a == b ? 0.5 : half(grid, a, k, false)) * per_carrier(grid, b, k - up);
+                });
+                upper_[a][b] = Table(grid, [&](int k) {
+                    return (a == b ? 0.5 : half(grid, a, k, true)) * per_carrier(grid, b, k);
+                });
+                friction_[a][b] = Table(grid, [&](int k) {
+                    return s_.viscosity /
+                           (a == b ? grid.size(a, up ? k - 1 : 0) : grid.gap(b, along ? k : 0));
+                });
+                share_[a][b] = Table(grid, [&](int k) {
+                    return s_.time_step / (a == b ? grid.gap(b, up ? k : 0) : grid.size(b, along ? k : 0));
+                });
+            }
+        }
+    }
 
     /// Component `a` on planes [first, last).
     void run(int a, const WetRows<Dim>& faces, int first, int last) {
         const int rows = layout_.rows_per_plane();
-        const auto room = static_cast<std::size_t>(pitch_);
-        plane_.resize(room * static_cast<std::size_t>(rows));
-        above_.resize(room), along_.resize(room), low_.resize(room), high_.resize(room);
+        below_.resize(room(rows)), above_.resize(room(rows));
+        along_.resize(room(1)), low_.resize(room(1)), high_.resize(room(1));
         for (int row = 0; row < rows; ++row)
-            flux(a, outer, first, row, faces.range(first, row),
-                 plane_.data() + room * static_cast<std::size_t>(row));
+            flux(a, outer, first, row, faces.range(first, row), below_.data() + room(row));
         for (int plane = first; plane < last; ++plane) {
             if constexpr (Dim == 3) flux(a, middle, plane, 0, faces.range(plane, 0), low_.data());
             for (int row = 0; row < rows; ++row) {
                 const RowRange r = faces.range(plane, row);
-                State* const below = plane_.data() + room * static_cast<std::size_t>(row);
-                flux(a, outer, plane + 1, row, hull(r, faces.range(plane + 1, row)), above_.data());
+                flux(a, outer, plane + 1, row, hull(r, faces.range(plane + 1, row)),
+                     above_.data() + room(row));
                 if constexpr (Dim == 3)
                     flux(a, middle, plane, row + 1, hull(r, faces.range(plane, row + 1)), high_.data());
                 if (!r.empty()) {
                     flux(a, inner, plane, row, {r.begin, r.end + 1}, along_.data());
-                    combine(a, plane, row, r, below);
+                    combine(a, plane, row, r);
                 }
-                std::copy(above_.begin(), above_.end(), below);
                 std::swap(low_, high_);
             }
+            std::swap(below_, above_);
         }
     }
 
 private:
-    /// Number of a cell of (plane, row) along `axis`.
-    static int number(int axis, int plane, int row, int i) noexcept {
-        return axis == outer ? plane : axis == inner ? i : row;
+    std::size_t room(int rows) const noexcept {
+        return static_cast<std::size_t>(pitch_) * static_cast<std::size_t>(rows);
     }
-    /// 1 over what turns a carrier of cells at a number along the vertical into a velocity.
-    Real per_carrier(int axis, int level) const noexcept {
+    static int whole(int i) noexcept { return i & ~(lanes - 1); }
+    /// 1 over what turns a carrier of cells at a level into a velocity.
+    Real per_carrier(const Grid<Dim>& grid, int axis, int level) const noexcept {
         if (s_.carried_in == 0) return 1;
         Real area = 1;
         for (int a = 0; a < Dim; ++a)
-            if (a != axis) area *= grid_.size(a, a == vertical ? level : 0);
+            if (a != axis) area *= grid.size(a, a == vertical ? level : 0);
         return 1 / (area * s_.carried_in);
     }
-    /// Share of control volume a that lies in the cell below its face (`upper` false) or above.
-    Real half(int a, int number_of_cell, bool upper) const noexcept {
-        return 0.5 * grid_.size(a, upper ? number_of_cell : number_of_cell - 1) /
-               grid_.gap(a, number_of_cell);
+    /// Share of the control volume of a face that lies in the cell below it (`upper` false) or above.
+    static Real half(const Grid<Dim>& grid, int a, int level, bool upper) noexcept {
+        const int number = a == vertical ? level : 0;
+        return 0.5 * grid.size(a, upper ? number : number - 1) / grid.gap(a, number);
     }
 
     /// G through the lower side along b of the control volumes of component a in a row.
-    void flux(int a, int b, int plane, int row, RowRange r, State* __restrict out) noexcept {
+    void flux(int a, int b, int plane, int row, RowRange r, State* __restrict out) const noexcept {
         if (r.empty()) return;
         const Offset start = layout_.row_start(plane, row), across = layout_.stride[b];
         const State* const __restrict u = s_.velocity[a].data() + start;
+        const State* const __restrict far_below = u - 2 * across;
+        const State* const __restrict below = u - across;
+        const State* const __restrict above = u + across;
         const State* const __restrict w = s_.carrier[b].data() + start;
-        const Offset back = layout_.stride[a];
-        const auto cell = [&](int axis, int i) { return number(axis, plane, row, i); };
+        const State* const __restrict w_back = w - layout_.stride[a];
         // Half of what flows through the sides of each of the two cells that the volume lies in.
-        const RowValue<Dim, State> lower(values_[0], r.begin, r.end, [&](int i) {
-            const int level = cell(vertical, i) - (a == vertical ? 1 : 0);
-            return (a == b ? 0.5 : half(a, cell(a, i), false)) * per_carrier(b, level);
-        });
-        const RowValue<Dim, State> upper(values_[1], r.begin, r.end, [&](int i) {
-            return (a == b ? 0.5 : half(a, cell(a, i), true)) * per_carrier(b, cell(vertical, i));
-        });
-        const RowValue<Dim, State> friction(values_[2], r.begin, r.end, [&](int i) {
-            return s_.viscosity / (a == b ? grid_.size(a, cell(a, i) - 1) : grid_.gap(b, cell(b, i)));
-        });
+        const auto lower = lower_[a][b].row(row), upper = upper_[a][b].row(row),
+                   friction = friction_[a][b].row(row);
         const auto through = [&](int i, State open) {
-            const State carried = upper[i] * w[i] + lower[i] * w[i - back];
-            const State far_low = u[i - 2 * across], low = u[i - across], high = u[i],
-                        far_high = u[i + across];
+            const State carried = upper[i] * w[i] + lower[i] * w_back[i];
             const bool rising = carried > 0;
-            const State value =
-                Scheme::at_face(rising ? far_low : far_high, rising ? low : high, rising ? high : low);
-            return carried * value - open * friction[i] * (high - low);
+            const State value = Scheme::at_face(rising ? far_below[i] : above[i], rising ? below[i] : u[i],
+                                                rising ? u[i] : below[i]);
+            return carried * value - open * friction[i] * (u[i] - below[i]);
         };
         if (s_.open_area) {  // friction acts on what is open; the wall's own is added apart
             const Real* const __restrict open = (*s_.open_area)[b].data() + start;
-            for (int i = r.begin; i < r.end; ++i)
-                out[i] = through(i, static_cast<State>(0.5 * (open[i] + open[i - back])));
+            const Real* const __restrict open_back = open - layout_.stride[a];
+            for (int i = whole(r.begin); i < r.end; i += lanes)
+#pragma omp simd
+                for (int k = i; k < i + lanes; ++k)
+                    out[k] = through(k, static_cast<State>(0.5 * (open[k] + open_back[k])));
             return;
         }
+        for (int i = whole(r.begin); i < r.end; i += lanes)
 #pragma omp simd
-        for (int i = r.begin; i < r.end; ++i) out[i] = through(i, 1);
+            for (int k = i; k < i + lanes; ++k) out[k] = through(k, 1);
     }
 
-    void combine(int a, int plane, int row, RowRange r, const State* __restrict below) noexcept {
+    void combine(int a, int plane, int row, RowRange r) noexcept {
         const Offset start = layout_.row_start(plane, row), back = layout_.stride[a];
-        const auto cell = [&](int axis, int i) { return number(axis, plane, row, i); };
-        const auto share = [&](int b) {
-            return [&, b](int i) {
-                return s_.time_step / (a == b ? grid_.gap(b, cell(b, i)) : grid_.size(b, cell(b, i)));
-            };
-        };
-        const auto share_outer = static_cast<State>(share(outer)(0));
-        const auto share_middle = Dim == 3 ? static_cast<State>(share(Dim - 1)(0)) : State(0);
-        const RowValue<Dim, State> share_inner(values_[0], r.begin, r.end, share(inner));
-        const RowValue<Dim, State> push(values_[1], r.begin, r.end,
-                                        [&](int i) { return s_.pressure_weight / grid_.gap(a, cell(a, i)); });
+        const auto share_outer = share_[a][outer].row(row), share_middle = share_[a][Dim - 1].row(row),
+                   share_inner = share_[a][inner].row(row), push = push_[a].row(row),
+                   lower = lower_half_[a].row(row), upper = upper_half_[a].row(row);
         const auto gravity = static_cast<State>(s_.time_step * s_.acceleration[a]);
         const auto kept = static_cast<State>(s_.kept), fresh = static_cast<State>(1 - s_.kept);
         const State* const __restrict p = s_.pressure.data() + start;
+        const State* const __restrict p_back = p - back;
         const State* const velocity = s_.velocity[a].data() + start;
         const State* const begin = s_.start[a].data() + start;
         State* const result = s_.result[a].data() + start;
-        const State* const __restrict above = above_.data();
+        const State* const __restrict below = below_.data() + room(row);
+        const State* const __restrict above = above_.data() + room(row);
         const State* const __restrict along = along_.data();
         const State* const __restrict low = low_.data(), * const __restrict high = high_.data();
         const auto change = [&](int i) {
-            State sum = -share_outer * (above[i] - below[i]) - share_inner[i] * (along[i + 1] - along[i]);
-            if constexpr (Dim == 3) sum -= share_middle * (high[i] - low[i]);
+            State sum = -share_outer[i] * (above[i] - below[i]) - share_inner[i] * (along[i + 1] - along[i]);
+            if constexpr (Dim == 3) sum -= share_middle[i] * (high[i] - low[i]);
             return sum;
         };
-        if (!s_.held) {
+        const State* const now = s_.held ? s_.held->data() + start : nullptr;
+        const State* const before = s_.held ? s_.held_before->data() + start : nullptr;
+        const Real* const open = s_.open_area ? (*s_.open_area)[a].data() + start : nullptr;
+        for (int first = whole(r.begin); first < r.end; first += lanes) {
+            // Read as a whole before it is written: `result` may be `start`.
+            alignas(64) State value[lanes];
+            if (!now || is_full(now + first, before + first, back)) {
 #pragma omp simd
-            for (int i = r.begin; i < r.end; ++i)
-                result[i] = kept * velocity[i] + fresh * (begin[i] + change(i) + gravity) +
-                            push[i] * (p[i] - p[i - back]);
-            return;
-        }
-        const State* const __restrict before = s_.held_before->data() + start;
-        const State* const __restrict now = s_.held->data() + start;
-        const RowValue<Dim, State> lower(values_[2], r.begin, r.end,
-                                         [&](int i) { return half(a, cell(a, i), false); });
-        const RowValue<Dim, State> upper(values_[3], r.begin, r.end,
-                                         [&](int i) { return half(a, cell(a, i), true); });
+                for (int k = 0; k < lanes; ++k) {
+                    const int i = first + k;
+                    value[k] = kept * velocity[i] + fresh * (begin[i] + change(i) + gravity) +
+                               push[i] * (p[i] - p_back[i]);
+                }
+            } else {
 #pragma omp simd
-        for (int i = r.begin; i < r.end; ++i) {
-            const State mass = upper[i] * now[i] + lower[i] * now[i - back];
-            const State mass_before = upper[i] * before[i] + lower[i] * before[i - back];
-            const State per_mass = mass > State(least_mass) ? 1 / mass : State(0);
-            // What is carried into little liquid is a mean of what was there and around: a sweep after
-            // another may have moved more liquid out of a sliver than it held at the beginning.
-            State least = std::min(velocity[i], begin[i]), most = std::max(velocity[i], begin[i]);
-            for (int b = 0; b < Dim; ++b) {
-                const Offset across = layout_.stride[b];
-                least = std::min(least, std::min(velocity[i - across], velocity[i + across]));
-                most = std::max(most, std::max(velocity[i - across], velocity[i + across]));
+                for (int k = 0; k < lanes; ++k) {
+                    const int i = first + k;
+                    const State mass = upper[i] * now[i] + lower[i] * now[i - back];
+                    const State mass_before = upper[i] * before[i] + lower[i] * before[i - back];
+                    // What is carried into little liquid is a mean of what was there and around: a sweep
+                    // after another may have moved more liquid out of a sliver than it held at the beginning.
+                    State least = std::min(velocity[i], begin[i]), most = std::max(velocity[i], begin[i]);
+                    for (int b = 0; b < Dim; ++b) {
+                        const Offset across = layout_.stride[b];
+                        least = std::min(least, std::min(velocity[i - across], velocity[i + across]));
+                        most = std::max(most, std::max(velocity[i - across], velocity[i + across]));
+                    }
+                    const State carried =
+                        (mass_before * begin[i] + change(i)) / std::max(mass, State(least_mass));
+                    const State bounded = std::min(most, std::max(least, carried));
+                    const State moved = (mass < State(sliver) ? bounded : carried) + gravity;
+                    value[k] = kept * velocity[i] + (mass > State(least_mass) ? fresh * moved : State(0)) +
+                               push[i] * (p[i] - p_back[i]);
+                }
             }
-            const State carried = (mass_before * begin[i] + change(i)) * per_mass;
-            const State moved =
-                mass > State(least_mass) ? std::min(most, std::max(least, carried)) + gravity : State(0);
-            result[i] = kept * velocity[i] + fresh * moved + push[i] * (p[i] - p[i - back]);
+            if (open)
+                for (int k = 0; k < lanes; ++k) value[k] = open[first + k] > 0 ? value[k] : State(0);
+            if (r.begin <= first && first + lanes <= r.end)
+                std::copy_n(value, lanes, result + first);
+            else
+                for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
+                    result[i] = value[i - first];
         }
-        if (!s_.open_area) return;
-        const Real* const __restrict open = (*s_.open_area)[a].data() + start;
-#pragma omp simd
-        for (int i = r.begin; i < r.end; ++i) result[i] = open[i] > 0 ? result[i] : State(0);
     }
 
-    const Grid<Dim>& grid_;
+    /// Whether a pack's control volumes are full of liquid, before and now.
+    static bool is_full(const State* now, const State* before, Offset back) noexcept {
+        int full = 1;
+        for (int k = 0; k < lanes; ++k)
+            full &= static_cast<int>(now[k] == 1) & static_cast<int>(now[k - back] == 1) &
+                    static_cast<int>(before[k] == 1) & static_cast<int>(before[k - back] == 1);
+        return full != 0;
+    }
+
     const Layout<Dim>& layout_;
     const MomentumStage<Dim, State>& s_;
     int pitch_;
-    std::vector<State> plane_, above_, along_, low_, high_;
-    std::array<std::vector<State>, 4> values_;
+    PerAxis<Table, Dim> lower_half_, upper_half_, push_;                  ///< [component]
+    PerAxis<PerAxis<Table, Dim>, Dim> lower_, upper_, friction_, share_;  ///< [component][axis of the flux]
+    std::vector<State> below_, above_, along_, low_, high_;
 };
 
 }  // namespace detail
