@@ -133,11 +133,13 @@ private:
         const auto lower = lower_[a][b].row(row), upper = upper_[a][b].row(row),
                    friction = friction_[a][b].row(row);
         const auto through = [&](int i, State open) {
+            // All four are read before it is known which are needed: loads that wait for a condition are slow.
+            const State far_low = far_below[i], low = below[i], high = u[i], far_high = above[i];
             const State carried = upper[i] * w[i] + lower[i] * w_back[i];
             const bool rising = carried > 0;
-            const State value = Scheme::at_face(rising ? far_below[i] : above[i], rising ? below[i] : u[i],
-                                                rising ? u[i] : below[i]);
-            return carried * value - open * friction[i] * (u[i] - below[i]);
+            const State value =
+                Scheme::at_face(rising ? far_low : far_high, rising ? low : high, rising ? high : low);
+            return carried * value - open * friction[i] * (high - low);
         };
         if (s_.open_area) {  // friction acts on what is open; the wall's own is added apart
             const Real* const __restrict open = (*s_.open_area)[b].data() + start;
