@@ -227,7 +227,7 @@ private:
         sides_.fill(stage_);
         stage(stage_, saved_velocity_, 0.5);
         std::swap(velocity_, saved_velocity_);
-        sides_.fill(velocity_);
+        if (!params_.steady_sides) sides_.fill(velocity_);
         report_ = projection_.project(velocity_, pressure_, dt, params_.tolerance);
         finish(velocity_);
     }
@@ -236,8 +236,10 @@ private:
         auto& water = *water_;
         water.move(velocity_, dt);
         // Of the velocity as the pressure left it: water at rest feels no friction.
-        water.friction().apply(velocity_, dt, nu());
-        sides_.fill(velocity_, &water.rows());
+        if (!water.friction().empty()) {
+            water.friction().apply(velocity_, dt, nu());
+            sides_.fill(velocity_, &water.rows());
+        }
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
             Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), params_.gravity};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
@@ -257,7 +259,8 @@ private:
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.find(projection_, pressure_, sides_);
         push_leaving(dt);
-        sides_.fill(velocity_, &water.rows());
+        // At steady sides there is what was there at the beginning of the step.
+        if (!params_.steady_sides) sides_.fill(velocity_, &water.rows());
         report_ =
             projection_.project(velocity_, pressure_, dt, params_.tolerance, true, &water.liquid().surplus());
         finish(velocity_);

@@ -133,7 +133,8 @@ private:
         const auto lower = lower_[a][b].row(row), upper = upper_[a][b].row(row),
                    friction = friction_[a][b].row(row);
         const auto through = [&](int i, State open) {
-            // All four are read before it is known which are needed: loads that wait for a condition are slow.
+            // All four are read before it is known which are needed: loads that wait for a condition are
+            // slow.
             const State far_low = far_below[i], low = below[i], high = u[i], far_high = above[i];
             const State carried = upper[i] * w[i] + lower[i] * w_back[i];
             const bool rising = carried > 0;

@@ -23,7 +23,8 @@ public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides),
           friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
-          wet_(grid.layout().total), rows_(grid.layout()), extension_(grid.layout()) {
+          wet_(grid.layout().total), rows_(grid.layout()), extension_(grid.layout()),
+          open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         // The projection begins with a full box.
         for (int plane = 0; plane < layout().planes(); ++plane)
@@ -79,6 +80,7 @@ public:
                 Real* const __restrict c = liquid_.moved()[a].data() + start;
                 const Real *const u = velocity[a].data() + start, *const v = stage[a].data() + start;
                 const Real *const f = held().data() + start, *const g = before_.data() + start;
+#pragma omp simd
                 for (int i = r.begin; i < r.end; ++i) {
                     const Real area = swept[static_cast<std::size_t>(Dim == 3 ? row : i)];
                     const bool full = f[i] == 1 && f[i - back] == 1 && g[i] == 1 && g[i - back] == 1;
@@ -96,20 +98,19 @@ public:
         const Field<Real>& f = liquid_.fraction();
         rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout().row_start(plane, row);
-            for (Offset c = start + r.begin; c < start + r.end; ++c) {
-                wet_[c] = f[c] >= 0.5 && is_open(c);
-                if (!wet_[c]) pressure[c] = 0;
+            const Real* const __restrict liquid = f.data() + start;
+            const Real* const __restrict room = walls_ ? walls_->open_volume().data() + start : liquid;
+            std::uint8_t* const __restrict wet = wet_.data() + start;
+            Real* const __restrict p = pressure.data() + start;
+#pragma omp simd
+            for (int i = r.begin; i < r.end; ++i) {
+                const bool is_wet = liquid[i] >= 0.5 && room[i] > 0;
+                wet[i] = is_wet;
+                p[i] = is_wet ? p[i] : 0;
             }
         });
         sides.join_cells(wet_);
-        open_ = projection.outflows(wet_);
-        for (int plane = 0; plane < layout().planes(); ++plane)
-            for (int row = 0; row < layout().rows_per_plane(); ++row) {
-                const RowRange r = rows_.row(plane, row);
-                const Offset start = layout().row_start(plane, row);
-                for (int i = r.begin; i < r.end; ++i)
-                    if (!wet_[start + i] && is_open(start + i)) add_open_faces(start + i, plane, row, i);
-            }
+        find_open_faces(projection);
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
     }
 
@@ -209,22 +210,61 @@ private:
         }
     }
 
+    /// Between wet cells and dry ones, and where water leaves the box.
+    void find_open_faces(const Projection<Dim, Real>& projection) {
+        rows_.for_each_plane([&](int plane) {
+            auto& open = open_in_[static_cast<std::size_t>(plane)];
+            open.clear();
+            for (int row = 0; row < layout().rows_per_plane(); ++row) {
+                const RowRange r = rows_.row(plane, row);
+                const Offset start = layout().row_start(plane, row);
+                const std::uint8_t* const wet = wet_.data() + start;
+                constexpr int lanes = 4 * Layout<Dim>::lanes;
+                const auto s = layout().stride;
+                for (int first = r.begin; first < r.end; first += lanes) {
+                    const int count = std::min(lanes, r.end - first);
+                    std::uint8_t beside[lanes];
+                    int any = 0;
+                    for (int k = 0; k < count; ++k) {
+                        const std::uint8_t* const w = wet + first + k;
+                        int near = w[-s[0]] | w[s[0]] | w[-s[1]] | w[s[1]];
+                        if constexpr (Dim == 3) near |= w[-s[2]] | w[s[2]];
+                        beside[k] = static_cast<std::uint8_t>(near & (*w ^ 1));
+                        any |= beside[k];
+                    }
+                    if (any == 0) continue;
+                    for (int k = 0; k < count; ++k)
+                        if (beside[k] != 0 && is_open(start + first + k))
+                            add_open_faces(open, start + first + k, {plane, row, first + k});
+                }
+            }
+        });
+        open_ = projection.outflows(wet_);
+        for (const auto& open : open_in_) open_.insert(open_.end(), open.begin(), open.end());
+    }
+
+    struct Place {
+        int plane, row, i;
+    };
     /// The faces between a dry cell and its wet neighbours.
-    void add_open_faces(Offset c, int plane, int row, int i) {
-        const int level = Dim == 3 ? row : i;
-        for (int a = 0; a < Dim; ++a) {
+    void add_open_faces(std::vector<OpenFace>& open, Offset c, const Place& place) const {
+        const auto add_along = [&](int a, int number) {
             const Offset s = layout().stride[a];
-            const int number = a == outer ? plane : a == inner ? i : row, up = a == vertical;
+            const int level = Dim == 3 ? place.row : place.i, up = a == vertical;
             // `above`: 1 where the wet cell is the upper one, -1 where it is the lower.
-            const auto add = [&](Offset wet, Offset face, int above, int upper, int wet_level) {
-                if (walls_ && walls_->open_area()[a][face] == 0) return;
-                const Real plain = above / grid_->gap(a, upper);
-                const Real share = liquid_.surface_share(wet, wet_level, a, -above, least_share);
-                open_.push_back({face, wet, a, plain / share, plain});
+            const auto add = [&](Offset face, int above) {
+                const Offset wet = above > 0 ? c + s : c - s;
+                if (wet_[wet] == 0 || (walls_ && walls_->open_area()[a][face] == 0)) return;
+                const Real plain = above / grid_->gap(a, above > 0 ? number + 1 : number);
+                const Real share = liquid_.surface_share(wet, level + above * up, a, -above, least_share);
+                open.push_back({face, wet, a, plain / share, plain});
             };
-            if (number + 1 < layout().cells[a] && wet_[c + s]) add(c + s, c + s, 1, number + 1, level + up);
-            if (number > 0 && wet_[c - s]) add(c - s, c, -1, number, level - up);
-        }
+            add(c + s, 1);
+            add(c, -1);
+        };
+        add_along(outer, place.plane);
+        add_along(inner, place.i);
+        if constexpr (Dim == 3) add_along(Dim - 1, place.row);
     }
 
     const Grid<Dim>* grid_;
@@ -238,6 +278,7 @@ private:
     PerAxis<WetRows<Dim>, Dim> faces_;
     VelocityExtension<Dim> extension_;
     std::vector<OpenFace> open_;
+    std::vector<std::vector<OpenFace>> open_in_;  ///< [plane]
 };
 
 }  // namespace abrade::detail

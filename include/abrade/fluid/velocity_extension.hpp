@@ -10,14 +10,16 @@ namespace abrade {
 
 /// Gives faces between dry cells the mean of the known velocities around them, layer by layer outward from
 /// the water, as far as the stencils of the next step reach. Known are faces of wet cells; beyond the first
-/// layer also those that hold liquid of their own, which fly on as they do.
+/// layer also those that hold liquid of their own, which fly on as they do. Same bits for any number of
+/// threads.
 template <int Dim>
 class VelocityExtension {
 public:
     static constexpr int layers = 3;
 
     explicit VelocityExtension(const Layout<Dim>& layout)
-        : layout_(layout), known_(layout.total, 0), before_(layout) {}
+        : layout_(layout), state_(layout.total, unknown), before_(layout),
+          found_(static_cast<std::size_t>(layout.planes())) {}
 
     /// `wet`: cells whose pressure is known, ghosts included; `rows`: rows to be looked at; `held`: share of
     /// a cell that liquid fills; `open_area` may be none.
@@ -26,63 +28,119 @@ public:
                 const Field<State>& held, const FaceField<Dim>* open_area) {
         // Where water has left nothing is known any more.
         before_.for_each_row([&](int plane, int row, const RowRange& r) {
-            std::fill_n(known_.data() + layout_.row_start(plane, row) + r.begin, r.length(), std::uint8_t{0});
+            std::fill_n(state_.data() + layout_.row_start(plane, row) + r.begin, r.length(), unknown);
         });
         before_ = rows;
         for (int a = 0; a < Dim; ++a) {
-            const Offset back = layout_.stride[a];
-            faces_.clear();
-            for (int plane = 0; plane < layout_.planes(); ++plane)
-                for (int row = 0; row < layout_.rows_per_plane(); ++row) {
-                    const RowRange r = rows.row(plane, row);
-                    const Offset start = layout_.row_start(plane, row);
-                    for (int i = r.begin; i < r.end; ++i) {
-                        const Offset c = start + i;
-                        if (open_area && (*open_area)[a][c] == 0) {
-                            known_[c] = 0;
-                            u[a][c] = 0;
-                        } else if ((wet[c] | wet[c - back]) != 0) {
-                            known_[c] = 1;
-                        } else {
-                            known_[c] = 0;
-                            if (!at_low_side(a, plane, row, i)) faces_.push_back(c);
-                        }
-                    }
-                }
-            for (std::uint8_t layer = 2; layer < 2 + layers; ++layer) {
-                next_.clear();
-                for (const Offset c : faces_) {
-                    State sum = 0;
-                    int count = 0;
-                    for (const Offset s : layout_.stride)
-                        for (const Offset n : {c - s, c + s})
-                            if (known_[n] != 0 && known_[n] < layer) sum += u[a][n], ++count;
-                    if (count > 0) {
-                        u[a][c] = sum / static_cast<State>(count);
-                        known_[c] = layer;
-                    } else {
-                        next_.push_back(c);
-                    }
-                }
-                if (layer == 2)  // drops and sheets thinner than a cell
-                    for (const Offset c : next_)
-                        if (held[c] + held[c - back] > State(1e-6)) known_[c] = 2;
-                faces_.clear();
-                for (const Offset c : next_)
-                    if (known_[c] == 0) faces_.push_back(c);
+            begin(a, wet, rows);
+            if (open_area) close((*open_area)[a], u[a], rows);
+            for (int layer = 0; layer < layers; ++layer) {
+                take_means(u[a], rows);
+                if (layer == 0) know_liquid(a, held, rows);
             }
-            for (const Offset c : faces_) u[a][c] = 0;
+            rows.for_each_row([&](int plane, int row, const RowRange& r) {
+                const Offset start = layout_.row_start(plane, row);
+                State* const __restrict v = u[a].data() + start;
+                const std::uint8_t* const __restrict state = state_.data() + start;
+#pragma omp simd
+                for (int i = r.begin; i < r.end; ++i) v[i] = state[i] == unknown ? State(0) : v[i];
+            });
         }
     }
 
 private:
-    bool at_low_side(int axis, int plane, int row, int i) const noexcept {
-        return (axis == 0 ? plane : axis == 1 ? i : row) == 0;
+    static constexpr std::uint8_t unknown = 0, known = 1;
+    static constexpr std::uint8_t fixed =
+        2;  ///< what is there is of no use to others: closed, or a side's own
+
+    void begin(int a, const Field<std::uint8_t>& wet, const WetRows<Dim>& rows) {
+        const Offset back = layout_.stride[a];
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout_.row_start(plane, row);
+            const std::uint8_t* const __restrict here = wet.data() + start;
+            std::uint8_t* const __restrict state = state_.data() + start;
+#pragma omp simd
+            for (int i = r.begin; i < r.end; ++i)
+                state[i] = static_cast<std::uint8_t>(here[i] | here[i - back]);
+            const auto fix = [&](std::uint8_t& s) { s = s == known ? known : fixed; };
+            if (a == Layout<Dim>::inner) {
+                if (r.begin == 0) fix(state[0]);
+            } else if ((a == Layout<Dim>::outer ? plane : row) == 0) {
+                for (int i = r.begin; i < r.end; ++i) fix(state[i]);
+            }
+        });
     }
+
+    template <class State>
+    void close(const Field<Real>& open_area, Field<State>& u, const WetRows<Dim>& rows) {
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout_.row_start(plane, row);
+            for (Offset c = start + r.begin; c < start + r.end; ++c)
+                if (open_area[c] == 0) state_[c] = fixed, u[c] = 0;
+        });
+    }
+
+    /// One layer.
+    template <class State>
+    void take_means(Field<State>& u, const WetRows<Dim>& rows) {
+        const auto stride = layout_.stride;
+        rows.for_each_plane([&](int plane) {
+            std::vector<Offset>& found = found_[static_cast<std::size_t>(plane)];
+            found.clear();
+            for (int row = 0; row < layout_.rows_per_plane(); ++row) {
+                const RowRange r = rows.row(plane, row);
+                const Offset start = layout_.row_start(plane, row);
+                const std::uint8_t* const state = state_.data() + start;
+                for (int first = r.begin; first < r.end; first += lanes) {
+                    const int count = std::min(lanes, r.end - first);
+                    std::uint8_t beside[lanes];
+                    int any = 0;
+                    for (int k = 0; k < count; ++k) {
+                        const std::uint8_t* const s = state + first + k;
+                        int near = s[-stride[0]] | s[stride[0]] | s[-stride[1]] | s[stride[1]];
+                        if constexpr (Dim == 3) near |= s[-stride[2]] | s[stride[2]];
+                        beside[k] = static_cast<std::uint8_t>(near & known & (*s == unknown));
+                        any |= beside[k];
+                    }
+                    if (any == 0) continue;
+                    for (int k = 0; k < count; ++k)
+                        if (beside[k] != 0) found.push_back(start + first + k);
+                }
+            }
+            // None of them is known before all have their value.
+            for (const Offset c : found) {
+                State sum = 0;
+                int count = 0;
+                for (const Offset s : stride)
+                    for (const Offset n : {c - s, c + s})
+                        if (state_[n] == known) sum += u[n], ++count;
+                u[c] = sum / static_cast<State>(count);
+            }
+        });
+        rows.for_each_plane([&](int plane) {
+            for (const Offset c : found_[static_cast<std::size_t>(plane)]) state_[c] = known;
+        });
+    }
+
+    /// Drops and sheets thinner than a cell.
+    template <class State>
+    void know_liquid(int a, const Field<State>& held, const WetRows<Dim>& rows) {
+        const Offset back = layout_.stride[a];
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout_.row_start(plane, row);
+            const State* const __restrict h = held.data() + start;
+            std::uint8_t* const __restrict state = state_.data() + start;
+#pragma omp simd
+            for (int i = r.begin; i < r.end; ++i)
+                state[i] = state[i] == unknown && h[i] + h[i - back] > State(1e-6) ? known : state[i];
+        });
+    }
+
+    static constexpr int lanes = 4 * Layout<Dim>::lanes;
     Layout<Dim> layout_;
-    Field<std::uint8_t> known_;
-    WetRows<Dim> before_;  ///< looked at the last time
-    std::vector<Offset> faces_, next_;
+    Field<std::uint8_t> state_;
+    WetRows<Dim> before_;                     ///< looked at the last time
+    std::vector<std::vector<Offset>> found_;  ///< [plane] faces of a layer
 };
 
 }  // namespace abrade
