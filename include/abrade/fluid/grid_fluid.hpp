@@ -101,8 +101,8 @@ public:
             shortest = std::min(shortest, size);
         }
         // Heun's method is stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum
-        // 1/h^2.
-        if (nu() > 0) step.lower(0.5 / (nu() * per_h2), "viscosity");
+        // 1/h^2. At the limit itself a pattern of cells would not decay, and a surface feeds it.
+        if (nu() > 0) step.lower((has_surface ? 0.4 : 0.5) / (nu() * per_h2), "viscosity");
         if constexpr (has_surface) {
             // At its end gravity may have made the water faster by g dt.
             if (fastest_ > 0 || fall > 0)
@@ -235,15 +235,16 @@ private:
     void step_below_surface(Real dt) {
         auto& water = *water_;
         water.move(velocity_, dt);
-        // Of the velocity as the pressure left it: water at rest feels no friction.
+        // Half of what walls take, from the velocity as the pressure left it: water at rest feels no
+        // friction.
         if (!water.friction().empty()) {
-            water.friction().apply(velocity_, dt, nu());
+            water.friction().apply(velocity_, 0.5 * dt, nu());
             sides_.fill(velocity_, &water.rows());
         }
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
             Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), params_.gravity};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
-            s.open_area = water.open_area();
+            s.open_area = water.open_area(), s.open_middle = water.open_middle();
             advance_momentum<Scheme>(*grid_, water.faces(), s);
             // At the surface the pressure falls to 0 within another distance than that of the centres.
             for (const OpenFace& open : projection_.open_faces())
@@ -252,6 +253,8 @@ private:
             leave(result);
         };
         stage(velocity_, stage_, 0, -dt);
+        // All of it: the second stage is to see it, and takes half of what the first has.
+        water.friction().apply(stage_, dt, nu());
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         finish(stage_);
         water.carry_by(stage_, saved_velocity_, dt);

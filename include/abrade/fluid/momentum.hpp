@@ -31,6 +31,8 @@ struct MomentumStage {
         nullptr;                         ///< liquid in a cell at the step's beginning, share of the whole [-]
     const Field<State>* held = nullptr;  ///< at its end; none: all cells are full
     const FaceField<Dim>* open_area = nullptr;  ///< share of each face that walls leave open [-]; none: all
+    /// How far the middle of what walls leave open of a cell lies from the cell's, in cells; with open_area.
+    const FaceField<Dim>* open_middle = nullptr;
 };
 
 namespace detail {
@@ -145,10 +147,17 @@ private:
         if (s_.open_area) {  // friction acts on what is open; the wall's own is added apart
             const Real* const __restrict open = (*s_.open_area)[b].data() + start;
             const Real* const __restrict open_back = open - layout_.stride[a];
+            const Real* const __restrict centre = (*s_.open_middle)[b].data() + start;
+            const Real* const __restrict centre_back = centre - layout_.stride[a];
             for (int i = whole(r.begin); i < r.end; i += lanes)
 #pragma omp simd
-                for (int k = i; k < i + lanes; ++k)
-                    out[k] = through(k, static_cast<State>(0.5 * (open[k] + open_back[k])));
+                for (int k = i; k < i + lanes; ++k) {
+                    // From middle to middle of what is open of the control volumes, in cells.
+                    const Real gap =
+                        1 + 0.5 * (centre[k] + centre_back[k] - centre[k - across] - centre_back[k - across]);
+                    out[k] = through(
+                        k, static_cast<State>(0.5 * (open[k] + open_back[k]) / std::max(gap, Real(0.25))));
+                }
             return;
         }
         for (int i = whole(r.begin); i < r.end; i += lanes)

@@ -40,6 +40,10 @@ public:
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
             friction_ = WallFriction<Dim>(grid, params.sides, params.wall_law, walls_.get());
             held_ = Field<Real>(layout().total);
+            open_middle_ = face_field<Dim>(layout());
+            for (const WallCell<Dim>& w : walls_->wall_cells())
+                for (int b = 0; b < Dim; ++b)
+                    open_middle_[b][w.cell] = 0.5 * (1 - walls_->open_volume()[w.cell]) * w.normal[b];
         }
         fill(params);
     }
@@ -49,6 +53,8 @@ public:
     /// Liquid in each cell, as a share of the whole cell [-]: now, and when the step began.
     const Field<Real>& held() const noexcept { return walls_ ? held_ : liquid_.fraction(); }
     const Field<Real>& held_before() const noexcept { return before_; }
+    /// Where the middle of what walls leave open of a cell lies, from the cell's, in cells.
+    const FaceField<Dim>* open_middle() const noexcept { return walls_ ? &open_middle_ : nullptr; }
     const FaceField<Dim>* open_area() const noexcept { return walls_ ? &walls_->open_area() : nullptr; }
     /// Of momentum, in the stage at work [m3].
     const FaceField<Dim>& carrier() const noexcept { return liquid_.moved(); }
@@ -272,6 +278,7 @@ private:
     VolumeOfFluid<Dim> liquid_;
     std::shared_ptr<const Walls<Dim>> walls_;  ///< shared among copies; the liquid points to them
     WallFriction<Dim> friction_;
+    FaceField<Dim> open_middle_;
     Field<Real> held_, before_;
     Field<std::uint8_t> wet_;
     WetRows<Dim> rows_, rows_before_;

@@ -88,7 +88,11 @@ private:
 
     void add(const Grid<Dim>& grid, const Walls<Dim>& walls, const WallCell<Dim>& wall) {
         const CellNumber<Dim> cell = layout_.number(wall.cell);
-        for (int a = 0; a < Dim; ++a)
+        for (int a = 0; a < Dim; ++a) {
+            // A closed face leaves all to the other.
+            const auto& area = walls.open_area()[a];
+            const bool both = area[wall.cell] > 0 && area[wall.cell + layout_.stride[a]] > 0;
+            const Real part = both ? 0.5 : 1;
             for (const bool upper : {false, true}) {
                 CellNumber<Dim> of = cell;
                 if (upper) ++of[a];
@@ -96,10 +100,14 @@ private:
                 // A face at a side of the box is the side's.
                 if (walls.open_area()[a][face] == 0 || of[a] == 0 || of[a] == grid.cells(a)) continue;
                 const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
-                const Real distance = wall.normal.dot(grid.face_centre(a, of) - wall.point);
+                Point<Dim> middle = grid.face_centre(a, of);  // of what is open
+                for (int b = 0; b < Dim; ++b)
+                    middle[b] += 0.5 * (1 - open) * wall.normal[b] * grid.size(b, cell[b]);
+                const Real distance = wall.normal.dot(middle - wall.point);
                 held_[a].push_back({face, std::max(distance, 0.05 * grid.size(a, cell[a])),
-                                    0.5 * wall.area / (std::max(open, 0.01) * grid.volume(cell))});
+                                    part * wall.area / (std::max(open, 0.01) * grid.volume(cell))});
             }
+        }
     }
 
     void add_sides(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>* walls) {
