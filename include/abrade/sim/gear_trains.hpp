@@ -19,6 +19,10 @@ namespace abrade {
 /// when bonds break: what they held apart can still turn so.
 class GearTrains {
 public:
+    /// Spheres. A longer one counts as stuck: it would turn as one, however far away the others are, where in
+    /// truth a wave runs out and does not come back in time.
+    static constexpr std::size_t longest = 1000;
+
     /// Looks for trains in concrete as it is bonded.
     void build(const Ties& ties, std::span<const LatticeSite> sites) {
         train_of_.assign(3 * sites.size(), 0), trains_.clear();
@@ -143,7 +147,7 @@ private:
                 stuck |= along > straight || other != -own;
             }
         }
-        if (!stuck)
+        if (!stuck && members.size() <= longest)
             trains_.emplace_back();
         else
             for (const Index site : members) train_of_[of(site, axis)] = 0;
