@@ -5,6 +5,7 @@
 #include <abrade/dem/sphere_lines.hpp>
 #include <abrade/geometry/point_grid.hpp>
 #include <abrade/geometry/sphere_union.hpp>
+#include <abrade/sim/gear_trains.hpp>
 
 #include <cstdint>
 
@@ -14,7 +15,7 @@ namespace abrade {
 /// to one that is awake or near a body that rests; or dormant, no body at all. What is near a body that may
 /// touch it is awake, with those up to `wake_radius` bonds around it. So is, with its own neighbours, an
 /// anchor on which the load of its bonds has changed by more than `wake_force`. One that moves no more, and
-/// on which nothing acts by more than that, goes to sleep.
+/// on which nothing acts by more than that, goes to sleep. It may go on turning there, as a gear does.
 struct Dormancy {
     /// Looks at which a sphere must have been quiet before it sleeps.
     static constexpr std::uint8_t quiet_looks = 3;
@@ -35,6 +36,8 @@ struct Dormancy {
             change = load.force - force, turning = load.lever - lever;
             return stirred(limit);
         }
+        /// That acts on it now [N].
+        Vec3 lever_now() const noexcept { return lever + turning; }
         bool stirred(Real limit) const noexcept {
             return change.squaredNorm() > square(limit) || turning.squaredNorm() > square(limit);
         }
@@ -56,6 +59,7 @@ struct Dormancy {
     Real furthest = 0;                ///< from where it was built that any sphere fell asleep [m]
     std::vector<Anchor> anchors;      ///< sorted by site
     std::vector<Index> anchor_at;     ///< [slot] -1: none
+    GearTrains gears;                 ///< how what does not move turns
     std::vector<Index> loosened;      ///< sites that are to be let go
     Index ahead = 0;                  ///< bonds that are woken beyond a stirred anchor, as a wave runs on
     Real potential = 0;               ///< of what is asleep [J]
@@ -71,6 +75,10 @@ struct Dormancy {
     }
 
     bool on() const noexcept { return wake_force > 0; }
+    /// Kinetic energy of spheres with this sum of rim squared [J].
+    Real turning(Real rims_squared) const noexcept {
+        return rims_squared > 0 ? 0.2 / inverse_mass * rims_squared : 0;
+    }
     bool may_move(Index site) const noexcept { return held[static_cast<std::size_t>(site)] == 0; }
     /// Whether lists must be renewed for it.
     bool calls() const noexcept { return due || stirred || !loosened.empty() || (begun && !on()); }

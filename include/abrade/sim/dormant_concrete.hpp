@@ -87,11 +87,16 @@ inline void spread(const Ties& ties, Index radius, SiteMarks& marks) {
     }
 }
 
-/// Of a standing sphere that moves: from now on it does not. Its velocity must have been booked.
+/// Of a standing sphere that moves, and is as `particles` has it: from now on it does not. What it loses of
+/// its kinetic energy is booked.
 template <class P>
 void hold_still(State<P>& state, Index body) {
     Particles& p = state.particles;
     const Index site = p.site[at(body)];
+    const Real mass = p.mass[at(body)];
+    const Vec3 rim = state.concrete.lattice().radius * p.angular_velocity(body);
+    state.accounts.lost_asleep +=
+        mass * (0.5 * p.velocity[at(body)].squaredNorm() + 0.2 * state.dormancy.gears.add(site, rim));
     state.dormancy.potential += state.potential_energy(body, p.position[at(body)]);
     p.inverse_mass[at(body)] = 0, p.inverse_inertia[at(body)].setZero();
     p.velocity[at(body)].setZero(), p.angular_momentum[at(body)].setZero();
@@ -132,6 +137,9 @@ void wake_site(State<P>& state, Index site) {
     if (p.inverse_mass[at(body)] > 0 || !dormancy.may_move(site)) return;
     p.inverse_mass[at(body)] = dormancy.inverse_mass;
     p.inverse_inertia[at(body)] = dormancy.inverse_inertia;
+    p.angular_momentum[at(body)] =
+        0.4 * p.mass[at(body)] * state.concrete.lattice().radius * dormancy.gears.rim(site);
+    dormancy.gears.remove(site);
     dormancy.potential -= state.potential_energy(body, p.position[at(body)]);
     state.sleep.changed = true;  // what rests on it
     ++dormancy.awake;
@@ -226,10 +234,12 @@ void quieten(State<P>& state, const Move& half, Real skin, MotionSums& sums) {
     }
     for (const Index b : sleepers) {
         publish_body(state, b, half, sums);
-        state.accounts.lost_asleep += p.kinetic_energy(b);
         detail::hold_still(state, b);
+    }
+    for (const Index b : sleepers) {
         SphereMotion& motion = state.store.lines.motion[at(state.first_slot_of(b))];
-        motion.velocity.setZero(), motion.rim.setZero(), motion.inverse_mass = 0;
+        motion.velocity.setZero(), motion.inverse_mass = 0;
+        motion.rim = dormancy.gears.rim(p.site[at(b)]);
     }
     if (sleepers.empty()) return;
     state.store.refresh_images();
@@ -291,7 +301,7 @@ template <class P>
 void wake_all(State<P>& state) {
     for (Index site = 0; site < state.concrete.sites(); ++site)
         if (!state.concrete.gone(site)) wake_site(state, site);
-    state.dormancy.anchors.clear(), state.dormancy.anchor_at.clear();
+    state.dormancy.anchors.clear(), state.dormancy.anchor_at.clear(), state.dormancy.gears.unmesh();
     state.dormancy.begun = false;
 }
 
@@ -361,6 +371,7 @@ void find_anchors(State<P>& state) {
             if (number >= 0) ++dormancy.anchors.back().bonds, dormancy.anchors.back().numbers += number;
         }
     }
+    dormancy.gears.unmesh();
     auto old = before.begin();
     for (std::size_t n = 0; n < dormancy.anchors.size(); ++n) {
         Dormancy::Anchor& anchor = dormancy.anchors[n];
@@ -372,7 +383,9 @@ void find_anchors(State<P>& state) {
             anchor.fresh = old->fresh || !same;
         }
         const Index sphere = p.first_sphere[at(dormancy.body_of[at(anchor.site)])];
-        dormancy.anchor_at[at(state.store.slot_of(sphere))] = static_cast<Index>(n);
+        const Index slot = state.store.slot_of(sphere);
+        dormancy.anchor_at[at(slot)] = static_cast<Index>(n);
+        dormancy.gears.mesh(anchor.site, slot, static_cast<Index>(n));
     }
 }
 

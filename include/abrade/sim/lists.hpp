@@ -123,12 +123,14 @@ private:
         outrun_ = list_skin_ < 8 * dt * fastest;  // what `refine` asks for
     }
 
-    /// The lines of concrete, as `particles` say who moves.
+    /// The lines of concrete, as `particles` say who moves; what does not turns with its gears.
     static void hold_or_free(State<P>& state) {
         for (Index b = 0; b < state.particles.bodies(); ++b)
-            if (state.particles.site[at(b)] >= 0)
-                state.store.lines.motion[at(state.first_slot_of(b))].inverse_mass =
-                    state.particles.inverse_mass[at(b)];
+            if (const Index site = state.particles.site[at(b)]; site >= 0) {
+                SphereMotion& motion = state.store.lines.motion[at(state.first_slot_of(b))];
+                motion.inverse_mass = state.particles.inverse_mass[at(b)];
+                if (motion.inverse_mass == 0) motion.rim = state.dormancy.gears.rim(site);
+            }
     }
 
     static Real fastest2(const State<P>& state) {

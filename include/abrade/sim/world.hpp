@@ -68,6 +68,7 @@ public:
         ledger_ = state_.accounts;
         book(ledger_, sums.motion);
         ledger_.kinetic = sums.kinetic, ledger_.potential = sums.potential;
+        ledger_.kinetic += state_.dormancy.turning(state_.dormancy.gears.rims_squared());
         ledger_.potential += state_.dormancy.potential;
         ledger_.stored_contacts = stored_contacts_ + at_rest();
         ledger_.stored_bonds = stored_bonds_ + state_.network.resting_stored();
@@ -96,6 +97,9 @@ public:
     void set_wake(Real force, Index radius) {
         Dormancy& dormancy = state_.dormancy;
         dormancy.wake_force = force, dormancy.wake_radius = radius;
+        if constexpr (P::has_bonds && !CarriesMoments<decltype(P::bond)>)
+            if (dormancy.on() && !dormancy.gears.built())
+                dormancy.gears.build(state_.network.ties(), state_.concrete.lattice().sites);
         if constexpr (P::has_bonds) {
             const Real r = state_.concrete.lattice().radius;
             const Real stiffness = state_.policies.bond.rigidity(r, 2 * r).normal;
@@ -191,7 +195,15 @@ private:
             lists_.repack(state_);
             stored_contacts_ += stored - at_rest();
         }
+        if (nobody_moves())
+            state_.accounts.lost_asleep += state_.dormancy.turning(state_.dormancy.gears.stop());
         unlooked_ = 0;
+    }
+    /// But for gears that sleep.
+    bool nobody_moves() const noexcept {
+        for (Index b = 0; b < state_.particles.bodies(); ++b)
+            if (state_.particles.inverse_mass[at(b)] > 0 && !state_.sleep.asleep(b)) return false;
+        return true;
     }
     /// Stored in contacts that are not evaluated [J].
     Real at_rest() {
@@ -240,6 +252,7 @@ private:
         report_overlap(move ? *move : Move{});
         if (move) {
             book(state_.accounts, all.motion);
+            turn_gears(move->kick);
             FreeFlight& flight = state_.flight;
             flight.note(move->kick, move->drift);
             state_.sleep.stirred |= all.motion.stirs;
@@ -292,6 +305,17 @@ private:
         const Index site = state_.particles.site[at(body_in(slot))];
         if (site >= 0) state_.concrete.wear(site, load.worn, now_, led_here_);
         load.worn = 0;
+    }
+
+    /// What stands still turns with its gears, kicked by what acts on anchors.
+    void turn_gears(Real kick) {
+        Dormancy& dormancy = state_.dormancy;
+        if (!dormancy.gears.meshed()) return;
+        state_.accounts.interaction_work += dormancy.gears.turn(
+            kick, dormancy.inverse_mass,
+            [&](Index anchor) -> Vec3 { return dormancy.anchors[at(anchor)].lever_now(); },
+            state_.store.lines);
+        state_.store.refresh_images();
     }
 
     void book(const ContactSums& contacts, const BondSums& bonds) {
