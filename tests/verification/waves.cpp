@@ -74,3 +74,13 @@ TEST_CASE("a solitary wave keeps height, energy and speed over twenty depths") {
     CHECK(wave.speed() / std::sqrt(gravity * (wave.depth + wave.height)) ==
           doctest::Approx(0.999).epsilon(1e-3));
 }
+
+TEST_CASE("the depth behind a bore is Belanger's") {
+    const Bore bore{.froude = 2};
+    for (const ReferenceRow& row : reference_table("flu11_hydraulic_jump_belanger.csv"))
+        if (row.at("F1") == bore.froude)
+            CHECK(bore.sequent() == doctest::Approx(row.at("h2_over_h1")).epsilon(1e-5));
+    const Bore::Found found = bore.run(6, 12);
+    MESSAGE("depth " << 100 * (found.depth - 1) << " %, speed " << 100 * (found.speed - 1) << " %");
+    CHECK(std::abs(found.depth - 1) < 0.05);
+}

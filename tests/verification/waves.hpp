@@ -207,7 +207,7 @@ struct Bore {
     /// `n` cells to the stream's depth, a channel of `length` depths.
     GridFluid<2> channel(int n, int length) const {
         const Real h = depth / n;
-        const int levels = static_cast<int>(std::ceil(1.8 * sequent() * n));
+        const int levels = static_cast<int>(std::ceil(3 * sequent() * n));
         Sides<2> sides = Sides<2>::all(Side::slip);
         sides[0][0] = Side::inflow;
         const Real enters = stream();
@@ -229,13 +229,46 @@ struct Bore {
         return grid.high(0);
     }
     /// Mean depth from a place to the wall [m].
-    Real behind(const GridFluid<2>& flow, Real from) const {
+    static Real behind(const GridFluid<2>& flow, Real from) {
         const Grid<2>& grid = flow.grid();
         Real sum = 0;
         int counted = 0;
         for (int i = 0; i < grid.cells(0); ++i)
             if (grid.centre(0, i) >= from) sum += flow.surface_at({grid.centre(0, i), 0}), ++counted;
         return sum / counted;
+    }
+
+    struct Found {
+        /// Over Belanger's; the speed from half way to the end. The roller's toe runs to and fro by half a
+        /// depth, so the speed is known to a tenth or so.
+        Real depth = 0, speed = 0;
+    };
+    /// `n` cells to the stream's depth; until the jump has gone `way` of the depths behind it. Its roller,
+    /// five such depths long, is not counted.
+    Found run(int n, int way) const {
+        const Real unit = sequent() * depth;
+        GridFluid<2> flow = channel(n, static_cast<int>(std::ceil((way + 3) * sequent())));
+        flow.advance(0.5 * way * unit / speed());
+        const Real time = flow.time(), place = front(flow);
+        flow.advance(way * unit / speed());
+        return {behind(flow, front(flow) + 5 * unit) / unit,
+                (place - front(flow)) / (flow.time() - time) / speed()};
+    }
+};
+
+/// A dam at the middle of a channel breaks: water of two depths, J. J. Stoker, Water Waves (1957), 10.8.
+struct DamBreak {
+    Real left = 1, right = 0.1;  ///< [m]
+
+    /// `n` cells to the left depth.
+    GridFluid<2> channel(int n, int length) const {
+        const Real h = left / n, middle = 0.5 * length;
+        return GridFluid<2>(
+            {.grid = {.cells = {length * n, 5 * n / 4}, .spacing = {h, h}},
+             .sides = Sides<2>::all(Side::slip),
+             .water = [*this,
+                       middle](const Point<2>& x) { return x[0] < middle ? left - x[1] : right - x[1]; },
+             .gravity = {0, -gravity}});
     }
 };
 
