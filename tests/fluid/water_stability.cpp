@@ -19,7 +19,7 @@ GridFluid<2>::Params basin(PlaceFunction<2> water) {
 }
 Real column(const Point<2>& x) { return std::min(0.4 - x[0], 0.6 - x[1]); }
 
-/// All that a step changes.
+/// What a step changes: pressures, fractions, and velocities on faces of cells that hold liquid.
 struct State {
     Real time = 0;
     std::vector<Real> velocity{}, pressure{}, fraction{};
@@ -27,10 +27,13 @@ struct State {
 };
 State state_of(const GridFluid<2>& flow) {
     State state{.time = flow.time()};
+    const Field<Real>& f = flow.liquid().fraction();
     flow.grid().for_each([&](const auto&, Offset c) {
-        for (const auto& u : flow.velocity()) state.velocity.push_back(u[c]);
+        for (int a = 0; a < 2; ++a)
+            if (f[c] > 0 || f[c - flow.grid().layout().stride[a]] > 0)
+                state.velocity.push_back(flow.velocity()[a][c]);
         state.pressure.push_back(flow.pressure()[c]);
-        state.fraction.push_back(flow.liquid().fraction()[c]);
+        state.fraction.push_back(f[c]);
     });
     return state;
 }

@@ -30,10 +30,10 @@ TEST_CASE("solitary waves over twenty depths") {
             const SolitaryWave wave{.height = height};
             auto flow = wave.channel(n);
             const Real energy = wave_energy(flow), way = 20 * wave.depth;
-            const Crest begins = crest(flow);
+            const Crest begins = crest(flow, wave.depth);
             flow.advance(way / wave.speed());
-            const Crest ends = crest(flow);
-            const Real kept = (ends.height - wave.depth) / (begins.height - wave.depth);
+            const Crest ends = crest(flow, wave.depth);
+            const Real kept = ends.height / begins.height;
             const Real speed = (ends.place - begins.place) / way;
             MESSAGE("height " << height << ", " << n << " cells to the depth: height " << 100 * (kept - 1)
                               << " %, energy " << 100 * (wave_energy(flow) / energy - 1) << " %, speed "
@@ -45,7 +45,7 @@ TEST_CASE("solitary waves over twenty depths") {
 }
 
 TEST_CASE("bores: the depth behind them") {
-    for (const Real froude : {1.5, 2.0, 3.0, 4.0}) {
+    for (const Real froude : {1.5, 2.0, 3.0}) {
         const Bore bore{.froude = froude};
         const Bore::Found found = bore.run(6, 20);
         MESSAGE("Froude number " << froude << ": depth " << 100 * (found.depth - 1) << " %, speed "

@@ -165,20 +165,25 @@ private:
     }
 };
 
-/// The highest point of the surface, by the parabola through the three highest columns.
+/// The top of the surface, by the parabola through the three highest columns; its place by what stands higher
+/// than half of it above `level`, whose squares are the weights: a flat crest has no sharp place of its own.
 struct Crest {
-    Real place = 0, height = 0;  ///< [m]
+    Real place = 0, height = 0;  ///< [m], the height above `level`
 };
-inline Crest crest(const GridFluid<2>& flow) {
+inline Crest crest(const GridFluid<2>& flow, Real level) {
     const Grid<2>& grid = flow.grid();
-    const auto surface = [&](int i) { return flow.surface_at({grid.centre(0, i), 0}); };
+    const auto above = [&](int i) { return flow.surface_at({grid.centre(0, i), 0}) - level; };
     int top = 1;
     for (int i = 1; i + 1 < grid.cells(0); ++i)
-        if (surface(i) > surface(top)) top = i;
-    const Real slope = 0.5 * (surface(top + 1) - surface(top - 1));
-    const Real curvature = surface(top + 1) - 2 * surface(top) + surface(top - 1);
+        if (above(i) > above(top)) top = i;
+    const Real slope = 0.5 * (above(top + 1) - above(top - 1));
+    const Real curvature = above(top + 1) - 2 * above(top) + above(top - 1);
     const Real share = curvature < 0 ? std::clamp(-slope / curvature, -1.0, 1.0) : 0;
-    return {grid.centre(0, top) + share * grid.size(0, top), surface(top) + 0.5 * slope * share};
+    Real moment = 0, weights = 0;
+    for (int i = 0; i < grid.cells(0); ++i)
+        if (const Real z = above(i); z > 0.5 * above(top))
+            moment += z * z * grid.centre(0, i), weights += z * z;
+    return {moment / weights, above(top) + 0.5 * slope * share};
 }
 
 /// Kinetic energy and that of the surface against water at rest of the same volume [J/m].
