@@ -4,7 +4,7 @@
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/momentum.hpp>
 #include <abrade/fluid/surface_heights.hpp>
-#include <abrade/fluid/surface_water.hpp>
+#include <abrade/fluid/water_record.hpp>
 
 #include <optional>
 
@@ -36,7 +36,7 @@ public:
     explicit GridFluid(Params params)
         : params_((params.validate(), std::move(params))),
           grid_(std::make_shared<const Grid<Dim>>(params_.grid)),
-          sides_(*grid_, without_friction(params_.sides, params_.wall_law), params_.side_velocity),
+          sides_(*grid_, gliding_sides(params_.sides, params_.wall_law), params_.side_velocity),
           projection_(*grid_, params_.sides), velocity_(face_field<Dim, State>(layout())), stage_(velocity_),
           pressure_(layout().total), time_(params_.start_time) {
         sides_.set_time(time_);
@@ -67,12 +67,12 @@ public:
         if constexpr (has_surface) find_pressure_of_weight();
         enters_ = rate_of_inflow();
         fastest_ = std::max(fastest_, enters_);
-        saved_velocity_ = velocity_;
-        saved_pressure_ = pressure_;
         if constexpr (has_surface) {
-            saved_fraction_ = water_->liquid().fraction();
+            record_ = detail::WaterRecord<Dim>(velocity_, stage_, *water_);
             heights_ = detail::SurfaceHeights<Dim>(*grid_, water_->walls());
             heights_.find(*grid_, water_->rows(), water_->held());
+        } else {
+            saved_velocity_ = velocity_;
         }
     }
 
@@ -134,7 +134,7 @@ public:
 
     /// One step of dt [s]. Throws FluidError where it goes wrong, and leaves the flow as it was.
     void step(Real dt) {
-        save();
+        require_positive(dt, "GridFluid.step: dt", "s");
         if constexpr (has_surface)
             step_below_surface(dt);
         else
@@ -142,6 +142,7 @@ public:
         check(dt);
         time_ += dt;
         ++steps_;
+        if constexpr (has_surface) record_.took(dt);
         if (!params_.steady_sides) enters_ = rate_of_inflow();
         fastest_ = std::max(report_.courant / dt, enters_);
         if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
@@ -185,17 +186,10 @@ private:
 
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     Real nu() const noexcept { return params_.viscosity / params_.density; }
-    /// Sides whose friction is added apart let the water glide.
-    static Sides<Dim> without_friction(Sides<Dim> sides, const WallLaw& law) {
-        if (law.kind == WallLaw::Kind::no_slip) return sides;
-        for (auto& ends : sides.kind)
-            for (Side& side : ends)
-                if (side == Side::wall) side = Side::slip;
-        return sides;
-    }
-
-    /// The pressure that holds the water's weight: so the first step is none of falling.
+    /// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage_`
+    /// how water at rest is accelerated [m/s2].
     void find_pressure_of_weight() {
+        for (auto& component : stage_) component.fill(0);
         if (params_.gravity.isZero()) return;
         for (int a = 0; a < Dim; ++a) {
             stage_[a].fill(params_.gravity[a]);
@@ -212,9 +206,11 @@ private:
                 for (int a = 0; a < Dim; ++a) stage_[a][c] *= (*open)[a][c] > 0;
             });
         projection_.project(stage_, pressure_, 1, 1e-12);
+        finish(stage_);
     }
 
     void step_full(Real dt) {
+        saved_pressure_ = pressure_;  // the velocity is kept by the second stage
         sides_.fill_cells(pressure_);
         const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
             advance_momentum<Scheme>(*grid_, projection_.faces(),
@@ -234,7 +230,13 @@ private:
 
     void step_below_surface(Real dt) {
         auto& water = *water_;
-        water.move(velocity_, dt);
+        if (record_.keep(velocity_, pressure_, water, dt)) finish(velocity_);
+        try {
+            water.move(velocity_, dt);
+        } catch (const InputError& beyond) {  // more than a cell would leave it
+            restore();
+            throw FluidError(place_in_time(dt) + beyond.what());
+        }
         // Half of what walls take, from the velocity as the pressure left it: water at rest feels no
         // friction.
         if (!water.friction().empty()) {
@@ -257,7 +259,7 @@ private:
         water.friction().apply(stage_, dt, nu());
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         finish(stage_);
-        water.carry_by(stage_, saved_velocity_, dt);
+        water.carry_by(stage_, dt);
         // The old pressure is taken back: below the new surface it pushes anew.
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.find(projection_, pressure_, sides_);
@@ -317,23 +319,11 @@ private:
                     });
     }
 
-    /// What a step that goes wrong is to leave behind. Without a surface the velocity is kept by the step.
-    void save() {
-        if constexpr (has_surface) {
-            saved_rows_ = water_->rows();
-            saved_rows_.copy(velocity_, saved_velocity_);
-            saved_rows_.copy(pressure_, saved_pressure_);
-            saved_rows_.copy(water_->liquid().fraction(), saved_fraction_);
-        } else {
-            saved_pressure_ = pressure_;
-        }
-    }
+    /// Back to what a step that went wrong began with.
     void restore() {
         if (!params_.steady_sides) sides_.set_time(time_);
         if constexpr (has_surface) {
-            saved_rows_.copy(saved_velocity_, velocity_);
-            saved_rows_.copy(saved_pressure_, pressure_);
-            water_->restore(saved_fraction_, saved_rows_);
+            record_.restore(velocity_, pressure_, *water_);
             water_->find(projection_, pressure_, sides_);
             finish(velocity_);
         } else {
@@ -357,9 +347,12 @@ private:
                                             short_text(report_.after) + " of its volume in a step"
                                       : "beyond GridFluid.fastest";
         restore();
-        throw FluidError("step " + std::to_string(steps_) + " (t = " + short_text(time_) +
-                         " s, dt = " + short_text(dt) + " s): " + cause + "; " + where +
+        throw FluidError(place_in_time(dt) + cause + "; " + where +
                          "; take a smaller courant, or a finer grid there");
+    }
+    std::string place_in_time(Real dt) const {
+        return "step " + std::to_string(steps_) + " (t = " + short_text(time_) +
+               " s, dt = " + short_text(dt) + " s): ";
     }
     struct FastFace {
         Real speed = -1;
@@ -389,9 +382,8 @@ private:
     Projection<Dim, State> projection_;
     FaceField<Dim, State> velocity_, stage_, saved_velocity_;
     Field<State> pressure_, saved_pressure_;
-    Field<Real> saved_fraction_;
+    std::conditional_t<has_surface, detail::WaterRecord<Dim>, Nothing> record_{};
     std::conditional_t<has_surface, std::optional<detail::SurfaceWater<Dim>>, Nothing> water_{};
-    WetRows<Dim> saved_rows_;
     std::conditional_t<has_surface, detail::SurfaceHeights<Dim>, Nothing> heights_{};
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]

@@ -59,6 +59,7 @@ public:
     /// Of momentum, in the stage at work [m3].
     const FaceField<Dim>& carrier() const noexcept { return liquid_.moved(); }
     const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }  ///< that carry momentum
+    const Field<std::uint8_t>& wet() const noexcept { return wet_; }  ///< 1 where the pressure is unknown
     const WallFriction<Dim>& friction() const noexcept { return friction_; }
     const WetRows<Dim>& rows() const noexcept { return rows_; }
 
@@ -72,7 +73,7 @@ public:
     }
 
     /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
-    void carry_by(const FaceField<Dim>& stage, const FaceField<Dim>& velocity, Real step) {
+    void carry_by(const FaceField<Dim>& stage, Real step) {
         for (int a = 0; a < Dim; ++a) {
             std::vector<Real> swept;
             for (int k = 0; k < grid_->cells(vertical); ++k) {
@@ -84,13 +85,13 @@ public:
             rows_.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = layout().row_start(plane, row);
                 Real* const __restrict c = liquid_.moved()[a].data() + start;
-                const Real *const u = velocity[a].data() + start, *const v = stage[a].data() + start;
+                const Real* const v = stage[a].data() + start;
                 const Real *const f = held().data() + start, *const g = before_.data() + start;
 #pragma omp simd
                 for (int i = r.begin; i < r.end; ++i) {
                     const Real area = swept[static_cast<std::size_t>(Dim == 3 ? row : i)];
                     const bool full = f[i] == 1 && f[i - back] == 1 && g[i] == 1 && g[i - back] == 1;
-                    c[i] += full ? (v[i] - u[i]) * area : 0;
+                    c[i] = full ? v[i] * area : c[i];
                 }
             });
         }
@@ -122,8 +123,8 @@ public:
 
     void extend(FaceField<Dim>& u) { extension_.extend(u, wet_, rows_, held(), open_area()); }
 
-    /// Puts back fractions as they were saved, in the rows of then.
-    void restore(const Field<Real>& fraction, const WetRows<Dim>& rows) {
+    /// Puts back fractions and surplus as they were saved, in the rows of then.
+    void restore(const Field<Real>& fraction, const Field<Real>& surplus, const WetRows<Dim>& rows) {
         const auto clear = [&](int plane, int row, const RowRange& r) {
             std::fill_n(liquid_.fraction().data() + layout().row_start(plane, row) + r.begin, r.length(),
                         0.0);
@@ -131,6 +132,7 @@ public:
         rows_.for_each_row(clear);
         rows.copy(fraction, liquid_.fraction());
         settle();
+        rows.copy(surplus, liquid_.surplus());
     }
 
 private:

@@ -132,6 +132,7 @@ public:
     FaceField<Dim>& moved() noexcept { return moved_; }  ///< until the next step nobody asks for it here
     /// Liquid beyond `fraction()`, in shares of the open volume [-].
     const Field<Real>& surplus() const noexcept { return surplus_; }
+    Field<Real>& surplus() noexcept { return surplus_; }
     const WetRows<Dim>& wet() const noexcept { return wet_; }
     const SurfaceBand<Dim>& band() const noexcept { return band_; }
     const SurfacePlanes<Dim>& planes() const noexcept { return planes_; }

@@ -25,6 +25,16 @@ struct WallLaw {
     }
 };
 
+/// Sides whose friction is added apart let the water glide.
+template <int Dim>
+Sides<Dim> gliding_sides(Sides<Dim> sides, const WallLaw& law) {
+    if (law.kind == WallLaw::Kind::no_slip) return sides;
+    for (auto& ends : sides.kind)
+        for (Side& side : ends)
+            if (side == Side::wall) side = Side::slip;
+    return sides;
+}
+
 /// Friction of walls inside cells, and at sides of the box where they are logarithmic: the velocity u at
 /// distance d from a wall of area A loses
 ///   du/dt = - C u A / V,   C = nu / d or (kappa / ln(30 d / k_s))^2 |u|,
