@@ -46,7 +46,8 @@ TEST_CASE("layers of a cubic lattice are trains about the upright, but for the o
             const Vec3 expected(0, 0, !held && site.layer == layer ? 3 * sign(site) : 0);
             CHECK((gears.rim(static_cast<Index>(s)) - expected).norm() < 1e-12);
         }
-        CHECK(gears.stop() == doctest::Approx(held ? 0 : 20 * 9));
+        SphereLines lines;
+        CHECK(gears.hold(true, lines) == doctest::Approx(held ? 0 : 20 * 9));
         CHECK(gears.rims_squared() == 0);
     }
 }
@@ -86,7 +87,7 @@ TEST_CASE("a lever on an anchor turns its train, with the work that becomes its 
     SphereLines lines;
     lines.resize(2);
     gears.mesh(lattice.site(2, 2, 0), 0, 0), gears.mesh(lattice.site(2, 3, 0), 1, 1);
-    CHECK(gears.meshed());
+    CHECK(gears.turn_anchors());
     const std::vector<Vec3> levers{{5, 5, 3}, {5, 5, 1}};
     const auto lever_on = [&](Index anchor) { return levers[static_cast<std::size_t>(anchor)]; };
     const Real rim = gears.rim(lattice.site(2, 2, 0)).z();
@@ -95,6 +96,27 @@ TEST_CASE("a lever on an anchor turns its train, with the work that becomes its 
     CHECK(lines.motion[1].rim.z() == -lines.motion[0].rim.z());
     CHECK(lines.motion[0].rim.head<2>().norm() == 0);
     CHECK(0.2 * mass * gears.rims_squared() - before == doctest::Approx(work).epsilon(1e-12));
+}
+
+TEST_CASE("trains that are held stand with their anchors, and take up no turning until they are let go") {
+    const Lattice lattice = cubic();
+    GearTrains gears = trains_of(lattice);
+    const Index a = lattice.site(0, 0, 0), b = lattice.site(0, 1, 0), c = lattice.site(1, 1, 0);
+    SphereLines lines;
+    lines.resize(1);
+    gears.add(a, {0, 0, 1});
+    gears.mesh(a, 0, 0);
+    lines.motion[0].rim = gears.rim(a);
+    CHECK(gears.turn_anchors());
+    CHECK(gears.hold(true, lines) == doctest::Approx(1));
+    CHECK_FALSE(gears.turn_anchors());
+    CHECK(lines.motion[0].rim.norm() == 0);
+    CHECK(gears.add(b, {0, 0, 0.5}) == doctest::Approx(0.25));
+    CHECK(gears.rims_squared() == 0);
+    CHECK(gears.hold(false, lines) == 0);
+    CHECK(gears.turn_anchors());
+    gears.add(c, {0, 0, 0.3});
+    CHECK(gears.rim(c).z() == doctest::Approx(0.1));  // three share it
 }
 
 TEST_CASE("a layer that a stone has set turning turns on asleep, and wakes so") {

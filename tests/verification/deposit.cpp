@@ -33,6 +33,17 @@ TEST_CASE("on a cubic lattice held by springs alone it stays once concrete may s
     CHECK(h.broken == 0);
 }
 
+TEST_CASE("gears that sleep do not keep a heap awake: they stand once all that is awake is slow") {
+    const History h = lie({.stones = 100, .per_side = 3, .slab = Slab::cubic, .wake_force = 1}, springs, 2.5);
+    MESSAGE("worn " << h.worn.back() << " m3, unchanged since " << h.unchanged_since() << " s");
+    CHECK(h.worn.back() > 1e-6);
+    CHECK(h.unchanged_since() <= 2);
+    CHECK(h.kinetic.back() == 0);
+    CHECK(h.asleep == 100);
+    CHECK(h.residual < 1e-12);
+    CHECK(h.broken == 0);
+}
+
 TEST_CASE("on a cubic lattice whose springs resist twisting it stays with everything awake") {
     const History h =
         lie({.stones = 16, .per_side = 2, .slab = Slab::cubic, .sleep_speed = 0}, twist_springs, 3);

@@ -59,9 +59,10 @@ public:
                 continue;
             }
             Train& train = trains_[at(own.train)];
-            const Real more = own.sign * rim[axis] - train.rim, all = ++train.asleep;
-            lost += square(more) * (all - 1) / all;
-            train.rim += more / all;
+            const Real more = own.sign * rim[axis] - train.rim, all = ++train.asleep,
+                       shared = held_ ? 0 : 1 / all;
+            lost += square(more) * (1 - shared);
+            train.rim += more * shared;
         }
         return lost;
     }
@@ -71,10 +72,14 @@ public:
             if (const Share own = share(site, axis); own.train >= 0)
                 if (Train& train = trains_[at(own.train)]; --train.asleep == 0) train.rim = 0;
     }
-    /// Stops all. Returns what is lost, as `add` does.
-    Real stop() noexcept {
+    /// Has all trains stand, and the lines of anchors, or lets them turn again. Returns what is lost, as
+    /// `add` does.
+    Real hold(bool still, SphereLines& lines) noexcept {
+        held_ = still;
+        if (!still) return 0;
         const Real lost = rims_squared();
         for (Train& train : trains_) train.rim = 0;
+        for (const Meshed& one : meshed_) lines.motion[at(one.slot)].rim[one.axis] = 0;
         return lost;
     }
 
@@ -85,7 +90,7 @@ public:
             if (const Share own = share(site, axis); own.train >= 0)
                 meshed_.push_back({own, axis, slot, anchor});
     }
-    bool meshed() const noexcept { return !meshed_.empty(); }
+    bool turn_anchors() const noexcept { return !held_ && !meshed_.empty(); }
     /// Kicks for `dt` [s] the trains of anchors, on which act `lever_on(anchor)` [N], and has the anchors'
     /// lines turn with them; `inverse_mass` [1/kg] is that of a sphere. Returns the work done [J].
     template <class LeverOn>
@@ -156,6 +161,7 @@ private:
     std::vector<Index> train_of_;  ///< [site, axis] number + 1 with its sign; 0: stuck
     std::vector<Train> trains_;
     std::vector<Meshed> meshed_;  ///< anchors that turn
+    bool held_ = false;           ///< what falls asleep does not turn on
 };
 
 }  // namespace abrade

@@ -193,6 +193,24 @@ bool fall_asleep(State<P>& state, const Move& half, Real interval, MotionSums& s
     return fell;
 }
 
+/// Whether all that is awake, too, has been found slow enough to sleep at the last look, what sleeps in
+/// trains of gears apart. What lies on a train can drive it without end, and would then never come to rest
+/// itself.
+template <class P>
+bool all_quiet(const State<P>& state) noexcept {
+    const Particles& p = state.particles;
+    for (std::size_t b = 0; b < p.kind.size(); ++b) {
+        if (p.inverse_mass[b] == 0) continue;
+        if (p.kind[b] == Kind::concrete) {
+            if (state.dormancy.quiet[static_cast<std::size_t>(p.site[b])] == 0) return false;
+        } else if (b >= state.sleep.bodies.size() ||
+                   !(state.sleep.bodies[b].asleep || state.sleep.bodies[b].slow_for > 0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /// Wakes those who must, and whom they touch: those who lost support, and those whom a fast body may meet
 /// before candidates are picked again. Forces must not have been evaluated yet. Returns whether anybody woke.
 template <class P>

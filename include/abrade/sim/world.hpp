@@ -195,15 +195,8 @@ private:
             lists_.repack(state_);
             stored_contacts_ += stored - at_rest();
         }
-        if (nobody_moves())
-            state_.accounts.lost_asleep += state_.dormancy.turning(state_.dormancy.gears.stop());
+        if (state_.dormancy.on()) hold_gears(all_quiet(state_));
         unlooked_ = 0;
-    }
-    /// But for gears that sleep.
-    bool nobody_moves() const noexcept {
-        for (Index b = 0; b < state_.particles.bodies(); ++b)
-            if (state_.particles.inverse_mass[at(b)] > 0 && !state_.sleep.asleep(b)) return false;
-        return true;
     }
     /// Stored in contacts that are not evaluated [J].
     Real at_rest() {
@@ -307,10 +300,16 @@ private:
         load.worn = 0;
     }
 
+    /// Has gears that sleep stand, or lets them turn again.
+    void hold_gears(bool still) {
+        Dormancy& dormancy = state_.dormancy;
+        state_.accounts.lost_asleep += dormancy.turning(dormancy.gears.hold(still, state_.store.lines));
+        if (still) state_.store.refresh_images();
+    }
     /// What stands still turns with its gears, kicked by what acts on anchors.
     void turn_gears(Real kick) {
         Dormancy& dormancy = state_.dormancy;
-        if (!dormancy.gears.meshed()) return;
+        if (!dormancy.gears.turn_anchors()) return;
         state_.accounts.interaction_work += dormancy.gears.turn(
             kick, dormancy.inverse_mass,
             [&](Index anchor) -> Vec3 { return dormancy.anchors[at(anchor)].lever_now(); },
