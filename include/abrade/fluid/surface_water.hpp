@@ -17,7 +17,7 @@ class SurfaceWater {
                          vertical = Grid<Dim>::vertical;
     /// Nearer to a cell's centre than this share of the way to the next one the surface is taken to be here:
     /// conductances grow as its inverse.
-    static constexpr Real least_share = 0.01;
+    static constexpr Real least_share = 1e-6;
 
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)

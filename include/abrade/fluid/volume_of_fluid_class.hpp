@@ -180,12 +180,12 @@ public:
         const Real edge = sizes_.edge(axis, level), air_edge = sizes_.edge(axis, air_level);
         const Real gap = along_vertical ? sizes_.gap(std::max(level, air_level)) : edge;
         const Real face = 0.5 * edge / gap;
+        // A trace of air or of water tells nothing of where the surface is.
+        constexpr Real trace = SurfaceBand<Dim>::smallest_void;
         // Beyond its own half a plane counts only where it is the only one, and then no farther than the
         // other centre.
         const auto crossing = [&](Offset cell, Real from, Real direction, Real per_gap, bool& found) {
             const Index i = plane_of_[cell];
-            // A trace of air or of water tells nothing of where the surface is.
-            constexpr Real trace = SurfaceBand<Dim>::smallest_void;
             found = i >= 0 && fraction_[cell] > trace && fraction_[cell] < 1 - trace;
             if (!found) return face;
             const auto k = static_cast<std::size_t>(i);
@@ -194,6 +194,21 @@ public:
             if (!(slope > 1e-9 * std::abs(distance))) return from == 0 ? Real(1) : Real(0);
             return from + distance / slope * per_gap;
         };
+        // Along a surface that is nearly level a crossing may lie anywhere; the pressure of a column's height
+        // falls by the difference of both: the share is that of the distances of both centres from their
+        // planes.
+        const auto depth = [&](Offset cell, Real& found) {
+            const Index i = plane_of_[cell];
+            if (i < 0 || fraction_[cell] <= trace || fraction_[cell] >= 1 - trace) return false;
+            const auto k = static_cast<std::size_t>(i);
+            Real squares = 0;
+            for (const auto& component : planes_.normal) squares += square(component[k]);
+            found = planes_.position[k] / std::sqrt(squares);
+            return square(planes_.normal[index(axis)][k]) < 0.1 * squares;
+        };
+        Real below = 0, above = 0;
+        if (depth(liquid, below) && depth(air, above) && below >= 0 && above < 0)
+            return std::clamp(below / (below - above), least, Real(1));
         bool own = false, other = false;
         const Real near = crossing(liquid, 0, side, edge / gap, own);
         const Real far = crossing(air, 1, side, air_edge / gap, other);
