@@ -16,7 +16,8 @@ namespace abrade {
 /// for the n spheres of a train that sleep; the levers [N] are those of bonds to spheres that are awake, for
 /// what bonds between sleepers exert cancels. A train that holds on to the ground is stuck, and so is one of
 /// which a bond is oblique or that closes with the wrong sign, as three gears in a ring do. It stays as built
-/// when bonds break: what they held apart can still turn so.
+/// when bonds break: what they held apart can still turn so. While all that is awake is slow, trains are
+/// held.
 class GearTrains {
 public:
     /// Spheres. A longer one counts as stuck: it would turn as one, however far away the others are, where in
