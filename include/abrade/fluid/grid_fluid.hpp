@@ -244,11 +244,11 @@ private:
             for (const OpenFace& open : projection_.open_faces())
                 if (open.plain != 0)
                     result[open.axis][open.face] += push * (open.slope - open.plain) * pressure_[open.cell];
+            water.share_shear(result, by, (1 - kept) * dt * nu());
             leave(result);
         };
         stage(velocity_, stage_, 0, -dt);
-        // Implicit, so thin cells do not rule the step; the second stage takes the same. What
-        // does not change any more feels then just what drives it, whatever the step.
+        // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
         const auto taken = water.friction().apply(stage_, dt, nu());
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         finish(stage_);
