@@ -8,10 +8,6 @@ namespace viscous {
 
 using namespace abrade;
 
-/// Share of the viscous limit that steps take: at the limit itself the shortest waves neither grow nor decay,
-/// and cells that the surface or a wall cuts make them grow.
-constexpr Real step_share = 0.8;
-
 /// Of a computed flow, the fastest exact speed and the width being 1.
 struct Errors {
     Real profile = 0;     ///< root mean square over the faces whose centres are in the water
@@ -51,8 +47,7 @@ inline Errors between_sides(int cells) {
                                 .gravity = {8, 0},
                                 .density = 1,
                                 .viscosity = 1,
-                                .largest_step = step_share * 0.25 * h * h,
-                                .tolerance = 1e-9});
+                                .tolerance = 1e-11});
     flow.advance(1.5);  // what is left of the start is exp(-1.5 pi^2) = 4e-7
     ProfileErrors off(flow);
     Real discharge = 0;
@@ -106,8 +101,7 @@ struct Channel {
                              .gravity = 8 * along(),
                              .density = 1,
                              .viscosity = 1,
-                             .largest_step = step_share * 0.25 * h * h,
-                             .tolerance = 1e-8});
+                             .tolerance = 1e-11});
     }
 
     /// Pressure on the centre line at x [1], linear between cells.
@@ -178,8 +172,7 @@ struct Film {
             .gravity = {2, -2 / std::tan(slope)},
             .density = 1,
             .viscosity = 1,
-            .largest_step = step_share * 0.25 * h * h,
-            .tolerance = 1e-9};
+            .tolerance = 1e-11};
         if (share > 0) params.wall = [f](const Point<2>& x) { return x[1] - f.bed(); };
         return GridFluid<2>(params);
     }

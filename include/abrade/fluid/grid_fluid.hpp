@@ -237,12 +237,6 @@ private:
             restore();
             throw FluidError(place_in_time(dt) + beyond.what());
         }
-        // Half of what walls take, from the velocity as the pressure left it: water at rest feels no
-        // friction.
-        if (!water.friction().empty()) {
-            water.friction().apply(velocity_, 0.5 * dt, nu());
-            sides_.fill(velocity_, &water.rows());
-        }
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
             Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), params_.gravity};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
@@ -252,16 +246,18 @@ private:
             for (const OpenFace& open : projection_.open_faces())
                 if (open.plain != 0)
                     result[open.axis][open.face] += push * (open.slope - open.plain) * pressure_[open.cell];
+            water.share_shear(result, by, (1 - kept) * dt * nu());
             leave(result);
         };
         stage(velocity_, stage_, 0, -dt);
-        // All of it: the second stage is to see it, and takes half of what the first has.
-        water.friction().apply(stage_, dt, nu());
+        // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
+        const auto taken = water.friction().apply(stage_, dt, nu());
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         finish(stage_);
         water.carry_by(stage_, dt);
         // The old pressure is taken back: below the new surface it pushes anew.
         stage(stage_, velocity_, 0.5, 0.5 * dt);
+        water.friction().take(velocity_, taken, 0.5);
         water.find(projection_, pressure_, sides_);
         push_leaving(dt);
         // At steady sides there is what was there at the beginning of the step.

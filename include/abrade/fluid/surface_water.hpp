@@ -23,8 +23,8 @@ public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides),
           friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
-          wet_(grid.layout().total), rows_(grid.layout()), extension_(grid.layout()),
-          open_in_(static_cast<std::size_t>(grid.layout().planes())) {
+          burden_(grid.layout().total), wet_(grid.layout().total), rows_(grid.layout()),
+          extension_(grid.layout()), open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         // The projection begins with a full box.
         for (int plane = 0; plane < layout().planes(); ++plane)
@@ -123,6 +123,36 @@ public:
 
     void extend(FaceField<Dim>& u) { extension_.extend(u, wet_, rows_, held(), open_area()); }
 
+    /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
+    /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
+    /// back.
+    void share_shear(FaceField<Dim>& result, const FaceField<Dim>& by, Real viscous) {
+        for (int a = 0; a < Dim; ++a) {
+            const Offset back = layout().stride[a];
+            const auto mass = [&](Offset c) { return 0.5 * (held()[c] + held()[c - back]); };
+            const auto& riders = extension_.riders(a);
+            for (const auto& r : riders) burden_[r.carrier] += r.share * mass(r.face);
+            for (const auto& r : riders) {
+                const Real own = mass(r.carrier), more = std::exchange(burden_[r.carrier], 0);
+                // Little liquid has bounds of its own in momentum; beside walls shear acts on open shares
+                // only.
+                if (more == 0 || own < 0.5 || (walls_ && is_cut(r.carrier, back))) continue;
+                const CellNumber<Dim> cell = layout().number(r.carrier);
+                if (cell[a] <= 0 || cell[a] >= grid_->cells(a)) continue;
+                Real shear = 0;
+                for (int b = 0; b < Dim; ++b) {
+                    const int n = cell[b];
+                    const Offset s = layout().stride[b], c = r.carrier;
+                    const Real below = a == b ? grid_->size(b, n - 1) : grid_->gap(b, n),
+                               above = a == b ? grid_->size(b, n) : grid_->gap(b, n + 1);
+                    shear += ((by[a][c + s] - by[a][c]) / above - (by[a][c] - by[a][c - s]) / below) /
+                             (a == b ? grid_->gap(b, n) : grid_->size(b, n));
+                }
+                result[a][r.carrier] -= viscous * shear * (1 / own - 1 / (own + more));
+            }
+        }
+    }
+
     /// Puts back fractions and surplus as they were saved, in the rows of then.
     void restore(const Field<Real>& fraction, const Field<Real>& surplus, const WetRows<Dim>& rows) {
         const auto clear = [&](int plane, int row, const RowRange& r) {
@@ -137,6 +167,9 @@ public:
 
 private:
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
+    bool is_cut(Offset c, Offset back) const noexcept {
+        return walls_->open_volume()[c] < 1 || walls_->open_volume()[c - back] < 1;
+    }
     bool is_open(Offset c) const noexcept { return !walls_ || walls_->open_volume()[c] > 0; }
 
     /// Shares of the open volume that lie in the water of the start, and beyond inflows.
@@ -282,6 +315,7 @@ private:
     WallFriction<Dim> friction_;
     FaceField<Dim> open_middle_;
     Field<Real> held_, before_;
+    Field<Real> burden_;  ///< of a face: liquid of others that moves with it [cell], 0 between uses
     Field<std::uint8_t> wet_;
     WetRows<Dim> rows_, rows_before_;
     PerAxis<WetRows<Dim>, Dim> faces_;

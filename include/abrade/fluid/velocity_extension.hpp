@@ -34,8 +34,11 @@ public:
         for (int a = 0; a < Dim; ++a) {
             begin(a, wet, rows);
             if (open_area) close((*open_area)[a], u[a], rows);
+            riders_[a].clear();
             for (int layer = 0; layer < layers; ++layer) {
                 take_means(u[a], rows);
+                if (layer == 0) find_riders(a, held);
+                know_found(rows);
                 if (layer == 0) know_liquid(a, held, rows);
             }
             rows.for_each_row([&](int plane, int row, const RowRange& r) {
@@ -47,6 +50,13 @@ public:
             });
         }
     }
+
+    /// A face between dry cells that hold liquid: it moves as the mean of the faces of wet cells beside it.
+    struct Rider {
+        Offset face = 0, carrier = 0;
+        Real share = 0;  ///< of its liquid that this carrier bears [-]
+    };
+    const std::vector<Rider>& riders(int a) const noexcept { return riders_[a]; }  ///< of the last extension
 
 private:
     static constexpr std::uint8_t unknown = 0, known = 1;
@@ -117,9 +127,26 @@ private:
                 u[c] = sum / static_cast<State>(count);
             }
         });
+    }
+    void know_found(const WetRows<Dim>& rows) {
         rows.for_each_plane([&](int plane) {
             for (const Offset c : found_[static_cast<std::size_t>(plane)]) state_[c] = known;
         });
+    }
+
+    /// While faces of the first layer are found, but not yet known.
+    template <class State>
+    void find_riders(int a, const Field<State>& held) {
+        const auto wet = [&](Offset c) { return state_[c] == known; };
+        for (const auto& found : found_)
+            for (const Offset c : found) {
+                if (held[c] + held[c - layout_.stride[a]] < State(1e-6)) continue;
+                int count = 0;
+                for (const Offset s : layout_.stride) count += wet(c - s) + wet(c + s);
+                for (const Offset s : layout_.stride)
+                    for (const Offset n : {c - s, c + s})
+                        if (wet(n)) riders_[a].push_back({c, n, 1.0 / count});
+            }
     }
 
     /// Drops and sheets thinner than a cell.
@@ -139,7 +166,8 @@ private:
     static constexpr int lanes = 4 * Layout<Dim>::lanes;
     Layout<Dim> layout_;
     Field<std::uint8_t> state_;
-    WetRows<Dim> before_;                     ///< looked at the last time
+    WetRows<Dim> before_;  ///< looked at the last time
+    PerAxis<std::vector<Rider>, Dim> riders_;
     std::vector<std::vector<Offset>> found_;  ///< [plane] faces of a layer
 };
 

@@ -60,22 +60,25 @@ public:
         return std::all_of(held_.begin(), held_.end(), [](const auto& list) { return list.empty(); });
     }
 
-    /// Slows `u` down over a step [s]; `viscosity` is kinematic [m2/s].
-    void apply(FaceField<Dim>& u, Real step, Real viscosity) const {
-        PerAxis<std::vector<Real>, Dim> slower;  // of what they are now, all components
+    /// Of each face that walls hold.
+    using PerFace = PerAxis<std::vector<Real>, Dim>;
+
+    /// Slows `u` down over a step [s], by the velocity that it comes to; `viscosity` is kinematic [m2/s].
+    /// Returns what it took.
+    PerFace apply(FaceField<Dim>& u, Real step, Real viscosity) const {
+        PerFace taken;  // of what they are now, all components
         for (int a = 0; a < Dim; ++a) {
-            slower[a].reserve(held_[a].size());
-            for (const Held& h : held_[a]) {
-                const Real rate =
-                    law_.kind == WallLaw::Kind::no_slip
-                        ? viscosity / h.distance
-                        : square(karman / std::log(30 * std::max(h.distance / law_.roughness, 0.5))) *
-                              speed(u, a, h.face);
-                slower[a].push_back(1 / (1 + step * rate * h.per_volume));
-            }
+            taken[a].reserve(held_[a].size());
+            for (const Held& h : held_[a])
+                taken[a].push_back(u[a][h.face] * taken_share(u, a, h, step, viscosity));
         }
+        take(u, taken, 1);
+        return taken;
+    }
+    /// Takes a share of the same again.
+    void take(FaceField<Dim>& u, const PerFace& taken, Real share) const noexcept {
         for (int a = 0; a < Dim; ++a)
-            for (std::size_t k = 0; k < held_[a].size(); ++k) u[a][held_[a][k].face] *= slower[a][k];
+            for (std::size_t k = 0; k < held_[a].size(); ++k) u[a][held_[a][k].face] -= share * taken[a][k];
     }
 
 private:
@@ -84,6 +87,18 @@ private:
         Real distance = 0;    ///< of the face's centre from the wall [m]
         Real per_volume = 0;  ///< wall area over open volume [1/m]
     };
+
+    Real taken_share(const FaceField<Dim>& u, int a, const Held& h, Real step,
+                     Real viscosity) const noexcept {
+        if (law_.kind == WallLaw::Kind::no_slip) {
+            const Real z = step * h.per_volume * viscosity / h.distance;
+            return z / (1 + z);
+        }
+        // The root of v (1 + z v / u) = u.
+        const Real z = step * h.per_volume * speed(u, a, h.face) *
+                       square(karman / std::log(30 * std::max(h.distance / law_.roughness, 0.5)));
+        return 1 - 2 / (1 + std::sqrt(1 + 4 * z));
+    }
 
     /// At a face: its own component, and the mean of the four around it of each other one.
     Real speed(const FaceField<Dim>& u, int a, Offset face) const noexcept {
