@@ -61,7 +61,8 @@ public:
     }
 
     /// Slows `u` down over a step [s]; `viscosity` is kinematic [m2/s].
-    void apply(FaceField<Dim>& u, Real step, Real viscosity) const {
+    template <class State>
+    void apply(FaceField<Dim, State>& u, Real step, Real viscosity) const {
         PerAxis<std::vector<Real>, Dim> slower;  // of what they are now, all components
         for (int a = 0; a < Dim; ++a) {
             slower[a].reserve(held_[a].size());
@@ -75,7 +76,8 @@ public:
             }
         }
         for (int a = 0; a < Dim; ++a)
-            for (std::size_t k = 0; k < held_[a].size(); ++k) u[a][held_[a][k].face] *= slower[a][k];
+            for (std::size_t k = 0; k < held_[a].size(); ++k)
+                u[a][held_[a][k].face] *= static_cast<State>(slower[a][k]);
     }
 
 private:
@@ -86,12 +88,14 @@ private:
     };
 
     /// At a face: its own component, and the mean of the four around it of each other one.
-    Real speed(const FaceField<Dim>& u, int a, Offset face) const noexcept {
-        Real sum = square(u[a][face]);
+    template <class State>
+    Real speed(const FaceField<Dim, State>& u, int a, Offset face) const noexcept {
+        Real sum = square(Real(u[a][face]));
         for (int b = 0; b < Dim; ++b) {
             if (b == a) continue;
             const Offset up = layout_.stride[b], back = layout_.stride[a];
-            sum += square(0.25 * (u[b][face] + u[b][face + up] + u[b][face - back] + u[b][face + up - back]));
+            sum += square(0.25 *
+                          Real(u[b][face] + u[b][face + up] + u[b][face - back] + u[b][face + up - back]));
         }
         return std::sqrt(sum);
     }
@@ -126,7 +130,8 @@ private:
                 if (sides[b][end] != Side::wall) continue;
                 grid.for_each_beside(b, end == 1, [&](const CellNumber<Dim>& cell, Offset c) {
                     for (int a = 0; a < Dim; ++a)
-                        if (a != b && cell[a] > 0 && (!walls || walls->open_area()[a][c] > 0))
+                        if (a != b && (cell[a] > 0 || sides.periodic(a)) &&
+                            (!walls || walls->open_area()[a][c] > 0))
                             held_[a].push_back({c, 0.5 * grid.size(b, cell[b]), 1 / grid.size(b, cell[b])});
                 });
             }
