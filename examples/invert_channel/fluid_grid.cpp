@@ -9,7 +9,7 @@ namespace abrade::examples {
 
 namespace {
 
-using Flow = GridFluid<3>;
+using Flow = GridFluid<3, FreeSurface, Limited, Real, MixingLength>;
 
 Flow grid_channel(const ChannelConfig& c) {
     const WaterStart start(c);
@@ -30,7 +30,7 @@ Flow grid_channel(const ChannelConfig& c) {
                          : Point<3>(share * uniform.sample({0, x.y(), z}, 0).velocity.x(), 0, 0);
     };
     try {
-        return Flow{{.grid = {.cells = count, .low = {0, -half, 0}, .spacing = size},
+        return Flow({.grid = {.cells = count, .low = {0, -half, 0}, .spacing = size},
                      .sides = sides,
                      .side_velocity = enters,
                      .wall = InvertWall(c.invert),
@@ -40,7 +40,8 @@ Flow grid_channel(const ChannelConfig& c) {
                      .density = c.water.density,
                      .viscosity = c.water.viscosity,
                      .tolerance = 1e-5,
-                     .start_time = -start.settle}};
+                     .start_time = -start.settle},
+                    {.depth = uniform.depth()});
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());
     }

@@ -1,6 +1,8 @@
 #pragma once
 // Water on a staggered Cartesian grid.
 
+#include <abrade/fluid/eddy_viscosity.hpp>
+#include <abrade/fluid/fastest_face.hpp>
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/momentum.hpp>
 #include <abrade/fluid/surface_heights.hpp>
@@ -23,7 +25,11 @@ struct FreeSurface {};  ///< water below a surface; above it a void at pressure 
 /// same fluxes; the pressure is found below the new surface, where it is 0 (F. Gibou et al., doi
 /// 10.1006/jcph.2001.6977); velocities are carried on outward. Liquid and velocity leap over each other, so
 /// waves do not decay by the time step. Walls of any shape may stand in a box with a free surface.
-template <int Dim = 3, class Surface = FreeSurface, AdvectionScheme Scheme = Limited, class State = Real>
+///
+/// With a TurbulenceModel the viscosity grows by that of eddies, found at the end of each step from the
+/// velocity as the pressure left it.
+template <int Dim = 3, class Surface = FreeSurface, AdvectionScheme Scheme = Limited, class State = Real,
+          TurbulenceModel Turbulence = NoTurbulence>
 class GridFluid {
     static constexpr bool has_surface = std::same_as<Surface, FreeSurface>;
     static_assert(!has_surface || std::same_as<State, Real>, "a free surface is kept in double precision");
@@ -33,23 +39,26 @@ public:
     using Params = GridFluidParams<Dim>;
 
     /// Throws InputError where parameters make no flow.
-    explicit GridFluid(Params params)
+    explicit GridFluid(Params params, Turbulence turbulence = {})
         : params_((params.validate(), std::move(params))),
           grid_(std::make_shared<const Grid<Dim>>(params_.grid)),
           sides_(*grid_, gliding_sides(params_.sides, params_.wall_law), params_.side_velocity),
           projection_(*grid_, params_.sides), velocity_(face_field<Dim, State>(layout())), stage_(velocity_),
-          pressure_(layout().total), time_(params_.start_time) {
+          pressure_(layout().total),
+          side_friction_(*grid_, params_.sides, side_law(params_.wall_law), nullptr),
+          time_(params_.start_time) {
         sides_.set_time(time_);
         if constexpr (has_surface) {
             water_.emplace(*grid_, params_);
             water_->find(projection_, pressure_, sides_);
-        } else if (params_.wall_law.kind == WallLaw::Kind::logarithmic) {
-            fail({"GridFluid.wall_law", "no_slip or slip in a FullBox", "",
-                  "take a FreeSurface with water everywhere"},
-                 "logarithmic");
         } else if (params_.wall) {
             fail({"GridFluid.wall", "left out of a FullBox", "", "take a FreeSurface with water everywhere"},
                  "given");
+        }
+        if constexpr (Turbulence::has_eddies) {
+            const Walls<Dim>* walls = nullptr;
+            if constexpr (has_surface) walls = water_->walls();
+            eddies_.emplace(*grid_, params_, turbulence, walls);
         }
         if (params_.velocity) {
             grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
@@ -65,8 +74,9 @@ public:
         }
         finish(velocity_);
         if constexpr (has_surface) find_pressure_of_weight();
-        enters_ = rate_of_inflow();
+        enters_ = sides_.rate_of_inflow(velocity_);
         fastest_ = std::max(fastest_, enters_);
+        find_eddies();
         if constexpr (has_surface) {
             record_ = detail::WaterRecord<Dim>(velocity_, stage_, *water_);
             heights_ = detail::SurfaceHeights<Dim>(*grid_, water_->walls());
@@ -83,6 +93,10 @@ public:
     const Field<State>& pressure() const noexcept { return pressure_; }  ///< over density [m2/s2]
     const VolumeOfFluid<Dim>& liquid() const noexcept requires has_surface { return water_->liquid(); }
     const Walls<Dim>* walls() const noexcept requires has_surface { return water_->walls(); }
+    /// nu_t of cells, as the velocity makes it now [m2/s].
+    const Field<State>& eddy_viscosity() const noexcept requires Turbulence::has_eddies {
+        return eddies_->field();
+    }
     Index wet_cells() const noexcept { return projection_.wet_cells(); }
     Real time() const noexcept { return time_; }  ///< [s]
     const auto& last_projection() const noexcept { return report_; }
@@ -102,7 +116,9 @@ public:
         }
         // Heun's method is stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum
         // 1/h^2. At the limit itself a pattern of cells would not decay, and a surface feeds it.
-        if (nu() > 0) step.lower((has_surface ? 0.4 : 0.5) / (nu() * per_h2), "viscosity");
+        Real viscous = nu();
+        if constexpr (Turbulence::has_eddies) viscous += eddies_->largest();
+        if (viscous > 0) step.lower((has_surface ? 0.4 : 0.5) / (viscous * per_h2), "viscosity");
         if constexpr (has_surface) {
             // At its end gravity may have made the water faster by g dt.
             if (fastest_ > 0 || fall > 0)
@@ -140,10 +156,11 @@ public:
         else
             step_full(dt);
         check(dt);
+        find_eddies();
         time_ += dt;
         ++steps_;
         if constexpr (has_surface) record_.took(dt);
-        if (!params_.steady_sides) enters_ = rate_of_inflow();
+        if (!params_.steady_sides) enters_ = sides_.rate_of_inflow(velocity_);
         fastest_ = std::max(report_.courant / dt, enters_);
         if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
     }
@@ -183,9 +200,15 @@ public:
 private:
     using Stage = MomentumStage<Dim, State>;
     struct Nothing {};
+    using Eddies = detail::EddyViscosity<Dim, State>;
 
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     Real nu() const noexcept { return params_.viscosity / params_.density; }
+    /// In a full box that of logarithmic sides alone; the surface's water has its own.
+    static WallLaw side_law(const WallLaw& law) {
+        return !has_surface && law.kind == WallLaw::Kind::logarithmic ? law : WallLaw{WallLaw::Kind::slip};
+    }
+
     /// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage_`
     /// how water at rest is accelerated [m/s2].
     void find_pressure_of_weight() {
@@ -213,15 +236,16 @@ private:
         saved_pressure_ = pressure_;  // the velocity is kept by the second stage
         sides_.fill_cells(pressure_);
         const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
-            advance_momentum<Scheme>(*grid_, projection_.faces(),
-                                     Stage{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept),
-                                           nu(), params_.gravity});
-            leave(result);
+            Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), params_.gravity};
+            advance(projection_.faces(), s);
+            sides_.leave(result);
         };
         stage(velocity_, stage_, 0);
+        const auto taken = side_friction_.apply(stage_, dt, nu());
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         sides_.fill(stage_);
         stage(stage_, saved_velocity_, 0.5);
+        side_friction_.take(saved_velocity_, taken, 0.5);
         std::swap(velocity_, saved_velocity_);
         if (!params_.steady_sides) sides_.fill(velocity_);
         report_ = projection_.project(velocity_, pressure_, dt, params_.tolerance);
@@ -241,13 +265,13 @@ private:
             Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), params_.gravity};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
             s.open_area = water.open_area(), s.open_middle = water.open_middle();
-            advance_momentum<Scheme>(*grid_, water.faces(), s);
+            advance(water.faces(), s);
             // At the surface the pressure falls to 0 within another distance than that of the centres.
             for (const OpenFace& open : projection_.open_faces())
                 if (open.plain != 0)
                     result[open.axis][open.face] += push * (open.slope - open.plain) * pressure_[open.cell];
             water.share_shear(result, by, (1 - kept) * dt * nu());
-            leave(result);
+            sides_.leave(result);
         };
         stage(velocity_, stage_, 0, -dt);
         // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
@@ -267,6 +291,21 @@ private:
         finish(velocity_);
     }
 
+    void advance(const PerAxis<WetRows<Dim>, Dim>& faces, Stage& stage) const {
+        if constexpr (Turbulence::has_eddies) stage.eddy_viscosity = &eddies_->field();
+        advance_momentum<Scheme, Turbulence::has_eddies>(*grid_, faces, stage);
+    }
+
+    /// Of the present velocity.
+    void find_eddies() {
+        if constexpr (Turbulence::has_eddies) {
+            if constexpr (has_surface)
+                eddies_->find(velocity_, sides_, &water_->rows(), &water_->held());
+            else
+                eddies_->find(velocity_, sides_);
+        }
+    }
+
     /// Air beside the water, ghosts.
     void finish(FaceField<Dim, State>& u) {
         if constexpr (has_surface) {
@@ -277,42 +316,16 @@ private:
         }
     }
 
-    /// Faces through which water leaves go on as the ones before them.
-    void leave(FaceField<Dim, State>& u) const {
-        for (int a = 0; a < Dim; ++a)
-            for (const bool high : {false, true})
-                if (params_.sides[a][high] == Side::outflow)
-                    sides_.along_side({a, high}, [&](Offset c, std::size_t) {
-                        const Offset next = c + layout().stride[a];
-                        high ? u[a][next] = u[a][c] : u[a][c] = u[a][next];
-                    });
-    }
-
-    /// Largest |u| / h of what is given at sides [1/s]: it counts before the water inside has its speed.
-    Real rate_of_inflow() const {
-        Real most = 0;
-        for (int a = 0; a < Dim; ++a)
-            for (const bool high : {false, true})
-                if (params_.sides[a][high] == Side::inflow)
-                    sides_.along_side({a, high}, [&](Offset c, std::size_t) {
-                        const State u = velocity_[a][high ? c + layout().stride[a] : c];
-                        most = std::max(most, std::abs(static_cast<Real>(u)) / grid_->size(a, 0));
-                    });
-        return most;
-    }
-
     /// What leaves is pushed as the faces before it are about to be.
     void push_leaving(Real dt) {
-        for (int a = 0; a < Dim; ++a)
-            for (const bool high : {false, true})
-                if (params_.sides[a][high] == Side::outflow)
-                    sides_.along_side({a, high}, [&](Offset c, std::size_t) {
-                        const Offset s = layout().stride[a], inside = high ? c : c + s,
-                                     face = high ? c + s : c;
-                        if (projection_.multigrid().matrix().face[a][inside] > 0)
-                            velocity_[a][face] -=
-                                dt * (pressure_[inside] - pressure_[inside - s]) / grid_->size(a, 0);
-                    });
+        sides_.for_sides(Side::outflow, [&](int a, bool high) {
+            sides_.along_side({a, high}, [&](Offset c, std::size_t) {
+                const Offset s = layout().stride[a], inside = high ? c : c + s, face = high ? c + s : c;
+                if (projection_.multigrid().matrix().face[a][inside] > 0)
+                    velocity_[a][face] -=
+                        dt * (pressure_[inside] - pressure_[inside - s]) / grid_->size(a, 0);
+            });
+        });
     }
 
     /// Back to what a step that went wrong began with.
@@ -333,10 +346,10 @@ private:
             for (int i = 0; i < grid_->cells(a); ++i) size = std::max(size, grid_->size(a, i));
         const bool found = std::isfinite(report_.after) && report_.after <= 1;
         // The bound is cheap, the speed itself is not.
-        if (found &&
-            (report_.courant / dt * size <= params_.fastest || fastest_face().speed <= params_.fastest))
+        if (found && (report_.courant / dt * size <= params_.fastest ||
+                      detail::FastFace<Dim>(*grid_, velocity_).speed <= params_.fastest))
             return;
-        const std::string where = fastest_cell();
+        const std::string where = detail::FastFace<Dim>(*grid_, velocity_).text();
         const std::string cause = !std::isfinite(report_.after) ? "the velocity is not a number"
                                   : report_.after > 1
                                       ? "the pressure was not found, a cell gains " +
@@ -350,27 +363,6 @@ private:
         return "step " + std::to_string(steps_) + " (t = " + short_text(time_) +
                " s, dt = " + short_text(dt) + " s): ";
     }
-    struct FastFace {
-        Real speed = -1;
-        int axis = 0;
-        CellNumber<Dim> cell{};
-    };
-    FastFace fastest_face() const {
-        FastFace most;
-        grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            for (int a = 0; a < Dim; ++a) {
-                const Real u = std::abs(static_cast<Real>(velocity_[a][c]));
-                if (!std::isnan(most.speed) && !(u <= most.speed)) most = {u, a, cell};
-            }
-        });
-        return most;
-    }
-    std::string fastest_cell() const {
-        const FastFace most = fastest_face();
-        std::string text = "cell [";
-        for (int b = 0; b < Dim; ++b) text += (b ? ", " : "") + std::to_string(most.cell[b]);
-        return text + "] has " + short_text(most.speed) + " m/s along " + Grid<Dim>::axis_name(most.axis);
-    }
 
     Params params_;
     std::shared_ptr<const Grid<Dim>> grid_;  ///< shared among copies, parts of which point to it
@@ -379,8 +371,10 @@ private:
     FaceField<Dim, State> velocity_, stage_, saved_velocity_;
     Field<State> pressure_, saved_pressure_;
     std::conditional_t<has_surface, detail::WaterRecord<Dim>, Nothing> record_{};
+    WallFriction<Dim> side_friction_;  ///< of a full box
     std::conditional_t<has_surface, std::optional<detail::SurfaceWater<Dim>>, Nothing> water_{};
     std::conditional_t<has_surface, detail::SurfaceHeights<Dim>, Nothing> heights_{};
+    std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies_{};
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Index steps_ = 0;

@@ -10,10 +10,12 @@ namespace abrade {
 
 /// One stage, for the cell around each face (control volume V of component a):
 ///   result = kept velocity + (1 - kept) ((M_before start - dt/V sum over its sides A G) / M + dt g_a) + w
-///   dp/dx_a, G = W u_face - nu du/dn,
+///   dp/dx_a, G = W u_face - (nu + nu_t) du/dn,
 /// u_face by an advection scheme, W what carries: a velocity, or the liquid that went through in the step. M
 /// is the share of V that liquid fills, by which momentum goes with the same fluxes as the liquid; 1 without
 /// a surface. kept = 0 for the first stage, 1/2 for the second: Heun's method. `result` may be `start`.
+/// Eddies, where there are any, act in the Laplacian's form div((nu + nu_t) grad u): the transposed gradient
+/// is left out, since beside walls and surfaces that cut cells it is not known.
 template <int Dim, class State>
 struct MomentumStage {
     const FaceField<Dim, State>& velocity;  ///< what is carried, ghosts filled [m/s]
@@ -33,13 +35,14 @@ struct MomentumStage {
     const FaceField<Dim>* open_area = nullptr;  ///< share of each face that walls leave open [-]; none: all
     /// How far the middle of what walls leave open of a cell lies from the cell's, in cells; with open_area.
     const FaceField<Dim>* open_middle = nullptr;
+    const Field<State>* eddy_viscosity = nullptr;  ///< nu_t of cells, ghosts filled [m2/s]; where Eddies
 };
 
 namespace detail {
 
 /// Fluxes through sides of the control volumes are computed once and kept until both neighbours have had
 /// them. Loops go over whole packs; what lies in them beyond a row's range is computed and thrown away.
-template <class Scheme, int Dim, class State>
+template <class Scheme, bool Eddies, int Dim, class State>
 class MomentumRows {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner, middle = 2;
     static constexpr int vertical = Grid<Dim>::vertical, lanes = Layout<Dim>::lanes;
@@ -67,7 +70,7 @@ public:
                     return (a == b ? 0.5 : half(grid, a, k, true)) * per_carrier(grid, b, k);
                 });
                 friction_[a][b] = Table(grid, [&](int k) {
-                    return s_.viscosity /
+                    return (Eddies ? 1 : s_.viscosity) /
                            (a == b ? grid.size(a, up ? k - 1 : 0) : grid.gap(b, along ? k : 0));
                 });
                 share_[a][b] = Table(grid, [&](int k) {
@@ -134,6 +137,20 @@ private:
         // Half of what flows through the sides of each of the two cells that the volume lies in.
         const auto lower = lower_[a][b].row(row), upper = upper_[a][b].row(row),
                    friction = friction_[a][b].row(row);
+        // Eddies of the four cells around the middle of the side, or of the one that it lies in.
+        const State *eddy[4] = {u, u, u, u}, molecular = static_cast<State>(s_.viscosity);
+        if constexpr (Eddies)
+            for (int n = 0; n < 4; ++n)
+                eddy[n] = s_.eddy_viscosity->data() + start - (a == b || n % 2 == 1 ? layout_.stride[a] : 0) -
+                          (a != b && n >= 2 ? across : 0);
+        const State* const __restrict eddy_0 = eddy[0], * const __restrict eddy_1 = eddy[1], * const __restrict eddy_2 = eddy[2], * const __restrict eddy_3 = eddy[3];
+        const auto viscosity_over_gap = [&](int i) {
+            if constexpr (Eddies)
+                return friction[i] *
+                       (molecular + State(0.25) * (eddy_0[i] + eddy_1[i] + eddy_2[i] + eddy_3[i]));
+            else
+                return friction[i];
+        };
         const auto through = [&](int i, State open) {
             // All four are read before it is known which are needed: loads that wait for a condition are
             // slow.
@@ -142,7 +159,7 @@ private:
             const bool rising = carried > 0;
             const State value =
                 Scheme::at_face(rising ? far_low : far_high, rising ? low : high, rising ? high : low);
-            return carried * value - open * friction[i] * (high - low);
+            return carried * value - open * viscosity_over_gap(i) * (high - low);
         };
         if (s_.open_area) {  // friction acts on what is open; the wall's own is added apart
             const Real* const __restrict open = (*s_.open_area)[b].data() + start;
@@ -250,15 +267,15 @@ private:
 
 }  // namespace detail
 
-/// Computes one stage on the faces that `faces[a]` names, for each component a.
-/// Same bits for any number of threads.
-template <class Scheme, int Dim, class State>
+/// Computes one stage on the faces that `faces[a]` names, for each component a; with `Eddies` their viscosity
+/// counts. Same bits for any number of threads.
+template <class Scheme, bool Eddies = false, int Dim, class State>
 void advance_momentum(const Grid<Dim>& grid, const PerAxis<WetRows<Dim>, Dim>& faces,
                       const MomentumStage<Dim, State>& stage) {
     const int planes = grid.layout().planes();
     const int runs = std::clamp(planes / 8, 1, thread_count());
     parallel_tasks(runs, [&](Index run) {
-        detail::MomentumRows<Scheme, Dim, State> rows(grid, stage);
+        detail::MomentumRows<Scheme, Eddies, Dim, State> rows(grid, stage);
         const auto cut = [&](Index r) { return static_cast<int>(std::int64_t{planes} * r / runs); };
         for (int a = 0; a < Dim; ++a) rows.run(a, faces[a], cut(run), cut(run + 1));
     });

@@ -67,6 +67,37 @@ public:
                     }
     }
 
+    /// Faces through which water leaves go on as the ones before them.
+    template <class State>
+    void leave(FaceField<Dim, State>& u) const {
+        for_sides(Side::outflow, [&](int a, bool high) {
+            along_side({a, high}, [&](Offset c, std::size_t) {
+                const Offset next = c + step(a);
+                high ? u[a][next] = u[a][c] : u[a][c] = u[a][next];
+            });
+        });
+    }
+
+    /// Largest |u| / h of what is given at sides [1/s]: it counts before the water inside has its speed.
+    template <class State>
+    Real rate_of_inflow(const FaceField<Dim, State>& u) const {
+        Real most = 0;
+        for_sides(Side::inflow, [&](int a, bool high) {
+            along_side({a, high}, [&](Offset c, std::size_t) {
+                const State through = u[a][high ? c + step(a) : c];
+                most = std::max(most, std::abs(static_cast<Real>(through)) / grid_->size(a, 0));
+            });
+        });
+        return most;
+    }
+
+    /// Calls body(axis, high) for each side of a kind.
+    void for_sides(Side wanted, auto&& body) const {
+        for (int a = 0; a < Dim; ++a)
+            for (const bool high : {false, true})
+                if (kind(a, high) == wanted) body(a, high);
+    }
+
     /// Ghosts of a cell field beyond periodic sides.
     template <class Number>
     void join_cells(Field<Number>& x) const {

@@ -65,20 +65,23 @@ public:
 
     /// Slows `u` down over a step [s], by the velocity that it comes to; `viscosity` is kinematic [m2/s].
     /// Returns what it took.
-    PerFace apply(FaceField<Dim>& u, Real step, Real viscosity) const {
+    template <class State>
+    PerFace apply(FaceField<Dim, State>& u, Real step, Real viscosity) const {
         PerFace taken;  // of what they are now, all components
         for (int a = 0; a < Dim; ++a) {
             taken[a].reserve(held_[a].size());
             for (const Held& h : held_[a])
-                taken[a].push_back(u[a][h.face] * taken_share(u, a, h, step, viscosity));
+                taken[a].push_back(static_cast<Real>(u[a][h.face]) * taken_share(u, a, h, step, viscosity));
         }
         take(u, taken, 1);
         return taken;
     }
     /// Takes a share of the same again.
-    void take(FaceField<Dim>& u, const PerFace& taken, Real share) const noexcept {
+    template <class State>
+    void take(FaceField<Dim, State>& u, const PerFace& taken, Real share) const noexcept {
         for (int a = 0; a < Dim; ++a)
-            for (std::size_t k = 0; k < held_[a].size(); ++k) u[a][held_[a][k].face] -= share * taken[a][k];
+            for (std::size_t k = 0; k < held_[a].size(); ++k)
+                u[a][held_[a][k].face] -= static_cast<State>(share * taken[a][k]);
     }
 
 private:
@@ -88,7 +91,8 @@ private:
         Real per_volume = 0;  ///< wall area over open volume [1/m]
     };
 
-    Real taken_share(const FaceField<Dim>& u, int a, const Held& h, Real step,
+    template <class State>
+    Real taken_share(const FaceField<Dim, State>& u, int a, const Held& h, Real step,
                      Real viscosity) const noexcept {
         if (law_.kind == WallLaw::Kind::no_slip) {
             const Real z = step * h.per_volume * viscosity / h.distance;
@@ -101,12 +105,14 @@ private:
     }
 
     /// At a face: its own component, and the mean of the four around it of each other one.
-    Real speed(const FaceField<Dim>& u, int a, Offset face) const noexcept {
-        Real sum = square(u[a][face]);
+    template <class State>
+    Real speed(const FaceField<Dim, State>& u, int a, Offset face) const noexcept {
+        Real sum = square(Real(u[a][face]));
         for (int b = 0; b < Dim; ++b) {
             if (b == a) continue;
             const Offset up = layout_.stride[b], back = layout_.stride[a];
-            sum += square(0.25 * (u[b][face] + u[b][face + up] + u[b][face - back] + u[b][face + up - back]));
+            sum += square(0.25 *
+                          Real(u[b][face] + u[b][face + up] + u[b][face - back] + u[b][face + up - back]));
         }
         return std::sqrt(sum);
     }
@@ -141,7 +147,8 @@ private:
                 if (sides[b][end] != Side::wall) continue;
                 grid.for_each_beside(b, end == 1, [&](const CellNumber<Dim>& cell, Offset c) {
                     for (int a = 0; a < Dim; ++a)
-                        if (a != b && cell[a] > 0 && (!walls || walls->open_area()[a][c] > 0))
+                        if (a != b && (cell[a] > 0 || sides.periodic(a)) &&
+                            (!walls || walls->open_area()[a][c] > 0))
                             held_[a].push_back({c, 0.5 * grid.size(b, cell[b]), 1 / grid.size(b, cell[b])});
                 });
             }

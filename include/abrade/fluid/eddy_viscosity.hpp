@@ -1,0 +1,213 @@
+#pragma once
+// The eddy viscosity of cells, from the velocity on their faces.
+
+#include <abrade/fluid/grid_fluid_params.hpp>
+#include <abrade/fluid/level_table.hpp>
+#include <abrade/fluid/turbulence.hpp>
+
+#include <limits>
+
+namespace abrade::detail {
+
+/// nu_t = l^2 |S| in cells [m2/s],
+///   |S|^2 = 2 S_ij S_ij = 2 sum_a (du_a/dx_a)^2 + sum_{a<b} <(du_a/dx_b + du_b/dx_a)^2>,
+/// <> the mean over those of the cell's four edges whose shear the grid knows: not beside closed faces, not
+/// on logarithmic sides, where the velocity falls to 0 within the cell, and not where water leaves the box,
+/// since of the air there no velocity is known.
+///
+/// l comes from the distance of the middle of what is open of a cell from what the params call walls: sides,
+/// and the wall inside, taken as a distance. Same bits for any number of threads.
+template <int Dim, class State>
+class EddyViscosity {
+    static constexpr int lanes = Layout<Dim>::lanes, vertical = Grid<Dim>::vertical,
+                         pairs = Dim * (Dim - 1) / 2;
+    using Table = LevelTable<Dim, State>;
+
+public:
+    /// `walls` may be none.
+    template <class Model>
+    EddyViscosity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, const Model& model,
+                  const Walls<Dim>* walls)
+        : layout_(grid.layout()), field_(layout_.total), length2_(layout_.total), all_(layout_),
+          most_(static_cast<std::size_t>(layout_.planes())) {
+        model.validate();
+        for (int a = 0; a < Dim; ++a) {
+            per_size_[a] = Table(grid, [&](int k) { return 1 / grid.size(a, a == vertical ? k : 0); });
+            per_gap_[a] = Table(grid, [&](int k) { return 1 / grid.gap(a, a == vertical ? k : 0); });
+        }
+        for (int plane = 0; plane < layout_.planes(); ++plane)
+            for (int row = 0; row < layout_.rows_per_plane(); ++row)
+                all_.row(plane, row) = {0, layout_.row_length()};
+        const auto set_length = [&](const CellNumber<Dim>& cell, Offset c, const Point<Dim>& middle) {
+            const Real size = std::pow(grid.volume(cell), 1.0 / Dim);
+            length2_[c] = static_cast<State>(square(model.length(size, wall_distance(grid, params, middle))));
+        };
+        grid.for_each([&](const CellNumber<Dim>& cell, Offset c) { set_length(cell, c, grid.centre(cell)); });
+        if (walls)
+            for (const WallCell<Dim>& w : walls->wall_cells()) {
+                const CellNumber<Dim> cell = layout_.number(w.cell);
+                Point<Dim> middle = grid.centre(cell);
+                for (int b = 0; b < Dim; ++b)
+                    middle[b] +=
+                        0.5 * (1 - walls->open_volume()[w.cell]) * w.normal[b] * grid.size(b, cell[b]);
+                set_length(cell, w.cell, middle);
+            }
+        bool leaves = false;
+        for (const auto& ends : params.sides.kind)
+            leaves = leaves || ends[0] == Side::outflow || ends[1] == Side::outflow;
+        if (walls || leaves || params.wall_law.kind == WallLaw::Kind::logarithmic)
+            find_known(grid, params, walls);
+    }
+
+    /// `held`: liquid in a cell [-], below 0 of which there are no eddies; with `rows`, that hold it. None:
+    /// all cells are full.
+    void find(const FaceField<Dim, State>& u, const VelocitySides<Dim>& sides,
+              const WetRows<Dim>* rows = nullptr, const Field<Real>* held = nullptr) {
+        const WetRows<Dim>& looked_at = rows ? *rows : all_;
+        looked_at.for_each_plane([&](int plane) {
+            State most = 0;
+            for (int row = 0; row < layout_.rows_per_plane(); ++row) {
+                const RowRange r = looked_at.row(plane, row);
+                if (r.empty()) continue;
+                const Offset start = layout_.row_start(plane, row);
+                State* const nu = field_.data() + start;
+                stretch(u, row, start, r);
+                int pair = 0;
+                for (int a = 0; a < Dim; ++a)
+                    for (int b = a + 1; b < Dim; ++b, ++pair)
+                        known_.empty() ? shear<false>(u, {a, b, pair}, row, start, r)
+                                       : shear<true>(u, {a, b, pair}, row, start, r);
+                const State* const length2 = length2_.data() + start;
+                for (int i = whole(r.begin); i < r.end; i += lanes)
+#pragma omp simd
+                    for (int k = i; k < i + lanes; ++k) nu[k] = length2[k] * std::sqrt(nu[k]);
+                if (held) {
+                    const Real* const __restrict h = held->data() + start;
+                    for (int i = r.begin; i < r.end; ++i) nu[i] = h[i] > 0 ? nu[i] : State(0);
+                }
+                for (int i = r.begin; i < r.end; ++i) most = std::max(most, nu[i]);
+            }
+            most_[static_cast<std::size_t>(plane)] = most;
+        });
+        largest_ = *std::max_element(most_.begin(), most_.end());
+        sides.fill_cells(field_);
+        // No eddy reaches through a wall that is resolved: the mean of a cell and its mirror is 0.
+        sides.for_sides(Side::wall, [&](int a, bool high) {
+            const Offset out = high ? layout_.stride[a] : -layout_.stride[a];
+            sides.along_side({a, high}, [&](Offset c, std::size_t) { field_[c + out] = -field_[c]; });
+        });
+    }
+
+    Field<State>& field() noexcept { return field_; }
+    const Field<State>& field() const noexcept { return field_; }
+    Real largest() const noexcept { return largest_; }  ///< [m2/s]
+
+private:
+    /// A plane of the strain's shear.
+    struct Pair {
+        int a, b, number;
+    };
+
+    static int whole(int i) noexcept { return i & ~(lanes - 1); }
+
+    static Real wall_distance(const Grid<Dim>& grid, const GridFluidParams<Dim>& params,
+                              const Point<Dim>& x) {
+        Real d = params.wall ? params.wall(x) : std::numeric_limits<Real>::infinity();
+        for (int a = 0; a < Dim; ++a) {
+            if (params.sides[a][0] == Side::wall) d = std::min(d, x[a] - grid.low(a));
+            if (params.sides[a][1] == Side::wall) d = std::min(d, grid.high(a) - x[a]);
+        }
+        return d;
+    }
+
+    /// Edges at the lower corner of each cell whose shear counts: 1, else 0.
+    void find_known(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, const Walls<Dim>* walls) {
+        known_.resize(pairs);
+        const bool logarithmic = params.wall_law.kind == WallLaw::Kind::logarithmic;
+        const auto unknown = [&](Side side) {
+            return (logarithmic && side == Side::wall) || side == Side::outflow;
+        };
+        const auto on_side = [&](int a, int i) {
+            return (i == 0 && unknown(params.sides[a][0])) ||
+                   (i == grid.cells(a) && unknown(params.sides[a][1]));
+        };
+        int pair = 0;
+        for (int a = 0; a < Dim; ++a)
+            for (int b = a + 1; b < Dim; ++b, ++pair) {
+                auto& known = known_[static_cast<std::size_t>(pair)] = Field<State>(layout_.total);
+                const Offset to_a = layout_.stride[a], to_b = layout_.stride[b];
+                grid.for_each(
+                    [&](const CellNumber<Dim>& cell, Offset c) {
+                        bool open = true;
+                        if (walls) {
+                            const auto& area = walls->open_area();
+                            open = area[a][c] > 0 && area[a][c - to_b] > 0 && area[b][c] > 0 &&
+                                   area[b][c - to_a] > 0;
+                        }
+                        known[c] = open && !on_side(a, cell[a]) && !on_side(b, cell[b]);
+                    },
+                    1);
+            }
+    }
+
+    /// 2 sum (du_a/dx_a)^2.
+    void stretch(const FaceField<Dim, State>& u, int row, Offset start, RowRange r) noexcept {
+        State* const __restrict sum = field_.data() + start;
+        for (int a = 0; a < Dim; ++a) {
+            const State* const __restrict v = u[a].data() + start;
+            const State* const __restrict v_up = v + layout_.stride[a];
+            const auto per_size = per_size_[a].row(row);
+            const State before = a > 0;
+            for (int i = whole(r.begin); i < r.end; i += lanes)
+#pragma omp simd
+                for (int k = i; k < i + lanes; ++k) {
+                    const State rate = (v_up[k] - v[k]) * per_size[k];
+                    sum[k] = (before > 0 ? sum[k] : State(0)) + 2 * rate * rate;
+                }
+        }
+    }
+
+    /// Adds the mean square of the shear rates at the four edges.
+    template <bool Weighted>
+    void shear(const FaceField<Dim, State>& u, Pair p, int row, Offset start, RowRange r) noexcept {
+        const Offset to_a = layout_.stride[p.a], to_b = layout_.stride[p.b];
+        State* const __restrict sum = field_.data() + start;
+        const State* const __restrict v = u[p.a].data() + start;
+        const State* const __restrict w = u[p.b].data() + start;
+        const State* const __restrict known =
+            Weighted ? known_[static_cast<std::size_t>(p.number)].data() + start : v;
+        // Of the cell's own level; those one level up only count along the vertical.
+        const auto gap_a = per_gap_[p.a].row(row), gap_b = per_gap_[p.b].row(row),
+                   gap_a_up = per_gap_[p.a].row(Dim == 3 ? row + 1 : row),
+                   gap_b_up = per_gap_[p.b].row(Dim == 3 ? row + 1 : row);
+        constexpr int next = Dim == 3 ? 0 : 1;
+        for (int i = whole(r.begin); i < r.end; i += lanes)
+#pragma omp simd
+            for (int k = i; k < i + lanes; ++k) {
+                const State a0 = gap_a[k], a1 = gap_a_up[k + next], b0 = gap_b[k], b1 = gap_b_up[k + next];
+                const auto square_at = [&](Offset at, State per_a, State per_b) {
+                    const State rate = (v[at] - v[at - to_b]) * per_b + (w[at] - w[at - to_a]) * per_a;
+                    return rate * rate;
+                };
+                const State s0 = square_at(k, a0, b0), s1 = square_at(k + to_a, a1, b0),
+                            s2 = square_at(k + to_b, a0, b1), s3 = square_at(k + to_a + to_b, a1, b1);
+                if constexpr (Weighted) {
+                    const State w0 = known[k], w1 = known[k + to_a], w2 = known[k + to_b],
+                                w3 = known[k + to_a + to_b];
+                    sum[k] += (w0 * s0 + w1 * s1 + w2 * s2 + w3 * s3) / std::max(w0 + w1 + w2 + w3, State(1));
+                } else {
+                    sum[k] += State(0.25) * (s0 + s1 + s2 + s3);
+                }
+            }
+    }
+
+    Layout<Dim> layout_;
+    Field<State> field_, length2_;     ///< nu_t [m2/s], l^2 [m2]
+    std::vector<Field<State>> known_;  ///< [pair of axes]; none: all edges count
+    PerAxis<Table, Dim> per_size_, per_gap_;
+    WetRows<Dim> all_;
+    std::vector<State> most_;  ///< [plane]
+    Real largest_ = 0;
+};
+
+}  // namespace abrade::detail

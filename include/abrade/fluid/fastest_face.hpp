@@ -1,0 +1,34 @@
+#pragma once
+// Where a flow is fastest: what an error says of a run that went wrong.
+
+#include <abrade/fluid/grid.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace abrade::detail {
+
+/// The fastest component on a face; a speed that is no number counts as the fastest.
+template <int Dim>
+struct FastFace {
+    Real speed = -1;  ///< [m/s]
+    int axis = 0;
+    CellNumber<Dim> cell{};
+
+    template <class State>
+    FastFace(const Grid<Dim>& grid, const FaceField<Dim, State>& velocity) {
+        grid.for_each([&](const CellNumber<Dim>& at, Offset c) {
+            for (int a = 0; a < Dim; ++a) {
+                const Real u = std::abs(static_cast<Real>(velocity[a][c]));
+                if (!std::isnan(speed) && !(u <= speed)) speed = u, axis = a, cell = at;
+            }
+        });
+    }
+    std::string text() const {
+        std::string text = "cell [";
+        for (int b = 0; b < Dim; ++b) text += (b ? ", " : "") + std::to_string(cell[b]);
+        return text + "] has " + short_text(speed) + " m/s along " + Grid<Dim>::axis_name(axis);
+    }
+};
+
+}  // namespace abrade::detail

@@ -1,0 +1,221 @@
+// Eddy viscosity: what a given shear makes of it, where there is none, what walls let it be, and that the
+// water feels it.
+#include <abrade/fluid/grid_fluid.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace abrade;
+
+namespace {
+
+template <int Dim, class Model = Smagorinsky, class Surface = FullBox>
+using Flow = GridFluid<Dim, Surface, Limited, Real, Model>;
+
+/// Velocity on all faces and ghosts, as a function of the place.
+template <int Dim>
+FaceField<Dim> velocity(const Grid<Dim>& grid, auto&& of) {
+    FaceField<Dim> u = face_field<Dim>(grid.layout());
+    grid.for_each(
+        [&](const CellNumber<Dim>& cell, Offset c) {
+            for (int a = 0; a < Dim; ++a) u[a][c] = of(grid.face_centre(a, cell))[a];
+        },
+        Layout<Dim>::ghosts);
+    return u;
+}
+
+/// nu_t of a velocity that no side has touched; sides glide, so there are no walls.
+template <int Dim>
+std::vector<Real> eddies(const Grid<Dim>& grid, const Smagorinsky& model, auto&& of) {
+    GridFluidParams<Dim> params{.grid = grid.params(), .sides = Sides<Dim>::all(Side::slip)};
+    detail::EddyViscosity<Dim, Real> found(grid, params, model, nullptr);
+    found.find(velocity(grid, of), VelocitySides<Dim>(grid, params.sides, {}));
+    std::vector<Real> values;
+    grid.for_each([&](const auto&, Offset c) { values.push_back(found.field()[c]); });
+    CHECK(found.largest() == *std::max_element(values.begin(), values.end()));
+    return values;
+}
+
+}  // namespace
+
+TEST_CASE("pure shear, stretch and all at once: nu_t = (C_s Delta)^2 |S|") {
+    const Smagorinsky model{.constant = 0.17};
+    const Grid<3> cubes({.cells = {5, 21, 4}, .spacing = {0.1, 0.2, 0.3}});
+    const Grid<3> stretched(
+        {.cells = {5, 21, 4}, .spacing = {0.1, 0.2, 0}, .levels = {0, 0.1, 0.3, 0.35, 0.5}});
+    Eigen::Matrix3d shear = Eigen::Matrix3d::Zero(), any;
+    any << 0.3, -0.7, 1.1, 0.4, 0.5, -0.2, 2.0, 0.6, -0.8;
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+            shear.setZero();
+            shear(a, b) = 3;
+            const Real rate = a == b ? std::sqrt(2.0) * 3 : 3;
+            for (const Real nu : eddies(cubes, model, [&](const Vec3& x) { return Vec3(shear * x); }))
+                REQUIRE(nu == doctest::Approx(square(0.17) * std::cbrt(square(0.006)) * rate).epsilon(1e-12));
+        }
+    const Eigen::Matrix3d strain = 0.5 * (any + any.transpose());
+    const Real rate = std::sqrt(2 * strain.squaredNorm());
+    for (const Grid<3>& grid : {cubes, stretched}) {
+        const auto found = eddies(grid, model, [&](const Vec3& x) { return Vec3(any * x); });
+        std::size_t k = 0;
+        grid.for_each([&](const CellNumber<3>& cell, Offset) {
+            REQUIRE(
+                found[k++] ==
+                doctest::Approx(square(0.17 * std::cbrt(grid.volume(cell))) * rate).epsilon(1e-12).scale(0));
+        });
+    }
+    const Grid<2> plane({.cells = {4, 19}, .spacing = {0.1, 0.2}});
+    for (const Real nu : eddies(plane, model, [](const Point<2>& x) { return Point<2>(2 * x[1], 0); }))
+        REQUIRE(nu == doctest::Approx(square(0.17) * 0.02 * 2).epsilon(1e-12).scale(0));
+}
+
+TEST_CASE("no eddies at rest, none in water that turns as a solid body") {
+    const Grid<3> grid({.cells = {6, 18, 5}, .spacing = {0.1, 0.2, 0.3}});
+    const Vec3 spin(1, -2, 3);
+    for (const Real nu : eddies(grid, {}, [](const Vec3&) { return Vec3(0, 0, 0); })) REQUIRE(nu == 0);
+    for (const Real nu : eddies(grid, {}, [&](const Vec3& x) { return Vec3(spin.cross(x)); }))
+        REQUIRE(nu < 1e-15);
+}
+
+TEST_CASE("beside walls, at sides and inside, eddies are no larger than their distance lets them be") {
+    // Flat cells: C_s Delta = 0.1 m, the first six levels are nearer than 0.1 / kappa.
+    const auto shear = [](const Point<2>& x) { return Point<2>(4 * x[1], 0); };
+    const Smagorinsky model{.constant = 0.1};
+    Sides<2> sides;
+    sides[0] = {Side::periodic, Side::periodic};
+    sides[1] = {Side::wall, Side::slip};
+    GridFluidParams<2> params{.grid = {.cells = {4, 40}, .spacing = {25, 0.04}},
+                              .sides = sides,
+                              .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
+                              .velocity = shear};
+    const Flow<2> box(params, model);
+    for (int k = 0; k < 39; ++k) {
+        const Real d = (k + 0.5) * 0.04, length = std::min(0.1, 0.41 * d);
+        CHECK(box.eddy_viscosity()[box.grid().layout().at({2, k})] ==
+              doctest::Approx(square(length) * 4).epsilon(1e-12).scale(0));
+    }
+    CHECK(Smagorinsky().length(1, 0) == 0);
+    CHECK(Smagorinsky().length(1, -1) == 0);
+    CHECK(MixingLength{.depth = 1}.length(7, 0.5) ==
+          doctest::Approx(0.41 * 0.5 * std::sqrt(0.5)).epsilon(1e-14));
+    CHECK(MixingLength{.depth = 1}.length(7, 2) == 0);
+
+    // A bed inside, which cuts the second level in the middle: what is open of it lies 0.01 m above the bed.
+    params.sides[0] = {Side::slip, Side::slip};
+    params.sides[1] = {Side::slip, Side::slip};
+    params.wall = [](const Point<2>& x) { return x[1] - 0.06; };
+    params.water = [](const Point<2>&) { return 1.0; };
+    params.velocity = {};
+    const Grid<2> grid(params.grid);
+    const Walls<2> walls(grid, params.wall);
+    detail::EddyViscosity<2, Real> cut(grid, params, model, &walls);
+    auto u = velocity(grid, shear);
+    grid.for_each([&](const auto& cell, Offset c) { u[0][c] *= cell[1] > 0; });  // the solid's is 0
+    cut.find(u, VelocitySides<2>(grid, params.sides, {}));
+    const auto at = [&](int k) { return cut.field()[grid.layout().at({2, k})]; };
+    CHECK(at(0) == 0);
+    CHECK(at(1) == doctest::Approx(square(0.41 * 0.01) * 4).epsilon(1e-12).scale(0));
+    CHECK(at(2) == doctest::Approx(square(0.41 * 0.04) * 4).epsilon(1e-12).scale(0));
+}
+
+TEST_CASE("a step that eddies allow, and parameters that make none") {
+    GridFluidParams<2> params{
+        .grid = {.cells = {8, 8}, .spacing = {0.1, 0.1}},
+        .sides = Sides<2>::all(Side::slip),
+        .velocity = [](const Point<2>& x) { return Point<2>(std::sin(pi * x[1] / 0.1), 0); },
+        .viscosity = 0,
+        .courant = 1};
+    params.sides[0] = {Side::periodic, Side::periodic};
+    const Flow<2> flow(params, {.constant = 0.5});
+    Real most = 0;
+    flow.grid().for_each([&](const auto&, Offset c) { most = std::max(most, flow.eddy_viscosity()[c]); });
+    CHECK(most > 0);
+    CHECK(flow.stable_step().limit == "viscosity");
+    CHECK(flow.stable_step().seconds == doctest::Approx(0.5 / (most * 200)).epsilon(1e-12).scale(0));
+    CHECK_THROWS_WITH_AS((Flow<2>(params, {.constant = -1})),
+                         "Smagorinsky.constant must be in (0, 0.5], got -1; 0.1 in channels, 0.17 far from "
+                         "walls",
+                         InputError);
+    CHECK_THROWS_AS((Flow<2, MixingLength>(params)), InputError);
+}
+
+TEST_CASE("shear and weight are in balance: the water feels just nu + nu_t") {
+    // Between a bed that holds it and a lid, periodic: what the bed takes is what the weight gives.
+    Sides<3> sides;
+    sides[0] = {Side::periodic, Side::periodic};
+    sides[1] = {Side::periodic, Side::periodic};
+    sides[2] = {Side::wall, Side::slip};
+    const int n = 8;
+    Flow<3> flow({.grid = {.cells = {4, 4, n}, .spacing = {1, 1, 1.0 / n}},
+                  .sides = sides,
+                  .gravity = {1, 0, 0},
+                  .density = 1,
+                  .viscosity = 0.1,
+                  .tolerance = 1e-9});
+    flow.advance(70);
+    const auto u = [&](int k) { return flow.velocity()[0][flow.grid().layout().at({1, 2, k})]; };
+    const auto nu_t = [&](int k) { return flow.eddy_viscosity()[flow.grid().layout().at({1, 2, k})]; };
+    CHECK(nu_t(3) > 0.001);
+    for (int k = 1; k < n; ++k)
+        CHECK((0.1 + 0.5 * (nu_t(k) + nu_t(k - 1))) * (u(k) - u(k - 1)) * n ==
+              doctest::Approx(1 - Real(k) / n).epsilon(1e-6).scale(0));
+    CHECK(0.1 * u(0) * 2 * n == doctest::Approx(1).epsilon(1e-6).scale(0));  // no eddies at the wall
+}
+
+TEST_CASE("eddies at a surface: none in the air, the same bits for one thread and two") {
+    std::vector<Real> bits;
+    for (const int threads : {1, 2}) {
+        set_thread_count(threads);
+        Flow<3, Smagorinsky, FreeSurface> flow(
+            {.grid = {.cells = {40, 12, 24}, .spacing = Point<3>::Constant(0.05)},
+             .sides = Sides<3>::all(Side::wall),
+             .wall = [](const Point<3>& x) { return (x - Point<3>(1, 0.3, 0)).norm() - 0.2; },
+             .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
+             .water = [](const Point<3>& x) { return std::min(0.6 - x[0], 0.8 - x[2]); },
+             .gravity = {0, 0, -9.81}},
+            {.constant = 0.17});
+        flow.advance(0.15);
+        std::vector<Real> now;
+        Real most = 0;
+        flow.grid().for_each([&](const auto&, Offset c) {
+            for (const auto& u : flow.velocity()) now.push_back(u[c]);
+            if (flow.liquid().fraction()[c] > 0) {
+                now.push_back(flow.eddy_viscosity()[c]);
+                most = std::max(most, now.back());
+                REQUIRE(now.back() >= 0);
+            }
+        });
+        CHECK(most > 0);
+        if (threads == 1)
+            bits = now;
+        else
+            CHECK((bits.size() == now.size() &&
+                   std::memcmp(bits.data(), now.data(), now.size() * sizeof(Real)) == 0));
+    }
+}
+
+TEST_CASE("single precision, and a full box along a logarithmic bed that goes wrong and is left as it was") {
+    Sides<2> sides;
+    sides[0] = {Side::periodic, Side::periodic};
+    sides[1] = {Side::wall, Side::slip};
+    GridFluidParams<2> params{.grid = {.cells = {8, 16}, .spacing = {0.1, 0.05}},
+                              .sides = sides,
+                              .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
+                              .velocity = [](const Point<2>&) { return Point<2>(1, 0); },
+                              .fastest = 2};
+    GridFluid<2, FullBox, Limited, float, Smagorinsky> single(params);
+    Flow<2> flow(params);
+    flow.advance(0.5), single.advance(0.5);
+    const Offset low = flow.grid().layout().at({0, 0}), high = flow.grid().layout().at({0, 15});
+    CHECK(flow.velocity()[0][low] < 0.98);  // the bed holds it
+    CHECK(flow.velocity()[0][high] > 0.99);
+    for (const Offset c : {low, high})
+        CHECK(single.velocity()[0][c] == doctest::Approx(flow.velocity()[0][c]).epsilon(1e-5));
+
+    params.gravity = {10, 0};
+    Flow<2> wrong(params);
+    const auto before = wrong.velocity();
+    CHECK_THROWS_AS(wrong.step(1), FluidError);
+    for (int a = 0; a < 2; ++a)
+        wrong.grid().for_each(
+            [&](const auto&, Offset c) { REQUIRE(wrong.velocity()[a][c] == before[a][c]); });
+}
