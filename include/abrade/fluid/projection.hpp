@@ -1,8 +1,8 @@
 #pragma once
 // Makes a velocity free of divergence, and finds the pressure that does it.
 
+#include <abrade/fluid/level_table.hpp>
 #include <abrade/fluid/multigrid.hpp>
-#include <abrade/fluid/row_value.hpp>
 #include <abrade/fluid/water_cells.hpp>
 
 namespace abrade {
@@ -21,6 +21,14 @@ public:
     /// A box full of water.
     Projection(const Grid<Dim>& grid, const Sides<Dim>& sides)
         : grid_(&grid), sides_(sides), multigrid_(grid.layout(), mean_size(grid), periodic_axes(sides)) {
+        for (int b = 0; b < Dim; ++b) {
+            const auto level_along = [b](int k) { return b == vertical ? k : 0; };
+            area_[b] = Table(grid, [&](int k) { return area(b, k); });
+            per_size_[b] = Table(grid, [&](int k) { return 1 / grid.size(b, level_along(k)); });
+            per_gap_[b] = Table(grid, [&](int k) { return 1 / grid.gap(b, level_along(k)); });
+            conductance_[b] = detail::LevelTable<Dim, float>(
+                grid, [&](int k) { return area(b, k) / grid.gap(b, level_along(k)); });
+        }
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         Field<std::uint8_t> wet(grid.layout().total, 0);
         WetRows<Dim> rows(grid.layout());
@@ -143,13 +151,10 @@ private:
         const Offset start = l.row_start(plane, row);
         const auto neighbours = m.neighbours(plane, row);
         const std::uint8_t* const wet = water.wet.data() + start;
-        thread_local std::vector<float> room;
         std::fill(m.dirichlet.data() + start + r.begin, m.dirichlet.data() + start + r.end, 0.0f);
         for (int a = 0; a < Dim; ++a) {
             float* const __restrict face = m.face[a].data() + start;
-            const detail::RowValue<Dim, float> g(room, r.begin, r.end, [&](int i) {
-                return area(a, number(vertical, plane, row, i)) / grid_->gap(a, number(a, plane, row, i));
-            });
+            const auto g = conductance_[a].row(row);
             const std::uint8_t* const low = wet + (a == inner ? -1 : neighbours.low[a]);
             if (!sides_.periodic(a) && number(a, plane, row, 1) == 0 && a != inner) {
                 std::fill(face + r.begin, face + r.end, 0.0f);
@@ -197,23 +202,15 @@ private:
     /// b = - net outflow of each cell, less what it is to lose; returns its square sum over the plane.
     Real diverge(const FaceField<Dim, State>& u, int plane) {
         const Poisson<Dim>& m = multigrid_.matrix();
-        thread_local std::array<std::vector<State>, 2 * Dim + 1> room;
         Real total = 0;
         State fastest = 0;
         for (int row = 0; row < m.layout.rows_per_plane(); ++row) {
             const RowRange r = m.range(plane, row);
             if (r.empty()) continue;
             const Offset start = m.layout.row_start(plane, row);
-            const auto value = [&](int k, auto&& of) {
-                return detail::RowValue<Dim, State>(room[static_cast<std::size_t>(k)], r.begin, r.end, of);
-            };
-            const auto level = [&](int i) { return number(vertical, plane, row, i); };
             // Flat, not an array: so that loops see plain numbers.
-            const auto area0 = value(0, [&](int i) { return area(0, level(i)); });
-            const auto area1 = value(1, [&](int i) { return area(1, level(i)); });
-            const auto area2 = value(2, [&](int i) { return Dim == 3 ? area(Dim - 1, level(i)) : 0; });
-            const auto per0 = value(3, [&](int i) { return 1 / grid_->size(0, number(0, plane, row, i)); });
-            const auto per1 = value(4, [&](int i) { return 1 / grid_->size(1, number(1, plane, row, i)); });
+            const auto area0 = area_[0].row(row), area1 = area_[1].row(row), area2 = area_[Dim - 1].row(row);
+            const auto per0 = per_size_[0].row(row), per1 = per_size_[1].row(row);
             PerAxis<const State*, 3> low{}, high{};
             PerAxis<const Real*, 3> low_open{}, high_open{};
             for (int a = 0; a < Dim; ++a) {
@@ -327,26 +324,23 @@ private:
     template <class Number>
     void take_gradient(FaceField<Dim, State>& u, const Field<Number>& of, State factor, int plane, int row) {
         const Poisson<Dim>& m = multigrid_.matrix();
-        thread_local std::vector<State> room;
         const Offset start = m.layout.row_start(plane, row);
         const Number* const __restrict from = of.data() + start;
         const auto neighbours = m.neighbours(plane, row);
         for (int a = 0; a < Dim; ++a) {
             RowRange r = faces_[a].row(plane, row);
             if (r.empty()) continue;
-            const detail::RowValue<Dim, State> slope(room, r.begin, r.end, [&](int i) {
-                return static_cast<Real>(factor) / grid_->gap(a, number(a, plane, row, i));
-            });
+            const auto slope = per_gap_[a].row(row);
             const Number* const __restrict low = from + neighbours.low[a];
             State* const __restrict v = u[a].data() + start;
             const float* const __restrict conducts = m.face[a].data() + start;
             if (a == inner && r.begin == 0) {  // across the periodic side
-                v[0] -= slope[0] * static_cast<State>(from[0] - from[m.layout.row_length() - 1]);
+                v[0] -= factor * slope[0] * static_cast<State>(from[0] - from[m.layout.row_length() - 1]);
                 ++r.begin;
             }
 #pragma omp simd
             for (int i = r.begin; i < r.end; ++i)
-                v[i] -= conducts[i] > 0 ? slope[i] * static_cast<State>(from[i] - low[i]) : State(0);
+                v[i] -= conducts[i] > 0 ? factor * slope[i] * static_cast<State>(from[i] - low[i]) : State(0);
         }
     }
 
@@ -376,8 +370,12 @@ private:
         return std::sqrt(sum);
     }
 
+    using Table = detail::LevelTable<Dim, State>;
+
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
+    PerAxis<Table, Dim> area_, per_size_, per_gap_;  ///< [m2], [1/m], [1/m]
+    PerAxis<detail::LevelTable<Dim, float>, Dim> conductance_;
     Multigrid<Dim> multigrid_;
     PerAxis<WetRows<Dim>, Dim> faces_;
     std::vector<OpenFace> open_;
