@@ -197,17 +197,20 @@ public:
         // Along a surface that is nearly level a crossing may lie anywhere; the pressure of a column's height
         // falls by the difference of both: the share is that of the distances of both centres from their
         // planes.
-        const auto depth = [&](Offset cell, Real& found) {
+        const auto depth = [&](Offset cell, Index cell_level, Real& found) {
             const Index i = plane_of_[cell];
             if (i < 0 || fraction_[cell] <= trace || fraction_[cell] >= 1 - trace) return false;
             const auto k = static_cast<std::size_t>(i);
+            const auto slope = [&](int a) {
+                return planes_.normal[index(a)][k] / sizes_.edge(a, cell_level);
+            };
             Real squares = 0;
-            for (const auto& component : planes_.normal) squares += square(component[k]);
+            for (int a = 0; a < Dim; ++a) squares += square(slope(a));
             found = planes_.position[k] / std::sqrt(squares);
-            return square(planes_.normal[index(axis)][k]) < 0.1 * squares;
+            return square(slope(axis)) < 0.1 * squares;
         };
         Real below = 0, above = 0;
-        if (depth(liquid, below) && depth(air, above) && below >= 0 && above < 0)
+        if (depth(liquid, level, below) && depth(air, air_level, above) && below >= 0 && above < 0)
             return std::clamp(below / (below - above), least, Real(1));
         bool own = false, other = false;
         const Real near = crossing(liquid, 0, side, edge / gap, own);

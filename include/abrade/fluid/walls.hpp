@@ -181,12 +181,9 @@ private:
                    high = detail::cells_of_block<Dim>(grid_, to).high;
         const Layout<Dim>& layout = grid_.layout();
         const auto renewed = [&](Offset cell) {
-            for (int n = 0; n < Dim; ++n) {
-                const int a = detail::axis_in_memory<Dim>(n);  // by decreasing stride
-                const auto number = static_cast<int>(cell / layout.stride[a]) - ghosts;
-                if (number < low[a] || number >= high[a]) return false;
-                cell %= layout.stride[a];
-            }
+            const Cell number = layout.number(cell);
+            for (int a = 0; a < Dim; ++a)
+                if (number[a] < low[a] || number[a] >= high[a]) return false;
             return true;
         };
         merged_.clear();
