@@ -60,7 +60,7 @@ auto dam_break(const Options& o) {
                          .water = [](const Vec3& x) { return std::min(0.1461 - x.x(), 0.292 - x.z()); },
                          .gravity = {0, 0, -9.81},
                          .viscosity = 1e-3,
-                         .tolerance = o.tolerance > 0 ? o.tolerance : 3e-8});
+                         .tolerance = o.tolerance > 0 ? o.tolerance : 1e-7});
 }
 
 /// One thread: time on the processor, as OpenFOAM's ExecutionTime, which others on the machine do not
