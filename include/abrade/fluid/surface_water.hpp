@@ -166,7 +166,9 @@ public:
         };
         rows_.for_each_row(clear);
         rows.copy(fraction, liquid_.fraction());
+        const Field<Real> elsewhere = liquid_.surplus();
         settle();
+        liquid_.surplus() = elsewhere;
         rows.copy(surplus, liquid_.surplus());
     }
 
