@@ -219,7 +219,7 @@ void compare(const Flow& flow, const std::string& table, const fs::path& folder,
         for (const int n : flow.cells) runs.push_back(timed([&] { return variant.run(n); }));
         add(variant.name, runs);
     }
-    draw(chart, folder / ("water_cost_" + flow.name + ".png"));
+    draw(chart, folder / ("water_cost_" + flow.name.substr(0, flow.name.find("_2d")) + ".png"));
 }
 
 examples::Axis seconds(Real low, Real high) {
