@@ -5,6 +5,7 @@
 #include <abrade/fluid/fastest_face.hpp>
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/momentum.hpp>
+#include <abrade/fluid/outflows.hpp>
 #include <abrade/fluid/surface_heights.hpp>
 #include <abrade/fluid/water_record.hpp>
 
@@ -51,8 +52,10 @@ public:
         if constexpr (has_surface) {
             water_.emplace(*grid_, params_);
             water_->find(projection_, pressure_, sides_);
-        } else if (params_.wall) {
-            fail({"GridFluid.wall", "left out of a FullBox", "", "take a FreeSurface with water everywhere"},
+            outflows_ = detail::Outflows<Dim>(*grid_, params_);
+        } else if (params_.wall || params_.outflow_water) {
+            fail({params_.wall ? "GridFluid.wall" : "GridFluid.outflow_water", "left out of a FullBox", "",
+                  "take a FreeSurface with water everywhere"},
                  "given");
         }
         if constexpr (Turbulence::has_eddies) {
@@ -230,6 +233,7 @@ private:
             grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
                 for (int a = 0; a < Dim; ++a) stage_[a][c] *= (*open)[a][c] > 0;
             });
+        outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1]});
         projection_.project(stage_, pressure_, 1, 1e-12);
         finish(stage_);
     }
@@ -288,7 +292,7 @@ private:
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.friction().take(velocity_, taken, 0.5);
         water.find(projection_, pressure_, sides_);
-        push_leaving(dt);
+        outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // At steady sides there is what was there at the beginning of the step.
         if (!params_.steady_sides) sides_.fill(velocity_, &water.rows());
         report_ =
@@ -319,18 +323,6 @@ private:
         } else {
             sides_.fill(u);
         }
-    }
-
-    /// What leaves is pushed as the faces before it are about to be.
-    void push_leaving(Real dt) {
-        sides_.for_sides(Side::outflow, [&](int a, bool high) {
-            sides_.along_side({a, high}, [&](Offset c, std::size_t) {
-                const Offset s = layout().stride[a], inside = high ? c : c + s, face = high ? c + s : c;
-                if (projection_.multigrid().matrix().face[a][inside] > 0)
-                    velocity_[a][face] -=
-                        dt * (pressure_[inside] - pressure_[inside - s]) / grid_->size(a, 0);
-            });
-        });
     }
 
     /// Back to what a step that went wrong began with.
@@ -379,6 +371,7 @@ private:
     WallFriction<Dim> side_friction_;  ///< of a full box
     std::conditional_t<has_surface, std::optional<detail::SurfaceWater<Dim>>, Nothing> water_{};
     std::conditional_t<has_surface, detail::SurfaceHeights<Dim>, Nothing> heights_{};
+    std::conditional_t<has_surface, detail::Outflows<Dim>, Nothing> outflows_{};
     std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies_{};
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]

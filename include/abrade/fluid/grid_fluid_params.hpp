@@ -29,7 +29,10 @@ struct GridFluidParams {
     /// > 0 where there is water at the start, such as the depth below a surface; none: dry. Linear functions
     /// are met exactly. Not asked of a box that is full.
     PlaceFunction<Dim> water{};
-    PlaceFunction<Dim> inflow_water{};                        ///< the same beyond sides where water flows in
+    PlaceFunction<Dim> inflow_water{};  ///< the same beyond sides where water flows in
+    /// Depth below the level that water beyond outflows holds, < 0 above it [m]. Flow slower than its waves
+    /// asks for it; none: it leaves freely, which is for faster flow.
+    PlaceFunction<Dim> outflow_water{};
     std::function<Point<Dim>(const Point<Dim>&)> velocity{};  ///< at the start; none: at rest
     Point<Dim> gravity = Point<Dim>::Zero();                  ///< [m/s2]
     /// In a tank that moves: minus its acceleration. Smooth over a step, or with a `largest_step` that makes
@@ -81,6 +84,10 @@ struct GridFluidParams {
             fail({"GridFluid.side_velocity", "given where a side is an inflow", "m/s",
                   "give the velocity there"},
                  "none");
+        if (outflow_water && !out)
+            fail({"GridFluid.outflow_water", "left out where no side is an outflow", "",
+                  "make a side an outflow"},
+                 "given");
         if (in && !out && !water && !inflow_water)
             fail({"GridFluid.sides", "with an outflow where there is an inflow", "",
                   "what flows in must leave, or the pressure has no bound"},

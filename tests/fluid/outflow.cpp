@@ -1,0 +1,77 @@
+// A tailwater behind an outflow: water at rest rests, a slow stream takes its level, bad input.
+#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/inflow.hpp>
+
+#include <doctest/doctest.h>
+
+#include "../message_of.hpp"
+
+using namespace abrade;
+
+namespace {
+
+constexpr Real g = 9.81;
+
+GridFluidParams<2> channel(Real level) {
+    GridFluidParams<2> p{.grid = {.cells = {60, 16}, .spacing = {0.05, 0.025}},
+                         .sides = Sides<2>::all(Side::slip),
+                         .water = [](const Point<2>& x) { return 0.21 - x[1]; },
+                         .outflow_water = [level](const Point<2>& x) { return level - x[1]; },
+                         .gravity = {0, -g}};
+    p.sides[0][1] = Side::outflow;
+    return p;
+}
+Real mean_depth(const GridFluid<2>& flow) {
+    Real sum = 0;
+    const int n = flow.grid().cells(0);
+    for (int i = n / 2; i < n; ++i) sum += flow.surface_at({flow.grid().centre(0, i), 0}) / (n - n / 2);
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("water at rest before a tailwater of its level stays at rest, from the first step") {
+    auto params = channel(0.21);
+    params.tolerance = 1e-10;
+    GridFluid<2> flow(params);
+    const Offset c = flow.grid().layout().at({58, 2});
+    CHECK(flow.pressure()[c] == doctest::Approx(g * (0.21 - 2.5 * 0.025)).epsilon(1e-6).scale(0));
+    flow.advance(2);
+    Real fastest = 0;
+    flow.grid().for_each([&](const auto&, Offset cell) {
+        if (flow.liquid().fraction()[cell] > 0)
+            for (const auto& u : flow.velocity()) fastest = std::max(fastest, std::abs(u[cell]));
+    });
+    CHECK(fastest < 1e-6 * std::sqrt(g * 0.21));
+    CHECK(mean_depth(flow) == doctest::Approx(0.21).epsilon(1e-6).scale(0));
+}
+
+TEST_CASE("a slow stream comes to the tailwater's level, from above and from below") {
+    for (const Real level : {0.19, 0.23}) {
+        auto params = channel(level);
+        // What enters is 0.21 m deep at Froude 0.3.
+        Inflow<2>({.discharge = 0.3 * std::sqrt(g * 0.21) * 0.21, .depth = 0.21}).give_to(params);
+        params.velocity = [](const Point<2>&) { return Point<2>(0.3 * std::sqrt(g * 0.21), 0); };
+        GridFluid<2> flow(params);
+        flow.advance(30);
+        Real sum = 0;
+        for (int k = 0; k < 100; ++k) {
+            flow.advance(30 + 0.1 * k);
+            sum += mean_depth(flow) / 100;
+        }
+        MESSAGE("level " << level << " m: depth " << sum << " m");
+        CHECK(sum == doctest::Approx(level).epsilon(0.02).scale(0));
+    }
+}
+
+TEST_CASE("where there is nothing to hold it is refused") {
+    auto params = channel(0.2);
+    params.sides[0][1] = Side::slip;
+    CHECK(message_of([&] { GridFluid<2> flow(params); })
+              .starts_with(
+                  "GridFluid.outflow_water must be left out where no side is an outflow, got given; make"));
+    params.sides[0][1] = Side::outflow;
+    CHECK(message_of([&] {
+              GridFluid<2, FullBox> flow(params);
+          }).starts_with("GridFluid.outflow_water must be left out of a FullBox"));
+}
