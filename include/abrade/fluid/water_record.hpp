@@ -36,12 +36,14 @@ public:
               Real dt) {
         const WetRows<Dim> before = std::exchange(rows_, water.rows());
         // Of the change at the start, which is that of one second, half a step; then of the last step's.
-        const bool knows = last_step_ == 0 || restored_;
+        const bool knows = last_step_ == 0 || (restored_ && known_);
         const Real led = std::exchange(
             lead_, last_step_ == 0 ? 0.5 * dt : std::clamp(0.5 * (dt / last_step_ - 1), -0.5, 0.5));
         const Real led_far =
             std::exchange(far_, last_step_ == 0 ? std::numeric_limits<Real>::infinity() : 0.25);
-        for (int a = 0; a < Dim; ++a) {
+        known_ = lead_ != 0 || led != 0;
+        if (!known_) rows_.copy(velocity, velocity_);  // equal steps
+        for (int a = 0; a < Dim && known_; ++a) {
             const Real most = far_ * size_[a] / dt, led_most = led_far * size_[a] / last_step_;
             const Offset back = rows_.layout().stride[a];
             rows_.for_each_row([&](int plane, int row, const RowRange& r) {
@@ -100,7 +102,8 @@ private:
     Real last_step_ = 0;     ///< [s]
     Real lead_ = 0;          ///< of that change, by which the velocity was moved on [-]; [s] at the start
     Real far_ = 0;           ///< no further than this [cell]
-    bool restored_ = false;  ///< the change is that of the present velocity
+    bool known_ = false;     ///< the change was found in the last step
+    bool restored_ = false;  ///< and it is that of the present velocity
 };
 
 }  // namespace abrade::detail
