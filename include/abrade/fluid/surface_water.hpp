@@ -5,6 +5,7 @@
 #include <abrade/fluid/projection.hpp>
 #include <abrade/fluid/velocity_extension.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/water_among_walls.hpp>
 
 #include <memory>
 
@@ -177,16 +178,16 @@ private:
         Field<Real>& f = liquid_.fraction();
         const auto shares = [&](const PlaceFunction<Dim>& water, auto&& wanted) {
             if (!water) return;
-            const auto both = [&](const Point<Dim>& x) {
-                return params.wall ? std::min(params.wall(x), water(x)) : water(x);
-            };
             typename Walls<Dim>::Params how{.closed_below = 0, .may_close_all = true, .bounded_slope = false};
-            const Walls<Dim> filled(*grid_, both, how);
+            const Walls<Dim> filled(*grid_, water, how);
             grid_->for_each(
                 [&](const CellNumber<Dim>& cell, Offset c) {
                     if (!wanted(cell) || !is_open(c)) return;
-                    const Real open = walls_ ? walls_->open_volume()[c] : 1;
-                    f[c] = std::clamp(filled.open_volume()[c] / open, Real(0), Real(1));
+                    const Real share = filled.open_volume()[c];
+                    const bool cut = walls_ && (liquid_.marks()[c] & cell_mark::whole) == 0;
+                    f[c] = cut && share > 0 && share < 1
+                               ? WaterAmongWalls<Dim>::share(*grid_, cell, params.wall, water)
+                               : share;
                 },
                 Layout<Dim>::ghosts);
         };
