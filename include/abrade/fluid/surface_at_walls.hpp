@@ -4,6 +4,7 @@
 #include <abrade/core/parallel.hpp>
 #include <abrade/fluid/cell_sizes.hpp>
 #include <abrade/fluid/surface_planes.hpp>
+#include <abrade/fluid/water_among_walls.hpp>
 
 #include <cmath>
 
@@ -14,12 +15,22 @@ namespace abrade {
 /// a wall leaves at a shallow angle. So a planar surface stays exact up to the wall: water in a curved invert
 /// rests. The plane that holds the cell's volume (`distance`) gets the same normal. Cells that no neighbour
 /// tells of keep what they have.
+///
+/// Where the cell holds about as much as would lie below that plane, it is `told` on which side of the
+/// surface its centre is: a cell half full of its open part may have its centre above the water, inside the
+/// wall's half. Where it does not, a film or a front on the wall, the fraction says more.
 template <int Dim>
 class SurfaceAtWalls {
 public:
     SurfaceAtWalls() = default;
     SurfaceAtWalls(const Layout<Dim>& layout, const CellSizes<Dim>& sizes)
-        : stencil_(layout), sizes_(sizes) {}
+        : stencil_(layout), sizes_(sizes), stride_(layout.stride) {}
+
+    /// Shares that walls leave open [-]; they must outlive this.
+    void set_walls(const FaceField<Dim>* open_faces, const Field<Real>* open_volumes) noexcept {
+        open_faces_ = open_faces;
+        open_volumes_ = open_volumes;
+    }
 
     void find(SurfacePlanes<Dim>& planes, const Real* fraction, const std::uint8_t* marks,
               const Index* plane_of) {
@@ -28,6 +39,7 @@ public:
         for (Index i = 0; i < planes.count(); ++i) {
             const auto k = static_cast<std::size_t>(i);
             known_[k] = (marks[planes.cell[k]] & cell_mark::whole) != 0;
+            planes.told[k] = 0;
             if (!known_[k]) open_.push_back(i);
         }
         constexpr int farthest = 6;  // cells from the last whole one
@@ -83,11 +95,37 @@ private:
             planes.normal[static_cast<std::size_t>(a)][own] = normal[a] / length * sizes_.edge(a, level);
         planes.position[own] = distance / count;
         planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, fraction[planes.cell[own]]);
+        const Real below = open_below(planes.cell[own], {planes.plane(i).normal, planes.position[own]});
+        planes.told[own] = std::abs(below - fraction[planes.cell[own]]) < 0.25;
         return true;
+    }
+
+    /// Share of what is open of a cell that lies below a plane, the wall being a plane as well [-].
+    Real open_below(Offset c, const CellPlane<Dim>& plane) const noexcept {
+        std::array<Real, Dim> wall;  // its area vector, into the water
+        Real size = 0;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            wall[a] = (*open_faces_)[a][c + stride_[a]] - (*open_faces_)[a][c];
+            size += std::abs(wall[a]);
+        }
+        if (!(size > 0)) return liquid_fraction(plane);
+        const Real solid = plane_distance<Dim>(wall, 1 - (*open_volumes_)[c]);
+        return detail::WaterAmongWalls<Dim>::template share<0>([&](const Point<Dim>& unit) {
+            std::array<Real, 2> both{-solid, plane.distance};
+            for (int a = 0; a < Dim; ++a) {
+                const auto k = static_cast<std::size_t>(a);
+                both[0] += wall[k] * (unit[a] - 0.5);
+                both[1] -= plane.normal[k] * (unit[a] - 0.5);
+            }
+            return both;
+        });
     }
 
     detail::Stencil<Dim> stencil_{};
     CellSizes<Dim> sizes_{};
+    PerAxis<Offset, Dim> stride_{};
+    const FaceField<Dim>* open_faces_ = nullptr;
+    const Field<Real>* open_volumes_ = nullptr;
     std::vector<std::uint8_t> known_, found_;
     std::vector<Index> open_;
 };

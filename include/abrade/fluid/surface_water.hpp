@@ -117,6 +117,11 @@ public:
                 p[i] = is_wet ? p[i] : 0;
             }
         });
+        if (walls_)
+            for (const Index c : liquid_.planes().cell) {
+                wet_[c] = liquid_.is_liquid(c) && is_open(c);
+                if (!wet_[c]) pressure[c] = 0;
+            }
         sides.join_cells(wet_);
         find_open_faces(projection);
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});

@@ -59,7 +59,7 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
             const Index before = keep ? plane_of_[cells[k]] : -1;
             planes_.cell[next] = cells[k];
             planes_.level[next] = levels[k];
-            planes_.has_normal[next] = before >= 0;
+            planes_.has_normal[next] = before >= 0, planes_.told[next] = 0;
             if (before >= 0)
                 for (std::size_t a = 0; a < Dim; ++a)
                     planes_.normal[a][next] = planes_before_.normal[a][static_cast<std::size_t>(before)];

@@ -10,25 +10,27 @@
 
 namespace abrade::detail {
 
-/// What lies of a cell in the open and, of that, in the water; each where a function is above 0.
+/// Of what lies of a cell in the open, the share in the water; each is where a function is above 0.
 ///
-/// The cell is cut in half `levels` times along each axis and its parts into simplices, one for each order of
+/// The cell is cut in half `Levels` times along each axis and its parts into simplices, one for each order of
 /// the axes (H. Freudenthal 1942); in a simplex both functions are linear. Of two planes that cross in one
 /// cell the share is exact, which that of the lesser function is not: between two corners this has a kink.
 template <int Dim>
 class WaterAmongWalls {
 public:
-    /// [-] of the open part; what is closed holds none.
-    static Real share(const Grid<Dim>& grid, const CellNumber<Dim>& cell, const auto& wall,
-                      const auto& water) {
-        constexpr int levels = 1, parts = 1 << levels, points = parts + 1;
+    using Both = std::array<Real, 2>;  ///< wall, water
+
+    /// `both` answers at places in the cell, 0 to 1 along each axis [-]. What is closed holds none.
+    template <int Levels>
+    static Real share(const auto& both) {
+        constexpr int parts = 1 << Levels, points = parts + 1;
         constexpr auto count = [](int along) { return Dim == 3 ? along * along * along : along * along; };
-        std::array<Both, static_cast<std::size_t>(count(points))> both;
+        std::array<Both, static_cast<std::size_t>(count(points))> value;
         for (int n = 0; n < count(points); ++n) {
             Point<Dim> x;
             for (int a = 0, rest = n; a < Dim; ++a, rest /= points)
-                x[a] = grid.face(a, cell[a]) + grid.size(a, cell[a]) * (rest % points) / parts;
-            both[static_cast<std::size_t>(n)] = {wall(x), water(x)};
+                x[a] = static_cast<Real>(rest % points) / parts;
+            value[static_cast<std::size_t>(n)] = both(x);
         }
         Real open = 0, wet = 0;
         for (int part = 0; part < count(parts); ++part) {
@@ -40,19 +42,26 @@ public:
             do {
                 Simplex corner;
                 int n = lowest;
-                corner[0] = both[static_cast<std::size_t>(n)];
+                corner[0] = value[static_cast<std::size_t>(n)];
                 for (std::size_t k = 0; k < Dim; ++k) {
                     n += order[k] == 0 ? 1 : order[k] == 1 ? points : points * points;
-                    corner[k + 1] = both[static_cast<std::size_t>(n)];
+                    corner[k + 1] = value[static_cast<std::size_t>(n)];
                 }
                 open += positive(corner, 0, 1), wet += positive(corner, 0, 2);
             } while (std::next_permutation(order.begin(), order.end()));
         }
         return open > 0 ? wet / open : 0;
     }
+    static Real share(const Grid<Dim>& grid, const CellNumber<Dim>& cell, const auto& wall,
+                      const auto& water) {
+        return share<1>([&](const Point<Dim>& unit) {
+            Point<Dim> x;
+            for (int a = 0; a < Dim; ++a) x[a] = grid.face(a, cell[a]) + grid.size(a, cell[a]) * unit[a];
+            return Both{wall(x), water(x)};
+        });
+    }
 
 private:
-    using Both = std::array<Real, 2>;
     using Simplex = std::array<Both, Dim + 1>;
 
     /// Share of a simplex where functions `which` up to, not including, `end` are above 0.
