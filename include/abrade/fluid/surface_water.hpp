@@ -127,7 +127,7 @@ public:
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
     }
 
-    void extend(FaceField<Dim>& u) { extension_.extend(u, wet_, rows_, held(), open_area()); }
+    void extend(FaceField<Dim>& u) { extension_.extend(u, wet_, rows_, held(), walls()); }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
     /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken

@@ -1,6 +1,7 @@
 #pragma once
 // Velocities of the air beside water: the water's, carried on outward.
 
+#include <abrade/fluid/walls.hpp>
 #include <abrade/fluid/wet_rows.hpp>
 
 #include <cstdint>
@@ -10,8 +11,8 @@ namespace abrade {
 
 /// Gives faces between dry cells the mean of the known velocities around them, layer by layer outward from
 /// the water, as far as the stencils of the next step reach. Known are faces of wet cells; beyond the first
-/// layer also those that hold liquid of their own, which fly on as they do. Same bits for any number of
-/// threads.
+/// layer also those that hold liquid of their own, which fly on as they do; beside walls, beyond the last.
+/// Same bits for any number of threads.
 template <int Dim>
 class VelocityExtension {
 public:
@@ -22,10 +23,10 @@ public:
           found_(static_cast<std::size_t>(layout.planes())) {}
 
     /// `wet`: cells whose pressure is known, ghosts included; `rows`: rows to be looked at; `held`: share of
-    /// a cell that liquid fills; `open_area` may be none.
+    /// a cell that liquid fills; `walls` may be none.
     template <class State>
     void extend(FaceField<Dim, State>& u, const Field<std::uint8_t>& wet, const WetRows<Dim>& rows,
-                const Field<State>& held, const FaceField<Dim>* open_area) {
+                const Field<State>& held, const Walls<Dim>* walls) {
         // Where water has left nothing is known any more.
         before_.for_each_row([&](int plane, int row, const RowRange& r) {
             std::fill_n(state_.data() + layout_.row_start(plane, row) + r.begin, r.length(), unknown);
@@ -33,14 +34,15 @@ public:
         before_ = rows;
         for (int a = 0; a < Dim; ++a) {
             begin(a, wet, rows);
-            if (open_area) close((*open_area)[a], u[a], rows);
+            if (walls) close(walls->open_area()[a], u[a], rows);
             riders_[a].clear();
             for (int layer = 0; layer < layers; ++layer) {
                 take_means(u[a], rows);
                 if (layer == 0) find_riders(a, held);
                 know_found(rows);
-                if (layer == 0) know_liquid(a, held, rows);
+                if (layer == 0) know_liquid(a, held, rows, walls);
             }
+            if (walls) know_liquid(a, held, rows, nullptr);
             rows.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = layout_.row_start(plane, row);
                 State* const __restrict v = u[a].data() + start;
@@ -149,14 +151,23 @@ private:
             }
     }
 
-    /// Drops and sheets thinner than a cell.
+    /// Drops and sheets thinner than a cell. Not beside cells that `walls` cut: where a surface meets a wall
+    /// at a shallow angle it ends in a wedge of several such cells, which lies on the wall.
     template <class State>
-    void know_liquid(int a, const Field<State>& held, const WetRows<Dim>& rows) {
+    void know_liquid(int a, const Field<State>& held, const WetRows<Dim>& rows, const Walls<Dim>* walls) {
         const Offset back = layout_.stride[a];
         rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout_.row_start(plane, row);
             const State* const __restrict h = held.data() + start;
             std::uint8_t* const __restrict state = state_.data() + start;
+            if (walls) {
+                const Real* const open = walls->open_volume().data() + start;
+                for (int i = r.begin; i < r.end; ++i)
+                    if (state[i] == unknown && h[i] + h[i - back] > State(1e-6) && open[i] == 1 &&
+                        open[i - back] == 1)
+                        state[i] = known;
+                return;
+            }
 #pragma omp simd
             for (int i = r.begin; i < r.end; ++i)
                 state[i] = state[i] == unknown && h[i] + h[i - back] > State(1e-6) ? known : state[i];
