@@ -275,6 +275,8 @@ private:
             for (const OpenFace& open : projection_.open_faces())
                 if (open.plain != 0)
                     result[open.axis][open.face] += push * (open.slope - open.plain) * pressure_[open.cell];
+            for (const WaterFace& f : water.still())
+                result[f.axis][f.face] = record_.velocity()[f.axis][f.face] + kept * 2 * dt * params_.gravity[f.axis];
             water.share_shear(result, by, (1 - kept) * dt * nu());
             sides_.leave(result);
         };
@@ -288,6 +290,9 @@ private:
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.friction().take(velocity_, taken, 0.5);
         water.find(projection_, pressure_, sides_);
+        water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * params_.gravity);
+        for (const WaterFace& f : water.still())
+            velocity_[f.axis][f.face] = record_.velocity()[f.axis][f.face];
         push_leaving(dt);
         // At steady sides there is what was there at the beginning of the step.
         if (!params_.steady_sides) sides_.fill(velocity_, &water.rows());

@@ -40,6 +40,9 @@ public:
             const auto k = static_cast<std::size_t>(i);
             known_[k] = (marks[planes.cell[k]] & cell_mark::whole) != 0;
             planes.told[k] = 0;
+            // No share of a full cell or of a dry one may be rounded.
+            if (const Real f = fraction[planes.cell[k]]; f == 0 || f == 1)
+                planes.distance[k] = f == 0 ? -1 : 1;
             if (!known_[k]) open_.push_back(i);
         }
         constexpr int farthest = 6;  // cells from the last whole one
@@ -94,9 +97,15 @@ private:
         for (int a = 0; a < Dim; ++a)
             planes.normal[static_cast<std::size_t>(a)][own] = normal[a] / length * sizes_.edge(a, level);
         planes.position[own] = distance / count;
-        planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, fraction[planes.cell[own]]);
-        const Real below = open_below(planes.cell[own], {planes.plane(i).normal, planes.position[own]});
-        planes.told[own] = std::abs(below - fraction[planes.cell[own]]) < 0.25;
+        const Real held = fraction[planes.cell[own]];
+        CellPlane<Dim> plane = planes.plane(i);
+        plane.distance = planes.position[own];
+        planes.told[own] = std::abs(open_below(planes.cell[own], plane) - held) < 0.25;
+        if (held > 0 && held < 1)
+            planes.distance[own] = plane_distance<Dim>(plane.normal, held);
+        else
+            for (const Real component : plane.normal)  // beyond its corners
+                planes.distance[own] += (held == 0 ? -1 : 1) * std::abs(component);
         return true;
     }
 

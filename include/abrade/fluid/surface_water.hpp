@@ -61,6 +61,8 @@ public:
     const FaceField<Dim>& carrier() const noexcept { return liquid_.moved(); }
     const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }  ///< that carry momentum
     const Field<std::uint8_t>& wet() const noexcept { return wet_; }  ///< 1 where the pressure is unknown
+    /// Faces of wet cells to cells that are dry for their wall alone: they move as what is beside them did.
+    std::span<const WaterFace> still() const noexcept { return still_; }
     const WallFriction<Dim>& friction() const noexcept { return friction_; }
     const WetRows<Dim>& rows() const noexcept { return rows_; }
 
@@ -127,7 +129,29 @@ public:
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
     }
 
-    void extend(FaceField<Dim>& u) { extension_.extend(u, wet_, rows_, held(), walls()); }
+    /// Faces of cells that have become wet: in both stages the pressure did not know them, and air has no
+    /// momentum. They begin as they were, `fallen` faster: so the pressure finds what it finds beside them.
+    void begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before, const Field<std::uint8_t>& was_wet,
+                     const Point<Dim>& fallen) const {
+        rows_.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout().row_start(plane, row);
+            for (Offset c = start + r.begin; c < start + r.end; ++c) {
+                if (wet_[c] == 0 || was_wet[c] != 0) continue;
+                const CellNumber<Dim> cell = layout().number(c);
+                for (int a = 0; a < Dim; ++a)
+                    for (const int end : {0, 1}) {
+                        const Offset s = layout().stride[a], face = c + end * s, other = face - (1 - end) * s;
+                        const int number = cell[a] + end;
+                        if (number == 0 || number == grid_->cells(a) || was_wet[other] != 0 ||
+                            (walls_ && walls_->open_area()[a][face] == 0))
+                            continue;
+                        u[a][face] = before[a][face] + fallen[a];
+                    }
+            }
+        });
+    }
+
+    void extend(FaceField<Dim>& u) { extension_.extend(u, {wet_, rows_, held(), walls(), still_}); }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
     /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
@@ -287,7 +311,13 @@ private:
             }
         });
         open_ = projection.outflows(wet_);
-        for (const auto& open : open_in_) open_.insert(open_.end(), open.begin(), open.end());
+        still_.clear();
+        for (const auto& found : open_in_)
+            for (const OpenFace& open : found)
+                if (open.slope != 0)
+                    open_.push_back(open);
+                else
+                    still_.push_back({open.face, open.axis});
     }
 
     struct Place {
@@ -302,6 +332,10 @@ private:
             const auto add = [&](Offset face, int above) {
                 const Offset wet = above > 0 ? c + s : c - s;
                 if (wet_[wet] == 0 || (walls_ && walls_->open_area()[a][face] == 0)) return;
+                if (walls_ && liquid_.is_ashore(c)) {
+                    open.push_back({face, wet, a});
+                    return;
+                }
                 const Real plain = above / grid_->gap(a, above > 0 ? number + 1 : number);
                 const Real share = liquid_.surface_share(wet, level + above * up, a, -above, least_share);
                 open.push_back({face, wet, a, plain / share, plain});
@@ -327,6 +361,7 @@ private:
     PerAxis<WetRows<Dim>, Dim> faces_;
     VelocityExtension<Dim> extension_;
     std::vector<OpenFace> open_;
+    std::vector<WaterFace> still_;
     std::vector<std::vector<OpenFace>> open_in_;  ///< [plane]
 };
 

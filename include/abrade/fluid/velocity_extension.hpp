@@ -5,9 +5,16 @@
 #include <abrade/fluid/wet_rows.hpp>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace abrade {
+
+/// A face of the velocity component along an axis.
+struct WaterFace {
+    Offset face = 0;
+    int axis = 0;
+};
 
 /// Gives faces between dry cells the mean of the known velocities around them, layer by layer outward from
 /// the water, as far as the stencils of the next step reach. Known are faces of wet cells; beyond the first
@@ -22,11 +29,17 @@ public:
         : layout_(layout), state_(layout.total, unknown), before_(layout),
           found_(static_cast<std::size_t>(layout.planes())) {}
 
-    /// `wet`: cells whose pressure is known, ghosts included; `rows`: rows to be looked at; `held`: share of
-    /// a cell that liquid fills; `walls` may be none.
+    struct Water {
+        const Field<std::uint8_t>& wet;  ///< 1 where the pressure is known, ghosts included
+        const WetRows<Dim>& rows;        ///< to be looked at
+        const Field<Real>& held;         ///< share of a cell that liquid fills [-]
+        const Walls<Dim>* walls;         ///< may be none
+        std::span<const WaterFace> still{};  ///< faces of wet cells that no pressure moves
+    };
+
     template <class State>
-    void extend(FaceField<Dim, State>& u, const Field<std::uint8_t>& wet, const WetRows<Dim>& rows,
-                const Field<State>& held, const Walls<Dim>* walls) {
+    void extend(FaceField<Dim, State>& u, const Water& water) {
+        const auto& [wet, rows, held, walls, still] = water;
         // Where water has left nothing is known any more.
         before_.for_each_row([&](int plane, int row, const RowRange& r) {
             std::fill_n(state_.data() + layout_.row_start(plane, row) + r.begin, r.length(), unknown);
@@ -34,6 +47,8 @@ public:
         before_ = rows;
         for (int a = 0; a < Dim; ++a) {
             begin(a, wet, rows);
+            for (const WaterFace& face : still)
+                if (face.axis == a) state_[face.face] = unknown;
             if (walls) close(walls->open_area()[a], u[a], rows);
             riders_[a].clear();
             for (int layer = 0; layer < layers; ++layer) {
@@ -137,12 +152,11 @@ private:
     }
 
     /// While faces of the first layer are found, but not yet known.
-    template <class State>
-    void find_riders(int a, const Field<State>& held) {
+    void find_riders(int a, const Field<Real>& held) {
         const auto wet = [&](Offset c) { return state_[c] == known; };
         for (const auto& found : found_)
             for (const Offset c : found) {
-                if (held[c] + held[c - layout_.stride[a]] < State(1e-6)) continue;
+                if (held[c] + held[c - layout_.stride[a]] < 1e-6) continue;
                 int count = 0;
                 for (const Offset s : layout_.stride) count += wet(c - s) + wet(c + s);
                 for (const Offset s : layout_.stride)
@@ -153,24 +167,23 @@ private:
 
     /// Drops and sheets thinner than a cell. Not beside cells that `walls` cut: where a surface meets a wall
     /// at a shallow angle it ends in a wedge of several such cells, which lies on the wall.
-    template <class State>
-    void know_liquid(int a, const Field<State>& held, const WetRows<Dim>& rows, const Walls<Dim>* walls) {
+    void know_liquid(int a, const Field<Real>& held, const WetRows<Dim>& rows, const Walls<Dim>* walls) {
         const Offset back = layout_.stride[a];
         rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout_.row_start(plane, row);
-            const State* const __restrict h = held.data() + start;
+            const Real* const __restrict h = held.data() + start;
             std::uint8_t* const __restrict state = state_.data() + start;
             if (walls) {
                 const Real* const open = walls->open_volume().data() + start;
                 for (int i = r.begin; i < r.end; ++i)
-                    if (state[i] == unknown && h[i] + h[i - back] > State(1e-6) && open[i] == 1 &&
+                    if (state[i] == unknown && h[i] + h[i - back] > 1e-6 && open[i] == 1 &&
                         open[i - back] == 1)
                         state[i] = known;
                 return;
             }
 #pragma omp simd
             for (int i = r.begin; i < r.end; ++i)
-                state[i] = state[i] == unknown && h[i] + h[i - back] > State(1e-6) ? known : state[i];
+                state[i] = state[i] == unknown && h[i] + h[i - back] > 1e-6 ? known : state[i];
         });
     }
 

@@ -167,8 +167,16 @@ public:
     /// the surface beside it tells. Pressure lives in these cells.
     bool is_liquid(Offset cell) const noexcept {
         const Index i = plane_of_[cell];
-        if (i < 0 || planes_.told[index(i)] == 0) return fraction_[cell] >= 0.5;
+        if (i < 0 || planes_.told[index(i)] == 0 || fraction_[cell] < little) return fraction_[cell] >= 0.5;
         return planes_.position[index(i)] >= 0;
+    }
+
+    /// Whether a dry cell is that for its wall alone: its centre lies below the surface, all of its open part
+    /// above. Nothing tells where on the way to it the pressure is 0.
+    bool is_ashore(Offset dry) const noexcept {
+        const Index i = plane_of_[dry];
+        return i >= 0 && planes_.told[index(i)] != 0 && fraction_[dry] < little &&
+               planes_.position[index(i)] >= 0;
     }
 
     /// Where the surface is between the centres of two neighbours, as a share of their distance from the
@@ -225,6 +233,7 @@ public:
     }
 
 private:
+    static constexpr Real little = 1e-5;  ///< less liquid of a cell than this has no momentum to speak of [-]
     /// A trace of air or of water tells nothing of where the surface is, but in a cell that a wall cuts.
     bool tells(Offset cell) const noexcept {
         constexpr Real trace = SurfaceBand<Dim>::smallest_void;
