@@ -276,7 +276,8 @@ private:
                 if (open.plain != 0)
                     result[open.axis][open.face] += push * (open.slope - open.plain) * pressure_[open.cell];
             for (const WaterFace& f : water.still())
-                result[f.axis][f.face] = record_.velocity()[f.axis][f.face] + kept * 2 * dt * params_.gravity[f.axis];
+                result[f.axis][f.face] =
+                    record_.velocity()[f.axis][f.face] + kept * 2 * dt * params_.gravity[f.axis];
             water.share_shear(result, by, (1 - kept) * dt * nu());
             sides_.leave(result);
         };

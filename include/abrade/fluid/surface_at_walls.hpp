@@ -3,7 +3,7 @@
 
 #include <abrade/core/parallel.hpp>
 #include <abrade/fluid/cell_sizes.hpp>
-#include <abrade/fluid/surface_planes.hpp>
+#include <abrade/fluid/volume_fit.hpp>
 #include <abrade/fluid/water_among_walls.hpp>
 
 #include <cmath>
@@ -24,7 +24,7 @@ class SurfaceAtWalls {
 public:
     SurfaceAtWalls() = default;
     SurfaceAtWalls(const Layout<Dim>& layout, const CellSizes<Dim>& sizes)
-        : stencil_(layout), sizes_(sizes), stride_(layout.stride) {}
+        : stencil_(layout), sizes_(sizes), fit_(layout, sizes), stride_(layout.stride) {}
 
     /// Shares that walls leave open [-]; they must outlive this.
     void set_walls(const FaceField<Dim>* open_faces, const Field<Real>* open_volumes) noexcept {
@@ -38,7 +38,9 @@ public:
         open_.clear();
         for (Index i = 0; i < planes.count(); ++i) {
             const auto k = static_cast<std::size_t>(i);
-            known_[k] = (marks[planes.cell[k]] & cell_mark::whole) != 0;
+            known_[k] =
+                (marks[planes.cell[k]] & cell_mark::ringed) != 0 ||
+                ((marks[planes.cell[k]] & cell_mark::whole) != 0 && is_held(planes, k, fraction, marks));
             planes.told[k] = 0;
             // No share of a full cell or of a dry one may be rounded.
             if (const Real f = fraction[planes.cell[k]]; f == 0 || f == 1)
@@ -50,7 +52,7 @@ public:
             found_.assign(open_.size(), 0);
             parallel_for(static_cast<Index>(open_.size()), [&](Index n) {
                 const auto k = static_cast<std::size_t>(n);
-                found_[k] = carry_on(planes, open_[k], fraction, plane_of);
+                found_[k] = carry_on(planes, open_[k], {fraction, marks, plane_of});
             });
             std::size_t left = 0;
             for (std::size_t n = 0; n < open_.size(); ++n) {
@@ -67,8 +69,24 @@ public:
 private:
     static constexpr int vertical = Grid<Dim>::vertical;
 
+    /// Of all cells.
+    struct Cells {
+        const Real* fraction;
+        const std::uint8_t* marks;
+        const Index* plane_of;
+    };
+
+    /// Whether the whole cells about a whole one tell its normal. Beside a wall they may all be full or dry.
+    bool is_held(const SurfacePlanes<Dim>& planes, std::size_t k, const Real* fraction,
+                 const std::uint8_t* marks) const noexcept {
+        Point<Dim> normal;
+        for (int a = 0; a < Dim; ++a) normal[a] = planes.normal[static_cast<std::size_t>(a)][k];
+        return normal.isZero() || fit_.hold(normal, fraction, marks, planes.cell[k], planes.level[k]) > 0.01;
+    }
+
     /// Takes the mean of known planes around a cell. Planes that are not known are not touched by others.
-    bool carry_on(SurfacePlanes<Dim>& planes, Index i, const Real* fraction, const Index* plane_of) const {
+    bool carry_on(SurfacePlanes<Dim>& planes, Index i, const Cells& cells) const {
+        const auto& [fraction, marks, plane_of] = cells;
         const auto own = static_cast<std::size_t>(i);
         const Index level = planes.level[own];
         Point<Dim> normal = Point<Dim>::Zero();
@@ -98,6 +116,10 @@ private:
             planes.normal[static_cast<std::size_t>(a)][own] = normal[a] / length * sizes_.edge(a, level);
         planes.position[own] = distance / count;
         const Real held = fraction[planes.cell[own]];
+        if ((marks[planes.cell[own]] & cell_mark::whole) != 0) {
+            planes.position[own] = planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, held);
+            return true;
+        }
         CellPlane<Dim> plane = planes.plane(i);
         plane.distance = planes.position[own];
         planes.told[own] = std::abs(open_below(planes.cell[own], plane) - held) < 0.25;
@@ -132,6 +154,7 @@ private:
 
     detail::Stencil<Dim> stencil_{};
     CellSizes<Dim> sizes_{};
+    VolumeFit<Dim> fit_{};
     PerAxis<Offset, Dim> stride_{};
     const FaceField<Dim>* open_faces_ = nullptr;
     const Field<Real>* open_volumes_ = nullptr;

@@ -24,16 +24,17 @@ template <int Dim>
 class VelocityExtension {
 public:
     static constexpr int layers = 3;
+    static constexpr int wedge = 8;  ///< longest of water on a wall that has no pressure of its own [cells]
 
     explicit VelocityExtension(const Layout<Dim>& layout)
         : layout_(layout), state_(layout.total, unknown), before_(layout),
           found_(static_cast<std::size_t>(layout.planes())) {}
 
     struct Water {
-        const Field<std::uint8_t>& wet;  ///< 1 where the pressure is known, ghosts included
-        const WetRows<Dim>& rows;        ///< to be looked at
-        const Field<Real>& held;         ///< share of a cell that liquid fills [-]
-        const Walls<Dim>* walls;         ///< may be none
+        const Field<std::uint8_t>& wet;      ///< 1 where the pressure is known, ghosts included
+        const WetRows<Dim>& rows;            ///< to be looked at
+        const Field<Real>& held;             ///< share of a cell that liquid fills [-]
+        const Walls<Dim>* walls;             ///< may be none
         std::span<const WaterFace> still{};  ///< faces of wet cells that no pressure moves
     };
 
@@ -51,8 +52,9 @@ public:
                 if (face.axis == a) state_[face.face] = unknown;
             if (walls) close(walls->open_area()[a], u[a], rows);
             riders_[a].clear();
-            for (int layer = 0; layer < layers; ++layer) {
+            for (int layer = 0; layer < (walls ? wedge : layers); ++layer) {
                 take_means(u[a], rows);
+                if (layer >= layers) keep_liquid(a, held);
                 if (layer == 0) find_riders(a, held);
                 know_found(rows);
                 if (layer == 0) know_liquid(a, held, rows, walls);
@@ -149,6 +151,12 @@ private:
         rows.for_each_plane([&](int plane) {
             for (const Offset c : found_[static_cast<std::size_t>(plane)]) state_[c] = known;
         });
+    }
+
+    /// Of a layer beyond the last of air.
+    void keep_liquid(int a, const Field<Real>& held) {
+        for (auto& found : found_)
+            std::erase_if(found, [&](Offset c) { return !(held[c] + held[c - layout_.stride[a]] > 1e-6); });
     }
 
     /// While faces of the first layer are found, but not yet known.

@@ -238,8 +238,8 @@ private:
     bool tells(Offset cell) const noexcept {
         constexpr Real trace = SurfaceBand<Dim>::smallest_void;
         const Index i = plane_of_[cell];
-        return i >= 0 && (planes_.told[index(i)] != 0 ||
-                          (fraction_[cell] > trace && fraction_[cell] < 1 - trace));
+        return i >= 0 &&
+               (planes_.told[index(i)] != 0 || (fraction_[cell] > trace && fraction_[cell] < 1 - trace));
     }
 
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner;
