@@ -228,6 +228,7 @@ private:
             grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
                 for (int a = 0; a < Dim; ++a) stage_[a][c] *= (*open)[a][c] > 0;
             });
+        for (const WaterFace& f : water_->still()) stage_[f.axis][f.face] = 0;
         projection_.project(stage_, pressure_, 1, 1e-12);
         // Nothing falls where there is no water: friction of walls would take its part of that.
         grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
