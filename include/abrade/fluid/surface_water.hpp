@@ -129,26 +129,23 @@ public:
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
     }
 
-    /// Faces of cells that have become wet: in both stages the pressure did not know them, and air has no
-    /// momentum. They begin as they were, `fallen` faster: so the pressure finds what it finds beside them.
+    /// Faces of cells cut by walls that have become wet: in both stages the pressure did not know them, and
+    /// air has no momentum. They begin as they were, `fallen` faster: so it finds what it finds beside them.
     void begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before, const Field<std::uint8_t>& was_wet,
                      const Point<Dim>& fallen) const {
-        rows_.for_each_row([&](int plane, int row, const RowRange& r) {
-            const Offset start = layout().row_start(plane, row);
-            for (Offset c = start + r.begin; c < start + r.end; ++c) {
-                if (wet_[c] == 0 || was_wet[c] != 0) continue;
-                const CellNumber<Dim> cell = layout().number(c);
-                for (int a = 0; a < Dim; ++a)
-                    for (const int end : {0, 1}) {
-                        const Offset s = layout().stride[a], face = c + end * s, other = face - (1 - end) * s;
-                        const int number = cell[a] + end;
-                        if (number == 0 || number == grid_->cells(a) || was_wet[other] != 0 ||
-                            (walls_ && walls_->open_area()[a][face] == 0))
-                            continue;
+        if (!walls_) return;
+        for (const Index c : liquid_.planes().cell) {
+            if (wet_[c] == 0 || was_wet[c] != 0 || walls_->open_volume()[c] == 1) continue;
+            const CellNumber<Dim> cell = layout().number(c);
+            for (int a = 0; a < Dim; ++a)
+                for (const int end : {0, 1}) {
+                    const Offset s = layout().stride[a], face = c + end * s, other = face - (1 - end) * s;
+                    const int number = cell[a] + end;
+                    if (number > 0 && number < grid_->cells(a) && was_wet[other] == 0 &&
+                        walls_->open_area()[a][face] > 0)
                         u[a][face] = before[a][face] + fallen[a];
-                    }
-            }
-        });
+                }
+        }
     }
 
     void extend(FaceField<Dim>& u) { extension_.extend(u, {wet_, rows_, held(), walls(), still_}); }
