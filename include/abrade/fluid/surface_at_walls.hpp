@@ -13,12 +13,13 @@ namespace abrade {
 /// A liquid fraction in a cell that a wall cuts says nothing of a plane in the whole cell. There the surface
 /// is that of the neighbours which no wall cuts, the mean of their planes, carried on from cell to cell where
 /// a wall leaves at a shallow angle. So a planar surface stays exact up to the wall: water in a curved invert
-/// rests. The plane that holds the cell's volume (`distance`) gets the same normal. Cells that no neighbour
-/// tells of keep what they have.
+/// rests. The plane that holds the cell's volume (`distance`) gets the same normal. Whole cells of which the
+/// surface cuts a corner only, or whose whole neighbours do not tell its tilt, are treated alike. Cells that
+/// no neighbour tells of keep what they have.
 ///
-/// Where the cell holds about as much as would lie below that plane, it is `told` on which side of the
+/// Where a cut cell holds about as much as would lie below that plane, it is `told` on which side of the
 /// surface its centre is: a cell half full of its open part may have its centre above the water, inside the
-/// wall's half. Where it does not, a film or a front on the wall, the fraction says more.
+/// wall. Where it does not, a film or a front on the wall, its fraction says more.
 template <int Dim>
 class SurfaceAtWalls {
 public:
@@ -36,17 +37,18 @@ public:
               const Index* plane_of) {
         known_.resize(static_cast<std::size_t>(planes.count()));
         open_.clear();
-        for (Index i = 0; i < planes.count(); ++i) {
+        parallel_for(planes.count(), [&](Index i) {
             const auto k = static_cast<std::size_t>(i);
-            known_[k] =
-                (marks[planes.cell[k]] & cell_mark::ringed) != 0 ||
-                ((marks[planes.cell[k]] & cell_mark::whole) != 0 && is_held(planes, k, fraction, marks));
+            const std::uint8_t mark = marks[planes.cell[k]];
+            known_[k] = (mark & cell_mark::whole) != 0 && is_wide(planes, k, fraction) &&
+                        ((mark & cell_mark::ringed) != 0 || is_held(planes, k, fraction, marks));
             planes.told[k] = 0;
             // No share of a full cell or of a dry one may be rounded.
             if (const Real f = fraction[planes.cell[k]]; f == 0 || f == 1)
                 planes.distance[k] = f == 0 ? -1 : 1;
-            if (!known_[k]) open_.push_back(i);
-        }
+        });
+        for (Index i = 0; i < planes.count(); ++i)
+            if (known_[static_cast<std::size_t>(i)] == 0) open_.push_back(i);
         constexpr int farthest = 6;  // cells from the last whole one
         for (int pass = 0; pass < farthest && !open_.empty(); ++pass) {
             found_.assign(open_.size(), 0);
@@ -84,6 +86,21 @@ private:
         return normal.isZero() || fit_.hold(normal, fraction, marks, planes.cell[k], planes.level[k]) > 0.01;
     }
 
+    /// Whether the surface cuts more than a corner off a cell. The smaller its area there, the more a little
+    /// liquid moves it: pressure and surface would answer each other faster than steps allow.
+    bool is_wide(const SurfacePlanes<Dim>& planes, std::size_t k, const Real* fraction) const noexcept {
+        constexpr Real corner = 0.13, narrow = 0.5;
+        const Real f = fraction[planes.cell[k]];
+        if (f > corner && f < 1 - corner) return true;
+        const CellPlane<Dim> plane = planes.plane(static_cast<Index>(k));
+        Real most = 0;
+        for (const Real n : plane.normal) most = std::max(most, std::abs(n));
+        const Real way = 1e-6 * most;
+        return liquid_fraction<Dim>(plane.normal, plane.distance + way) -
+                   liquid_fraction<Dim>(plane.normal, plane.distance - way) >
+               2e-6 * narrow;
+    }
+
     /// Takes the mean of known planes around a cell. Planes that are not known are not touched by others.
     bool carry_on(SurfacePlanes<Dim>& planes, Index i, const Cells& cells) const {
         const auto& [fraction, marks, plane_of] = cells;
@@ -117,7 +134,7 @@ private:
         planes.position[own] = distance / count;
         const Real held = fraction[planes.cell[own]];
         if ((marks[planes.cell[own]] & cell_mark::whole) != 0) {
-            planes.position[own] = planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, held);
+            planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, held);
             return true;
         }
         CellPlane<Dim> plane = planes.plane(i);
