@@ -43,9 +43,7 @@ public:
             known_[k] = (mark & cell_mark::whole) != 0 && is_wide(planes, k, fraction) &&
                         ((mark & cell_mark::ringed) != 0 || is_held(planes, k, fraction, marks));
             planes.told[k] = 0;
-            // No share of a full cell or of a dry one may be rounded.
-            if (const Real f = fraction[planes.cell[k]]; f == 0 || f == 1)
-                planes.distance[k] = f == 0 ? -1 : 1;
+            if (fraction[planes.cell[k]] == 0) planes.distance[k] = -1;  // nothing of it may be rounded
         });
         for (Index i = 0; i < planes.count(); ++i)
             if (known_[static_cast<std::size_t>(i)] == 0) open_.push_back(i);
@@ -70,6 +68,7 @@ public:
 
 private:
     static constexpr int vertical = Grid<Dim>::vertical;
+    static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
     /// Of all cells.
     struct Cells {
@@ -78,12 +77,24 @@ private:
         const Index* plane_of;
     };
 
-    /// Whether the whole cells about a whole one tell its normal. Beside a wall they may all be full or dry.
+    /// Whether the whole cells about a whole one tell its tilt. Beside a wall they may all be full or dry.
     bool is_held(const SurfacePlanes<Dim>& planes, std::size_t k, const Real* fraction,
                  const std::uint8_t* marks) const noexcept {
         Point<Dim> normal;
-        for (int a = 0; a < Dim; ++a) normal[a] = planes.normal[static_cast<std::size_t>(a)][k];
-        return normal.isZero() || fit_.hold(normal, fraction, marks, planes.cell[k], planes.level[k]) > 0.01;
+        for (int a = 0; a < Dim; ++a) normal[a] = planes.normal[at(a)][k];
+        int nearest = 0;  // axis
+        if (!(normal.cwiseAbs().maxCoeff(&nearest) > 0)) return false;
+        // Seldom in doubt: the surface passes through the middle of some of them, in all directions.
+        int aa = 0, ab = 0, bb = 0;
+        for (int n = 0; n < detail::Stencil<Dim>::size; ++n) {
+            const Offset c = planes.cell[k] + stencil_.step[at(n)];
+            if ((marks[c] & cell_mark::whole) == 0 || std::abs(fraction[c] - 0.5) > 0.3) continue;
+            const int a = detail::Stencil<Dim>::along(nearest == 0 ? 1 : 0, n);
+            const int b = Dim == 3 ? detail::Stencil<Dim>::along(nearest == 2 ? 1 : 2, n) : 0;
+            aa += a * a, ab += a * b, bb += b * b;
+        }
+        return (Dim == 2 ? aa > 0 : aa * bb > ab * ab) ||
+               fit_.hold(normal, fraction, marks, planes.cell[k], planes.level[k]) > 0.01;
     }
 
     /// Whether the surface cuts more than a corner off a cell. The smaller its area there, the more a little
@@ -139,12 +150,12 @@ private:
         }
         CellPlane<Dim> plane = planes.plane(i);
         plane.distance = planes.position[own];
-        planes.told[own] = std::abs(open_below(planes.cell[own], plane) - held) < 0.25;
-        if (held > 0 && held < 1)
+        planes.told[own] = (plane.distance >= 0) == (held >= 0.5) ||
+                           std::abs(open_below(planes.cell[own], plane) - held) < 0.25;
+        if (held > 0)
             planes.distance[own] = plane_distance<Dim>(plane.normal, held);
         else
-            for (const Real component : plane.normal)  // beyond its corners
-                planes.distance[own] += (held == 0 ? -1 : 1) * std::abs(component);
+            for (const Real component : plane.normal) planes.distance[own] -= std::abs(component);
         return true;
     }
 

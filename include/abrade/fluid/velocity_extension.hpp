@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace abrade {
@@ -28,7 +29,7 @@ public:
 
     explicit VelocityExtension(const Layout<Dim>& layout)
         : layout_(layout), state_(layout.total, unknown), before_(layout),
-          found_(static_cast<std::size_t>(layout.planes())) {}
+          found_(static_cast<std::size_t>(layout.planes())), waiting_(found_) {}
 
     struct Water {
         const Field<std::uint8_t>& wet;      ///< 1 where the pressure is known, ghosts included
@@ -52,14 +53,13 @@ public:
                 if (face.axis == a) state_[face.face] = unknown;
             if (walls) close(walls->open_area()[a], u[a], rows);
             riders_[a].clear();
-            for (int layer = 0; layer < (walls ? wedge : layers); ++layer) {
+            for (int layer = 0; layer < layers; ++layer) {
                 take_means(u[a], rows);
-                if (layer >= layers) keep_liquid(a, held);
                 if (layer == 0) find_riders(a, held);
                 know_found(rows);
                 if (layer == 0) know_liquid(a, held, rows, walls);
             }
-            if (walls) know_liquid(a, held, rows, nullptr);
+            if (walls) extend_wedges(u[a], rows);
             rows.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = layout_.row_start(plane, row);
                 State* const __restrict v = u[a].data() + start;
@@ -137,15 +137,19 @@ private:
                 }
             }
             // None of them is known before all have their value.
-            for (const Offset c : found) {
-                State sum = 0;
-                int count = 0;
-                for (const Offset s : stride)
-                    for (const Offset n : {c - s, c + s})
-                        if (state_[n] == known) sum += u[n], ++count;
-                u[c] = sum / static_cast<State>(count);
-            }
+            for (const Offset c : found) take_mean(u, c);
         });
+    }
+    /// Of what is known beside a face; answers whether anything is.
+    template <class State>
+    bool take_mean(Field<State>& u, Offset c) const noexcept {
+        State sum = 0;
+        int count = 0;
+        for (const Offset s : layout_.stride)
+            for (const Offset n : {c - s, c + s})
+                if (state_[n] == known) sum += u[n], ++count;
+        if (count > 0) u[c] = sum / static_cast<State>(count);
+        return count > 0;
     }
     void know_found(const WetRows<Dim>& rows) {
         rows.for_each_plane([&](int plane) {
@@ -153,10 +157,21 @@ private:
         });
     }
 
-    /// Of a layer beyond the last of air.
-    void keep_liquid(int a, const Field<Real>& held) {
-        for (auto& found : found_)
-            std::erase_if(found, [&](Offset c) { return !(held[c] + held[c - layout_.stride[a]] > 1e-6); });
+    /// Farther along water on walls; what is not reached flies on.
+    template <class State>
+    void extend_wedges(Field<State>& u, const WetRows<Dim>& rows) {
+        rows.for_each_plane([&](int plane) { found_[static_cast<std::size_t>(plane)].clear(); });
+        for (int layer = layers; layer < wedge; ++layer) {
+            for (std::size_t p = 0; p < waiting_.size(); ++p)
+                for (const Offset c : waiting_[p])
+                    if (state_[c] == unknown && take_mean(u, c)) found_[p].push_back(c);
+            know_found(rows);
+        }
+        for (auto& waiting : waiting_) {
+            for (const Offset c : waiting)
+                if (state_[c] == unknown) state_[c] = known;
+            waiting.clear();
+        }
     }
 
     /// While faces of the first layer are found, but not yet known.
@@ -183,10 +198,14 @@ private:
             std::uint8_t* const __restrict state = state_.data() + start;
             if (walls) {
                 const Real* const open = walls->open_volume().data() + start;
-                for (int i = r.begin; i < r.end; ++i)
-                    if (state[i] == unknown && h[i] + h[i - back] > 1e-6 && open[i] == 1 &&
-                        open[i - back] == 1)
+                auto& waiting = waiting_[static_cast<std::size_t>(plane)];
+                for (int i = r.begin; i < r.end; ++i) {
+                    if (state[i] != unknown || !(h[i] + h[i - back] > 1e-6)) continue;
+                    if (open[i] == 1 && open[i - back] == 1)
                         state[i] = known;
+                    else
+                        waiting.push_back(start + i);
+                }
                 return;
             }
 #pragma omp simd
@@ -200,7 +219,8 @@ private:
     Field<std::uint8_t> state_;
     WetRows<Dim> before_;  ///< looked at the last time
     PerAxis<std::vector<Rider>, Dim> riders_;
-    std::vector<std::vector<Offset>> found_;  ///< [plane] faces of a layer
+    std::vector<std::vector<Offset>> found_;    ///< [plane] faces of a layer
+    std::vector<std::vector<Offset>> waiting_;  ///< [plane] faces of water on walls
 };
 
 }  // namespace abrade

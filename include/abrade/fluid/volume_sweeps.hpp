@@ -33,8 +33,8 @@ void VolumeOfFluid<Dim>::include_inflows() {
         }
 }
 
-/// Planes of all cells of the band that are neither full nor dry, and of those that walls cut. Within a step
-/// they keep the normals that they had at its beginning.
+/// Planes of all cells of the band that are neither full nor dry. Within a step they keep the normals that
+/// they had at its beginning.
 template <int Dim>
 void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
     const auto cells = band_.cells();
@@ -42,9 +42,15 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
     const auto count = static_cast<Index>(cells.size());
     const bool keep = within_step && !params_.fit_every_sweep;
     const auto partly = [&](Index c) { return fraction_[c] > wisp && fraction_[c] < 1 - wisp; };
-    const auto cut = [&](Index c) {
-        return partly(c) || (open_volumes_ && !keep && (marks_[c] & cell_mark::whole) == 0);
+    // On a wall a dry cell beside water may have its centre below the surface.
+    const auto ashore = [&](Index c) {
+        if (keep || !open_volumes_ || fraction_[c] > wisp || (marks_[c] & cell_mark::whole) != 0)
+            return false;
+        for (const Offset s : layout_.stride)
+            if (fraction_[c - s] > 0 || fraction_[c + s] > 0) return true;
+        return false;
     };
+    const auto cut = [&](Index c) { return partly(c) || ashore(c); };
     std::vector<Index> first(static_cast<std::size_t>(block_count(count)) + 1, 0);
     parallel_blocks(count, [&](Index block, Index begin, Index end) {
         Index number = 0;
