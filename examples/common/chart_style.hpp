@@ -38,7 +38,8 @@ struct Curve {
 };
 
 enum class Palette {
-    wear,  ///< pale to dark brown: nothing to much
+    wear,   ///< pale to dark brown: nothing to much
+    water,  ///< pale to dark blue
 };
 
 namespace charts {
@@ -159,11 +160,9 @@ inline std::string colour_bar(const Axis& axis, Palette palette, const Range& fo
          to_text(static_cast<Real>(bar) / at.height) + "\n";
     s += axis.logarithmic ? "set logscale cb\n" : tics("cb", low, high, bar, 45);
     return s + (palette == Palette::wear ? "set palette defined (0 '#eeeae0', 1 '#fee391', 2 '#fec44f', 3 "
-                                           "'#fe9929', 4 '#d95f0e', 5 '#993404', "
-                                           "6 '#4a1803')\n"
-                                         : "set palette defined (0 '#440154', 1 '#443983', 2 '#31688e', 3 "
-                                           "'#21918c', 4 '#35b779', 5 '#90d743', 6 "
-                                           "'#fde725')\n");
+                                           "'#fe9929', 4 '#d95f0e', 5 '#993404', 6 '#4a1803')\n"
+                                         : "set palette defined (0 '#f4f7fa', 1 '#c6dbef', 2 '#6baed6', 3 "
+                                           "'#2171b5', 4 '#08306b')\n");
 }
 
 /// Collects blocks of data and the plot command that reads them.

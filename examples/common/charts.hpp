@@ -123,7 +123,7 @@ inline void draw(const ColourMap& map, const std::filesystem::path& picture) {
         }
     std::size_t index = 0;
     for (const Curve& line : map.lines) plot.curve(line, index++);
-    charts::Layout layout{.width = map.width, .height = map.height, .right = 150};
+    charts::Layout layout{.width = map.width, .height = map.height, .right = 180};
     const auto plot_width = layout.width - layout.left - layout.right;
     std::string key = charts::legend(plot.titles(), layout);
     if (map.equal_aspect) {
@@ -174,7 +174,7 @@ inline void draw(const CirclePicture& view, const std::filesystem::path& picture
     std::size_t index = 0;
     for (const Curve& line : view.lines) plot.curve(line, index++);
 
-    charts::Layout all{.width = view.width, .right = value.empty() ? 30 : 150};
+    charts::Layout all{.width = view.width, .right = value.empty() ? 30 : 180};
     int plot_width = all.width - all.left - all.right;
     const Real length = x.high - x.low, ratio = length > 0 ? (y.high - y.low) / length : 1;
     int rows = view.rows;

@@ -78,6 +78,7 @@ void draw_water(const ChannelConfig& c, const ChannelWater& water, const fs::pat
                   .colour = {.label = "depth", .unit = "m", .min = 0.0},
                   .columns = static_cast<std::size_t>(water.columns),
                   .values = water.depth_map};
+    map.palette = Palette::water;
     map.equal_aspect = c.invert.length < 4;
     draw(map, picture);
 }
@@ -263,17 +264,17 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
          "Energy over time. The integration residue is the integrator's error in energy, shown and not "
          "hidden in a loss."}};
     if (flows)
-        report.figures.push_back({folder.path("water.png"),
-                                  "Depth of the water at the end, in plan. It is averaged over "
-                                  "the depth, and has run since before the stones came."});
+        report.figures.push_back(
+            {folder.path("water.png"),
+             "Depth of the water at the end, in plan. It has run since before the stones "
+             "came; its surface stands in the side view."});
     report.parameters = c.parameters;
     report.notes = {
         "The measured curve of the original experiment is not available in the text that this model was "
         "built from. The result is judged by the bracket, by the closed ledger and by the hydraulics.",
         std::string(!r.water ? "There is no water."
-                    : flows
-                        ? "The water is averaged over its depth; it drives the stones and does not feel them."
-                        : "The water is prescribed: it drives the stones and does not feel them.") +
+                    : flows  ? "The water runs by itself: it drives the stones and does not feel them."
+                             : "The water is prescribed: it drives the stones and does not feel them.") +
             " Stones drag like spheres of the same volume.",
         "Parameters marked as assumptions are open in the source; they are choices, not data."};
     report.versions = build_versions();

@@ -63,7 +63,7 @@ TEST_CASE("a drop smaller than a cell falls freely; it ends on the floor and no 
     CHECK(start - height() == doctest::Approx(0.5 * g * square(0.2)).epsilon(0.2));
     flow.advance(1.5);
     CHECK(height() < 2.0 / 16);
-    CHECK(flow.liquid().volume() == doctest::Approx(volume).epsilon(1e-6).scale(0));
+    CHECK(flow.liquid().volume() == doctest::Approx(volume).epsilon(1e-12).scale(0));
 }
 
 TEST_CASE("a closed box full of water: the pressure is known but for a constant") {
@@ -85,7 +85,7 @@ TEST_CASE("a dry box and a single wet cell") {
     const Real volume = one.liquid().volume();
     CHECK(one.wet_cells() == 1);
     one.advance(0.1);
-    CHECK(one.liquid().volume() == doctest::Approx(volume).epsilon(1e-9).scale(0));
+    CHECK(one.liquid().volume() == doctest::Approx(volume).epsilon(1e-12).scale(0));
     CHECK(std::isfinite(fastest(one)));
 }
 

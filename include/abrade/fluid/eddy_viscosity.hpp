@@ -78,7 +78,7 @@ public:
                         known_.empty() ? shear<false>(u, {a, b, pair}, row, start, r)
                                        : shear<true>(u, {a, b, pair}, row, start, r);
                 const State* const length2 = length2_.data() + start;
-                for (int i = whole(r.begin); i < r.end; i += lanes)
+                for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
 #pragma omp simd
                     for (int k = i; k < i + lanes; ++k) nu[k] = length2[k] * std::sqrt(nu[k]);
                 if (held) {
@@ -107,8 +107,6 @@ private:
     struct Pair {
         int a, b, number;
     };
-
-    static int whole(int i) noexcept { return i & ~(lanes - 1); }
 
     static Real wall_distance(const Grid<Dim>& grid, const GridFluidParams<Dim>& params,
                               const Point<Dim>& x) {
@@ -158,7 +156,7 @@ private:
             const State* const __restrict v_up = v + layout_.stride[a];
             const auto per_size = per_size_[a].row(row);
             const State before = a > 0;
-            for (int i = whole(r.begin); i < r.end; i += lanes)
+            for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
 #pragma omp simd
                 for (int k = i; k < i + lanes; ++k) {
                     const State rate = (v_up[k] - v[k]) * per_size[k];
@@ -181,7 +179,7 @@ private:
                    gap_a_up = per_gap_[p.a].row(Dim == 3 ? row + 1 : row),
                    gap_b_up = per_gap_[p.b].row(Dim == 3 ? row + 1 : row);
         constexpr int next = Dim == 3 ? 0 : 1;
-        for (int i = whole(r.begin); i < r.end; i += lanes)
+        for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
 #pragma omp simd
             for (int k = i; k < i + lanes; ++k) {
                 const State a0 = gap_a[k], a1 = gap_a_up[k + next], b0 = gap_b[k], b1 = gap_b_up[k + next];

@@ -100,6 +100,9 @@ struct Layout {
         return cell;
     }
 
+    /// First cell of the pack of `lanes` that cell i of a row stands in.
+    static constexpr int pack(int i) noexcept { return i & ~(lanes - 1); }
+
     int planes() const noexcept { return cells[outer]; }
     int rows_per_plane() const noexcept { return Dim == 3 ? cells[Dim - 1] : 1; }
     int row_length() const noexcept { return cells[inner]; }

@@ -109,7 +109,6 @@ private:
     std::size_t room(int rows) const noexcept {
         return static_cast<std::size_t>(pitch_) * static_cast<std::size_t>(rows);
     }
-    static int whole(int i) noexcept { return i & ~(lanes - 1); }
     /// 1 over what turns a carrier of cells at a level into a velocity.
     Real per_carrier(const Grid<Dim>& grid, int axis, int level) const noexcept {
         if (s_.carried_in == 0) return 1;
@@ -166,7 +165,7 @@ private:
             const Real* const __restrict open_back = open - layout_.stride[a];
             const Real* const __restrict centre = (*s_.open_middle)[b].data() + start;
             const Real* const __restrict centre_back = centre - layout_.stride[a];
-            for (int i = whole(r.begin); i < r.end; i += lanes)
+            for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
 #pragma omp simd
                 for (int k = i; k < i + lanes; ++k) {
                     // From middle to middle of what is open of the control volumes, in cells.
@@ -177,7 +176,7 @@ private:
                 }
             return;
         }
-        for (int i = whole(r.begin); i < r.end; i += lanes)
+        for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
 #pragma omp simd
             for (int k = i; k < i + lanes; ++k) out[k] = through(k, 1);
     }
@@ -203,10 +202,14 @@ private:
             if constexpr (Dim == 3) sum -= share_middle[i] * (high[i] - low[i]);
             return sum;
         };
+        const State* const outer_below = velocity - layout_.stride[outer];
+        const State* const outer_above = velocity + layout_.stride[outer];
+        const State* const middle_below = velocity - layout_.stride[Dim - 1];
+        const State* const middle_above = velocity + layout_.stride[Dim - 1];
         const State* const now = s_.held ? s_.held->data() + start : nullptr;
         const State* const before = s_.held ? s_.held_before->data() + start : nullptr;
         const Real* const open = s_.open_area ? (*s_.open_area)[a].data() + start : nullptr;
-        for (int first = whole(r.begin); first < r.end; first += lanes) {
+        for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
             // Read as a whole before it is written: `result` may be `start`.
             alignas(64) State value[lanes];
             if (!now || is_full(now + first, before + first, back)) {
@@ -224,17 +227,20 @@ private:
                     const State mass_before = upper[i] * before[i] + lower[i] * before[i - back];
                     // What is carried into little liquid is a mean of what was there and around: a sweep
                     // after another may have moved more liquid out of a sliver than it held at the beginning.
-                    State least = std::min(velocity[i], begin[i]), most = std::max(velocity[i], begin[i]);
-                    for (int b = 0; b < Dim; ++b) {
-                        const Offset across = layout_.stride[b];
-                        least = std::min(least, std::min(velocity[i - across], velocity[i + across]));
-                        most = std::max(most, std::max(velocity[i - across], velocity[i + across]));
-                    }
-                    const State carried =
-                        (mass_before * begin[i] + change(i)) / std::max(mass, State(least_mass));
-                    const State bounded = std::min(most, std::max(least, carried));
+                    State least = velocity[i], most = least;
+                    const auto widen = [&](State v) {
+                        least = v < least ? v : least;
+                        most = v > most ? v : most;
+                    };
+                    widen(begin[i]), widen(outer_below[i]), widen(outer_above[i]), widen(velocity[i - 1]);
+                    widen(velocity[i + 1]), widen(middle_below[i]), widen(middle_above[i]);
+                    const State some = mass > State(least_mass) ? mass : State(least_mass);
+                    const State carried = (mass_before * begin[i] + change(i)) / some;
+                    const State raised = carried < least ? least : carried;
+                    const State bounded = raised > most ? most : raised;
                     const State moved = (mass < State(sliver) ? bounded : carried) + gravity;
-                    value[k] = kept * velocity[i] + (mass > State(least_mass) ? fresh * moved : State(0)) +
+                    const State part = fresh * moved;
+                    value[k] = kept * velocity[i] + (mass > State(least_mass) ? part : State(0)) +
                                push[i] * (p[i] - p_back[i]);
                 }
             }
@@ -250,11 +256,13 @@ private:
 
     /// Whether a pack's control volumes are full of liquid, before and now.
     static bool is_full(const State* now, const State* before, Offset back) noexcept {
-        int full = 1;
+        const State* const now_back = now - back;
+        const State* const before_back = before - back;
+        int short_of = 0;
+#pragma omp simd reduction(| : short_of)
         for (int k = 0; k < lanes; ++k)
-            full &= static_cast<int>(now[k] == 1) & static_cast<int>(now[k - back] == 1) &
-                    static_cast<int>(before[k] == 1) & static_cast<int>(before[k - back] == 1);
-        return full != 0;
+            short_of |= (now[k] < 1) | (now_back[k] < 1) | (before[k] < 1) | (before_back[k] < 1);
+        return short_of == 0;
     }
 
     const Layout<Dim>& layout_;

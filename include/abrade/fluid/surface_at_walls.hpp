@@ -33,6 +33,14 @@ public:
         open_volumes_ = open_volumes;
     }
 
+    /// A cell that a wall cuts, whose centre may lie below the surface all the same: it wants a plane.
+    bool is_dry_beside_water(Index c, const Real* fraction, const std::uint8_t* marks) const noexcept {
+        if (fraction[c] > 0 || (marks[c] & cell_mark::whole) != 0) return false;
+        for (const Offset s : stride_)
+            if (fraction[c - s] > 0 || fraction[c + s] > 0) return true;
+        return false;
+    }
+
     void find(SurfacePlanes<Dim>& planes, const Real* fraction, const std::uint8_t* marks,
               const Index* plane_of) {
         known_.resize(static_cast<std::size_t>(planes.count()));

@@ -49,7 +49,8 @@ public:
         });
         fill_periodic(air_, layout_, sides);
         for_each_inflow_cell(sides, [&](Offset ghost, Offset) {
-            air_[ghost] = static_cast<std::uint8_t>(fraction[ghost] < 1 - smallest_void);
+            // Cells beyond the band take what flows in for all liquid.
+            air_[ghost] = static_cast<std::uint8_t>(fraction[ghost] < 1);
         });
         rows.for_each_row([&](int plane, int r, const RowRange& range) {
             const Offset start = layout_.row_start(plane, r);

@@ -78,24 +78,29 @@ public:
     /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
     void carry_by(const FaceField<Dim>& stage, Real step) {
         for (int a = 0; a < Dim; ++a) {
-            std::vector<Real> swept;
-            for (int k = 0; k < grid_->cells(vertical); ++k) {
+            const LevelTable<Dim, Real> swept(*grid_, [&](int k) {
                 CellNumber<Dim> cell{};
                 cell[vertical] = k;
-                swept.push_back(step * grid_->volume(cell) / grid_->size(a, cell[a]));
-            }
+                return step * grid_->volume(cell) / grid_->size(a, cell[a]);
+            });
             const Offset back = layout().stride[a];
             rows_.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = layout().row_start(plane, row);
                 Real* const __restrict c = liquid_.moved()[a].data() + start;
-                const Real* const v = stage[a].data() + start;
-                const Real *const f = held().data() + start, *const g = before_.data() + start;
+                const Real* const __restrict v = stage[a].data() + start;
+                const Real* const __restrict f = held().data() + start;
+                const Real* const __restrict f_back = f - back;
+                const Real* const __restrict g = before_.data() + start;
+                const Real* const __restrict g_back = g - back;
+                const auto area = swept.row(row);
+                constexpr int lanes = Layout<Dim>::lanes;
+                for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
 #pragma omp simd
-                for (int i = r.begin; i < r.end; ++i) {
-                    const Real area = swept[static_cast<std::size_t>(Dim == 3 ? row : i)];
-                    const bool full = f[i] == 1 && f[i - back] == 1 && g[i] == 1 && g[i - back] == 1;
-                    c[i] = full ? v[i] * area : c[i];
-                }
+                    for (int i = first; i < first + lanes; ++i) {
+                        const Real least = std::min(std::min(f[i], f_back[i]), std::min(g[i], g_back[i]));
+                        const Real old = c[i], full = v[i] * area[i];
+                        c[i] = least == 1 && i >= r.begin && i < r.end ? full : old;
+                    }
             });
         }
     }
@@ -188,7 +193,9 @@ public:
         };
         rows_.for_each_row(clear);
         rows.copy(fraction, liquid_.fraction());
+        const Field<Real> elsewhere = liquid_.surplus();
         settle();
+        liquid_.surplus() = elsewhere;
         rows.copy(surplus, liquid_.surplus());
     }
 
@@ -286,25 +293,9 @@ private:
             for (int row = 0; row < layout().rows_per_plane(); ++row) {
                 const RowRange r = rows_.row(plane, row);
                 const Offset start = layout().row_start(plane, row);
-                const std::uint8_t* const wet = wet_.data() + start;
-                constexpr int lanes = 4 * Layout<Dim>::lanes;
-                const auto s = layout().stride;
-                for (int first = r.begin; first < r.end; first += lanes) {
-                    const int count = std::min(lanes, r.end - first);
-                    std::uint8_t beside[lanes];
-                    int any = 0;
-                    for (int k = 0; k < count; ++k) {
-                        const std::uint8_t* const w = wet + first + k;
-                        int near = w[-s[0]] | w[s[0]] | w[-s[1]] | w[s[1]];
-                        if constexpr (Dim == 3) near |= w[-s[2]] | w[s[2]];
-                        beside[k] = static_cast<std::uint8_t>(near & (*w ^ 1));
-                        any |= beside[k];
-                    }
-                    if (any == 0) continue;
-                    for (int k = 0; k < count; ++k)
-                        if (beside[k] != 0 && is_open(start + first + k))
-                            add_open_faces(open, start + first + k, {plane, row, first + k});
-                }
+                for_edge_cells(wet_, layout(), start, r, [&](int i) {
+                    if (is_open(start + i)) add_open_faces(open, start + i, {plane, row, i});
+                });
             }
         });
         open_ = projection.outflows(wet_);

@@ -64,8 +64,13 @@ public:
                 const Offset start = layout_.row_start(plane, row);
                 State* const __restrict v = u[a].data() + start;
                 const std::uint8_t* const __restrict state = state_.data() + start;
+                for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
 #pragma omp simd
-                for (int i = r.begin; i < r.end; ++i) v[i] = state[i] == unknown ? State(0) : v[i];
+                    for (int i = first; i < first + lanes; ++i) {
+                        const State value = v[i];
+                        const bool dry = state[i] == unknown && i >= r.begin && i < r.end;
+                        v[i] = dry ? State(0) : value;
+                    }
             });
         }
     }
@@ -88,9 +93,11 @@ private:
             const Offset start = layout_.row_start(plane, row);
             const std::uint8_t* const __restrict here = wet.data() + start;
             std::uint8_t* const __restrict state = state_.data() + start;
+            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
 #pragma omp simd
-            for (int i = r.begin; i < r.end; ++i)
-                state[i] = static_cast<std::uint8_t>(here[i] | here[i - back]);
+                for (int i = first; i < first + lanes; ++i)
+                    state[i] = static_cast<std::uint8_t>(here[i] | here[i - back]);
+            trim(state, r);
             const auto fix = [&](std::uint8_t& s) { s = s == known ? known : fixed; };
             if (a == Layout<Dim>::inner) {
                 if (r.begin == 0) fix(state[0]);
@@ -98,6 +105,13 @@ private:
                 for (int i = r.begin; i < r.end; ++i) fix(state[i]);
             }
         });
+    }
+
+    /// What whole packs have set around a row's range is unknown.
+    static void trim(std::uint8_t* state, const RowRange& r) noexcept {
+        const int first = Layout<Dim>::pack(r.begin), last = Layout<Dim>::pack(r.end + lanes - 1);
+        std::fill_n(state + first, r.begin - first, unknown);
+        std::fill_n(state + r.end, last - r.end, unknown);
     }
 
     template <class State>
@@ -119,22 +133,7 @@ private:
             for (int row = 0; row < layout_.rows_per_plane(); ++row) {
                 const RowRange r = rows.row(plane, row);
                 const Offset start = layout_.row_start(plane, row);
-                const std::uint8_t* const state = state_.data() + start;
-                for (int first = r.begin; first < r.end; first += lanes) {
-                    const int count = std::min(lanes, r.end - first);
-                    std::uint8_t beside[lanes];
-                    int any = 0;
-                    for (int k = 0; k < count; ++k) {
-                        const std::uint8_t* const s = state + first + k;
-                        int near = s[-stride[0]] | s[stride[0]] | s[-stride[1]] | s[stride[1]];
-                        if constexpr (Dim == 3) near |= s[-stride[2]] | s[stride[2]];
-                        beside[k] = static_cast<std::uint8_t>(near & known & (*s == unknown));
-                        any |= beside[k];
-                    }
-                    if (any == 0) continue;
-                    for (int k = 0; k < count; ++k)
-                        if (beside[k] != 0) found.push_back(start + first + k);
-                }
+                for_edge_cells(state_, layout_, start, r, [&](int i) { found.push_back(start + i); });
             }
             // None of them is known before all have their value.
             for (const Offset c : found) take_mean(u, c);
@@ -208,13 +207,17 @@ private:
                 }
                 return;
             }
+            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
 #pragma omp simd
-            for (int i = r.begin; i < r.end; ++i)
-                state[i] = state[i] == unknown && h[i] + h[i - back] > 1e-6 ? known : state[i];
+                for (int i = first; i < first + lanes; ++i) {
+                    const bool found = (state[i] == unknown) & (h[i] + h[i - back] > 1e-6);
+                    state[i] = static_cast<std::uint8_t>(state[i] | (found ? known : unknown));
+                }
+            trim(state, r);
         });
     }
 
-    static constexpr int lanes = 4 * Layout<Dim>::lanes;
+    static constexpr int lanes = Layout<Dim>::lanes;
     Layout<Dim> layout_;
     Field<std::uint8_t> state_;
     WetRows<Dim> before_;  ///< looked at the last time

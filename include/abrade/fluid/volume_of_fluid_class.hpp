@@ -97,6 +97,7 @@ public:
             const Real f = fraction_[c];
             if (!(f >= 0 && f <= 1)) fail_fraction(cell, f);
             set_cell(c, marks_[c] & cell_mark::open ? f : 0);
+            if (f >= 1 - SurfaceBand<Dim>::smallest_void && f < 1) settled_.push_back(static_cast<Index>(c));
         });
         wet_.find(fraction_);
         locate();
@@ -327,7 +328,7 @@ private:
     void fluxes_of_band(int axis);
     void fluxes_of_planes(int axis);
     void join_periodic(int axis);
-    void even_out_rims();
+    void even_out_rims(int axis);
     void settle(VolumeStep& step);
     struct Neighbours;
     Real share_out(Offset c, Index level, Real amount);

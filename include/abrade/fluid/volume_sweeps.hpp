@@ -42,15 +42,10 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
     const auto count = static_cast<Index>(cells.size());
     const bool keep = within_step && !params_.fit_every_sweep;
     const auto partly = [&](Index c) { return fraction_[c] > wisp && fraction_[c] < 1 - wisp; };
-    // On a wall a dry cell beside water may have its centre below the surface.
-    const auto ashore = [&](Index c) {
-        if (keep || !open_volumes_ || fraction_[c] > wisp || (marks_[c] & cell_mark::whole) != 0)
-            return false;
-        for (const Offset s : layout_.stride)
-            if (fraction_[c - s] > 0 || fraction_[c + s] > 0) return true;
-        return false;
+    const auto cut = [&](Index c) {
+        return partly(c) ||
+               (!keep && open_volumes_ && at_walls_.is_dry_beside_water(c, fraction_.data(), marks_.data()));
     };
-    const auto cut = [&](Index c) { return partly(c) || ashore(c); };
     std::vector<Index> first(static_cast<std::size_t>(block_count(count)) + 1, 0);
     parallel_blocks(count, [&](Index block, Index begin, Index end) {
         Index number = 0;
@@ -168,6 +163,7 @@ void VolumeOfFluid<Dim>::sweep(int number) {
         fluxes_of_band(axis);
     }
     fluxes_of_planes(axis);
+    even_out_rims(axis);
     join_periodic(axis);
 
     const auto dilatation = [&](int a, Offset c, Index level) {
@@ -329,29 +325,34 @@ Real VolumeOfFluid<Dim>::share_out(Offset c, Index level, Real amount) {
 }
 
 /// Full cells beyond the band took it that what flows through their faces is all liquid. Where a cell of the
-/// band beside them held a trace of air, too little to be a surface, they had a trace less.
+/// band beside them holds a trace of air in this sweep, too little to be a surface, they have a trace less.
 template <int Dim>
-void VolumeOfFluid<Dim>::even_out_rims() {
+void VolumeOfFluid<Dim>::even_out_rims(int axis) {
+    const Offset s = layout_.stride[index(axis)];
+    const auto& moved = moved_[index(axis)];
     for (Index i = 0; i < planes_.count(); ++i) {
         const auto k = static_cast<std::size_t>(i);
         const Offset c = planes_.cell[k];
         if (band_.airy(c)) continue;  // all its neighbours are in the band
-        for (int a = 0; a < Dim; ++a)
-            for (const int side : {-1, 1}) {
-                const Offset s = layout_.stride[index(a)], n = c + side * s, face = side > 0 ? n : c;
-                if (band_.holds(n) || fraction_[n] != 1 || (marks_[n] & cell_mark::inside) == 0) continue;
-                const Index level = planes_.level[k] + (a == vertical ? side : 0);
-                const Index face_level = planes_.level[k] + (a == vertical && side > 0 ? 1 : 0);
-                surplus_[n] +=
-                    side * (moved_[index(a)][face] - swept(a, face, face_level)) / open_volume(n, level);
+        for (const int side : {-1, 1}) {
+            const Offset face = side > 0 ? c + s : c;
+            const Index face_level = planes_.level[k] + (axis == vertical && side > 0 ? 1 : 0);
+            Offset n = c + side * s;
+            Index level = planes_.level[k] + (axis == vertical ? side : 0);
+            if ((marks_[n] & cell_mark::inside) == 0) {
+                if (!sides_.periodic(axis)) continue;
+                n -= side * layout_.cells[index(axis)] * s;
+                if (axis == vertical) level -= side * layout_.cells[vertical];
             }
+            if (band_.holds(n) || fraction_[n] != 1) continue;
+            surplus_[n] += side * (moved[face] - swept(axis, face, face_level)) / open_volume(n, level);
+        }
     }
 }
 
 /// Brings the fractions of the band within their bounds.
 template <int Dim>
 void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
-    even_out_rims();
     fill_periodic(fraction_, layout_, sides_);
     const auto cells = band_.cells();
     const auto levels = band_.levels();

@@ -36,18 +36,24 @@ public:
             rows_.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = rows_.layout().row_start(plane, row);
                 const RowRange known = before.row(plane, row);
-                const std::uint8_t* const wet = water.wet().data() + start;
-                const std::uint8_t* const was_wet = wet_.data() + start;
+                const std::uint8_t* const __restrict wet = water.wet().data() + start;
+                const std::uint8_t* const __restrict wet_back = wet - back;
+                const std::uint8_t* const __restrict was_wet = wet_.data() + start;
+                const std::uint8_t* const __restrict was_wet_back = was_wet - back;
                 Real* const __restrict now = velocity[a].data() + start;
                 Real* const __restrict kept = velocity_[a].data() + start;
-                for (int i = r.begin; i < r.end; ++i) {
-                    // What is given to air is no change of its own.
-                    const bool stays = ((wet[i] | wet[i - back]) & (was_wet[i] | was_wet[i - back])) != 0 &&
-                                       i >= known.begin && i < known.end;
-                    const Real change = stays ? now[i] - kept[i] : 0;
-                    kept[i] = now[i];
-                    now[i] += lead * change;
-                }
+                // What is given to air is no change of its own.
+                const int begin = std::max(r.begin, known.begin), end = std::min(r.end, known.end);
+                constexpr int lanes = Layout<Dim>::lanes;
+                for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
+#pragma omp simd
+                    for (int i = first; i < first + lanes; ++i) {
+                        const int of_water = (wet[i] | wet_back[i]) & (was_wet[i] | was_wet_back[i]);
+                        const Real old = kept[i], change = now[i] - old;
+                        const bool stays = of_water != 0 && i >= begin && i < end;
+                        kept[i] = now[i];
+                        now[i] += lead * (stays ? change : 0);
+                    }
             });
         }
         rows_.copy(water.wet(), wet_);

@@ -5,6 +5,10 @@
 #include <abrade/fluid/grid.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -152,5 +156,29 @@ private:
     Layout<Dim> layout_{};
     std::vector<RowRange> rows_;
 };
+
+/// Calls body(i) for those cells i of a row's range whose mark is 0 beside one that is odd, along an axis.
+/// Whole packs are looked at, bytes at once.
+template <int Dim>
+void for_edge_cells(const Field<std::uint8_t>& marks, const Layout<Dim>& layout, Offset row_start,
+                    const RowRange& r, auto&& body) {
+    constexpr int lanes = Layout<Dim>::lanes;
+    const auto [s0, s1, s2] = std::array{layout.stride[0], layout.stride[1], layout.stride[Dim - 1]};
+    for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
+        const std::uint8_t* const __restrict here = marks.data() + row_start + first;
+        alignas(lanes) std::uint8_t edge[lanes];
+#pragma omp simd
+        for (int k = 0; k < lanes; ++k) {
+            const std::uint8_t near =
+                here[k - s0] | here[k + s0] | here[k - s1] | here[k + s1] | here[k - s2] | here[k + s2];
+            edge[k] = here[k] == 0 ? near & 1 : 0;
+        }
+        std::uint64_t any[lanes / 8];
+        std::memcpy(any, edge, sizeof any);
+        if (std::all_of(std::begin(any), std::end(any), [](std::uint64_t e) { return e == 0; })) continue;
+        for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
+            if (edge[i - first] != 0) body(i);
+    }
+}
 
 }  // namespace abrade
