@@ -126,7 +126,6 @@ private:
     /// One layer.
     template <class State>
     void take_means(Field<State>& u, const WetRows<Dim>& rows) {
-        const auto stride = layout_.stride;
         rows.for_each_plane([&](int plane) {
             std::vector<Offset>& found = found_[static_cast<std::size_t>(plane)];
             found.clear();
