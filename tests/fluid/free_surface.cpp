@@ -2,6 +2,7 @@
 // fractions within their bounds, sides, threads, bad input.
 #include <abrade/fluid/fill_below.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/walls.hpp>
 
 #include <doctest/doctest.h>
 
@@ -403,16 +404,16 @@ TEST_CASE("a planar surface is exact up to walls that cut cells") {
         fill_below<2>(
             wet, grid, [&](const Point<2>& x) { return std::max(in_wall(x), water_level(x)); }, 4);
         fill_below<2>(plane, grid, water_level, 0);
-        const auto faces = face_field<2>(grid.layout(), 1.0);
+        const Walls<2> walls(grid, [&](const Point<2>& x) { return -in_wall(x); });
         VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall));
-        water.set_walls(&faces, &open);
+        water.set_walls(&walls.open_area(), &open);
         grid.for_each([&](const CellNumber<2>&, Offset c) {
             if (open[c] > smallest_open_volume)
                 water.fraction()[c] = open[c] == 1 ? plane[c] : std::clamp(wet[c] / open[c], 0.0, 1.0);
         });
         water.prepare();
         grid.for_each([&](const CellNumber<2>& cell, Offset c) {
-            if (open[c] < 0.02 || water.plane_of(c) < 0) return;
+            if (open[c] < 0.02 || water.plane_of(c) < 0 || water.fraction()[c] == 0) return;
             const Real here = water_level(grid.centre(cell));
             // Where a wall leaves less than two whole cells of surface nothing tells its tilt: not here.
             if (std::abs(here) > 1e-9) CHECK(water.is_liquid(c) == (here < 0));

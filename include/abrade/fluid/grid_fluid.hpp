@@ -233,8 +233,14 @@ private:
             grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
                 for (int a = 0; a < Dim; ++a) stage_[a][c] *= (*open)[a][c] > 0;
             });
+        for (const WaterFace& f : water_->still()) stage_[f.axis][f.face] = 0;
         outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1]});
         projection_.project(stage_, pressure_, 1, 1e-12);
+        // Nothing falls where there is no water: friction of walls would take its part of that.
+        grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
+            for (int a = 0; a < Dim; ++a)
+                if ((water_->wet()[c] | water_->wet()[c - layout().stride[a]]) == 0) stage_[a][c] = 0;
+        });
         finish(stage_);
     }
 
@@ -279,6 +285,8 @@ private:
             for (const OpenFace& open : projection_.open_faces())
                 if (open.plain != 0)
                     result[open.axis][open.face] += push * (open.slope - open.plain) * pressure_[open.cell];
+            for (const WaterFace& f : water.still())
+                result[f.axis][f.face] = record_.velocity()[f.axis][f.face] + kept * 2 * dt * falls[f.axis];
             water.share_shear(result, by, (1 - kept) * dt * nu());
             sides_.leave(result);
         };
@@ -292,6 +300,9 @@ private:
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.friction().take(velocity_, taken, 0.5);
         water.find(projection_, pressure_, sides_);
+        water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * falls);
+        for (const WaterFace& f : water.still())
+            velocity_[f.axis][f.face] = record_.velocity()[f.axis][f.face];
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // At steady sides there is what was there at the beginning of the step.
         if (!params_.steady_sides) sides_.fill(velocity_, &water.rows());

@@ -3,7 +3,8 @@
 
 #include <abrade/core/parallel.hpp>
 #include <abrade/fluid/cell_sizes.hpp>
-#include <abrade/fluid/surface_planes.hpp>
+#include <abrade/fluid/volume_fit.hpp>
+#include <abrade/fluid/water_among_walls.hpp>
 
 #include <cmath>
 
@@ -12,30 +13,54 @@ namespace abrade {
 /// A liquid fraction in a cell that a wall cuts says nothing of a plane in the whole cell. There the surface
 /// is that of the neighbours which no wall cuts, the mean of their planes, carried on from cell to cell where
 /// a wall leaves at a shallow angle. So a planar surface stays exact up to the wall: water in a curved invert
-/// rests. The plane that holds the cell's volume (`distance`) gets the same normal. Cells that no neighbour
-/// tells of keep what they have.
+/// rests. The plane that holds the cell's volume (`distance`) gets the same normal. Whole cells of which the
+/// surface cuts a corner only, or whose whole neighbours do not tell its tilt, are treated alike. Cells that
+/// no neighbour tells of keep what they have.
+///
+/// Where a cut cell holds about as much as would lie below that plane, it is `told` on which side of the
+/// surface its centre is: a cell half full of its open part may have its centre above the water, inside the
+/// wall. Where it does not, a film or a front on the wall, its fraction says more.
 template <int Dim>
 class SurfaceAtWalls {
 public:
     SurfaceAtWalls() = default;
     SurfaceAtWalls(const Layout<Dim>& layout, const CellSizes<Dim>& sizes)
-        : stencil_(layout), sizes_(sizes) {}
+        : stencil_(layout), sizes_(sizes), fit_(layout, sizes), stride_(layout.stride) {}
+
+    /// Shares that walls leave open [-]; they must outlive this.
+    void set_walls(const FaceField<Dim>* open_faces, const Field<Real>* open_volumes) noexcept {
+        open_faces_ = open_faces;
+        open_volumes_ = open_volumes;
+    }
+
+    /// A cell that a wall cuts, whose centre may lie below the surface all the same: it wants a plane.
+    bool is_dry_beside_water(Index c, const Real* fraction, const std::uint8_t* marks) const noexcept {
+        if (fraction[c] > 0 || (marks[c] & cell_mark::whole) != 0) return false;
+        for (const Offset s : stride_)
+            if (fraction[c - s] > 0 || fraction[c + s] > 0) return true;
+        return false;
+    }
 
     void find(SurfacePlanes<Dim>& planes, const Real* fraction, const std::uint8_t* marks,
               const Index* plane_of) {
         known_.resize(static_cast<std::size_t>(planes.count()));
         open_.clear();
-        for (Index i = 0; i < planes.count(); ++i) {
+        parallel_for(planes.count(), [&](Index i) {
             const auto k = static_cast<std::size_t>(i);
-            known_[k] = (marks[planes.cell[k]] & cell_mark::whole) != 0;
-            if (!known_[k]) open_.push_back(i);
-        }
+            const std::uint8_t mark = marks[planes.cell[k]];
+            known_[k] = (mark & cell_mark::whole) != 0 && is_wide(planes, k, fraction) &&
+                        ((mark & cell_mark::ringed) != 0 || is_held(planes, k, fraction, marks));
+            planes.told[k] = 0;
+            if (fraction[planes.cell[k]] == 0) planes.distance[k] = -1;  // nothing of it may be rounded
+        });
+        for (Index i = 0; i < planes.count(); ++i)
+            if (known_[static_cast<std::size_t>(i)] == 0) open_.push_back(i);
         constexpr int farthest = 6;  // cells from the last whole one
         for (int pass = 0; pass < farthest && !open_.empty(); ++pass) {
             found_.assign(open_.size(), 0);
             parallel_for(static_cast<Index>(open_.size()), [&](Index n) {
                 const auto k = static_cast<std::size_t>(n);
-                found_[k] = carry_on(planes, open_[k], fraction, plane_of);
+                found_[k] = carry_on(planes, open_[k], {fraction, marks, plane_of});
             });
             std::size_t left = 0;
             for (std::size_t n = 0; n < open_.size(); ++n) {
@@ -51,9 +76,53 @@ public:
 
 private:
     static constexpr int vertical = Grid<Dim>::vertical;
+    static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// Of all cells.
+    struct Cells {
+        const Real* fraction;
+        const std::uint8_t* marks;
+        const Index* plane_of;
+    };
+
+    /// Whether the whole cells about a whole one tell its tilt. Beside a wall they may all be full or dry.
+    bool is_held(const SurfacePlanes<Dim>& planes, std::size_t k, const Real* fraction,
+                 const std::uint8_t* marks) const noexcept {
+        Point<Dim> normal;
+        for (int a = 0; a < Dim; ++a) normal[a] = planes.normal[at(a)][k];
+        int nearest = 0;  // axis
+        if (!(normal.cwiseAbs().maxCoeff(&nearest) > 0)) return false;
+        // Seldom in doubt: the surface passes through the middle of some of them, in all directions.
+        int aa = 0, ab = 0, bb = 0;
+        for (int n = 0; n < detail::Stencil<Dim>::size; ++n) {
+            const Offset c = planes.cell[k] + stencil_.step[at(n)];
+            if ((marks[c] & cell_mark::whole) == 0 || std::abs(fraction[c] - 0.5) > 0.3) continue;
+            const int a = detail::Stencil<Dim>::along(nearest == 0 ? 1 : 0, n);
+            const int b = Dim == 3 ? detail::Stencil<Dim>::along(nearest == 2 ? 1 : 2, n) : 0;
+            aa += a * a, ab += a * b, bb += b * b;
+        }
+        return (Dim == 2 ? aa > 0 : aa * bb > ab * ab) ||
+               fit_.hold(normal, fraction, marks, planes.cell[k], planes.level[k]) > 0.01;
+    }
+
+    /// Whether the surface cuts more than a corner off a cell. The smaller its area there, the more a little
+    /// liquid moves it: pressure and surface would answer each other faster than steps allow.
+    bool is_wide(const SurfacePlanes<Dim>& planes, std::size_t k, const Real* fraction) const noexcept {
+        constexpr Real corner = 0.13, narrow = 0.5;
+        const Real f = fraction[planes.cell[k]];
+        if (f > corner && f < 1 - corner) return true;
+        const CellPlane<Dim> plane = planes.plane(static_cast<Index>(k));
+        Real most = 0;
+        for (const Real n : plane.normal) most = std::max(most, std::abs(n));
+        const Real way = 1e-6 * most;
+        return liquid_fraction<Dim>(plane.normal, plane.distance + way) -
+                   liquid_fraction<Dim>(plane.normal, plane.distance - way) >
+               2e-6 * narrow;
+    }
 
     /// Takes the mean of known planes around a cell. Planes that are not known are not touched by others.
-    bool carry_on(SurfacePlanes<Dim>& planes, Index i, const Real* fraction, const Index* plane_of) const {
+    bool carry_on(SurfacePlanes<Dim>& planes, Index i, const Cells& cells) const {
+        const auto& [fraction, marks, plane_of] = cells;
         const auto own = static_cast<std::size_t>(i);
         const Index level = planes.level[own];
         Point<Dim> normal = Point<Dim>::Zero();
@@ -82,12 +151,49 @@ private:
         for (int a = 0; a < Dim; ++a)
             planes.normal[static_cast<std::size_t>(a)][own] = normal[a] / length * sizes_.edge(a, level);
         planes.position[own] = distance / count;
-        planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, fraction[planes.cell[own]]);
+        const Real held = fraction[planes.cell[own]];
+        if ((marks[planes.cell[own]] & cell_mark::whole) != 0) {
+            planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, held);
+            return true;
+        }
+        CellPlane<Dim> plane = planes.plane(i);
+        plane.distance = planes.position[own];
+        planes.told[own] = (plane.distance >= 0) == (held >= 0.5) ||
+                           std::abs(open_below(planes.cell[own], plane) - held) < 0.25;
+        if (held > 0)
+            planes.distance[own] = plane_distance<Dim>(plane.normal, held);
+        else
+            for (const Real component : plane.normal) planes.distance[own] -= std::abs(component);
         return true;
+    }
+
+    /// Share of what is open of a cell that lies below a plane, the wall being a plane as well [-].
+    Real open_below(Offset c, const CellPlane<Dim>& plane) const noexcept {
+        std::array<Real, Dim> wall;  // its area vector, into the water
+        Real size = 0;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            wall[a] = (*open_faces_)[a][c + stride_[a]] - (*open_faces_)[a][c];
+            size += std::abs(wall[a]);
+        }
+        if (!(size > 0)) return liquid_fraction(plane);
+        const Real solid = plane_distance<Dim>(wall, 1 - (*open_volumes_)[c]);
+        return detail::WaterAmongWalls<Dim>::template share<0>([&](const Point<Dim>& unit) {
+            std::array<Real, 2> both{-solid, plane.distance};
+            for (int a = 0; a < Dim; ++a) {
+                const auto k = static_cast<std::size_t>(a);
+                both[0] += wall[k] * (unit[a] - 0.5);
+                both[1] -= plane.normal[k] * (unit[a] - 0.5);
+            }
+            return both;
+        });
     }
 
     detail::Stencil<Dim> stencil_{};
     CellSizes<Dim> sizes_{};
+    VolumeFit<Dim> fit_{};
+    PerAxis<Offset, Dim> stride_{};
+    const FaceField<Dim>* open_faces_ = nullptr;
+    const Field<Real>* open_volumes_ = nullptr;
     std::vector<std::uint8_t> known_, found_;
     std::vector<Index> open_;
 };

@@ -32,6 +32,8 @@ struct SurfacePlanes {
     std::vector<Real> distance{};                 ///< of the plane that holds the cell's volume
     std::vector<Real> position{};                 ///< of the surface; another one in cells cut by walls
     std::vector<std::uint8_t> has_normal{};       ///< whether the normal stands already
+    /// Whether, in a cell that a wall cuts, the position tells where the liquid is, not its fraction.
+    std::vector<std::uint8_t> told{};
 
     Index count() const noexcept { return static_cast<Index>(cell.size()); }
     void resize(std::size_t planes) {
@@ -41,6 +43,7 @@ struct SurfacePlanes {
         distance.resize(planes);
         position.resize(planes);
         has_normal.resize(planes);
+        told.resize(planes);
     }
     CellPlane<Dim> plane(Index i) const noexcept {
         const auto k = static_cast<std::size_t>(i);

@@ -5,6 +5,7 @@
 #include <abrade/fluid/projection.hpp>
 #include <abrade/fluid/velocity_extension.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/water_among_walls.hpp>
 
 #include <memory>
 
@@ -60,6 +61,8 @@ public:
     const FaceField<Dim>& carrier() const noexcept { return liquid_.moved(); }
     const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }  ///< that carry momentum
     const Field<std::uint8_t>& wet() const noexcept { return wet_; }  ///< 1 where the pressure is unknown
+    /// Faces of wet cells to cells that are dry for their wall alone: they move as what is beside them did.
+    std::span<const WaterFace> still() const noexcept { return still_; }
     const WallFriction<Dim>& friction() const noexcept { return friction_; }
     const WetRows<Dim>& rows() const noexcept { return rows_; }
 
@@ -121,12 +124,36 @@ public:
                 p[i] = is_wet ? p[i] : 0;
             }
         });
+        if (walls_)
+            for (const Index c : liquid_.planes().cell) {
+                wet_[c] = liquid_.is_liquid(c) && is_open(c);
+                if (!wet_[c]) pressure[c] = 0;
+            }
         sides.join_cells(wet_);
         find_open_faces(projection);
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
     }
 
-    void extend(FaceField<Dim>& u) { extension_.extend(u, wet_, rows_, held(), open_area()); }
+    /// Faces of cells cut by walls that have become wet: in both stages the pressure did not know them, and
+    /// air has no momentum. They begin as they were, `fallen` faster: so it finds what it finds beside them.
+    void begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before, const Field<std::uint8_t>& was_wet,
+                     const Point<Dim>& fallen) const {
+        if (!walls_) return;
+        for (const Index c : liquid_.planes().cell) {
+            if (wet_[c] == 0 || was_wet[c] != 0 || walls_->open_volume()[c] == 1) continue;
+            const CellNumber<Dim> cell = layout().number(c);
+            for (int a = 0; a < Dim; ++a)
+                for (const int end : {0, 1}) {
+                    const Offset s = layout().stride[a], face = c + end * s, other = face - (1 - end) * s;
+                    const int number = cell[a] + end;
+                    if (number > 0 && number < grid_->cells(a) && was_wet[other] == 0 &&
+                        walls_->open_area()[a][face] > 0)
+                        u[a][face] = before[a][face] + fallen[a];
+                }
+        }
+    }
+
+    void extend(FaceField<Dim>& u) { extension_.extend(u, {wet_, rows_, held(), walls(), still_}); }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
     /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
@@ -184,16 +211,16 @@ private:
         Field<Real>& f = liquid_.fraction();
         const auto shares = [&](const PlaceFunction<Dim>& water, auto&& wanted) {
             if (!water) return;
-            const auto both = [&](const Point<Dim>& x) {
-                return params.wall ? std::min(params.wall(x), water(x)) : water(x);
-            };
             typename Walls<Dim>::Params how{.closed_below = 0, .may_close_all = true, .bounded_slope = false};
-            const Walls<Dim> filled(*grid_, both, how);
+            const Walls<Dim> filled(*grid_, water, how);
             grid_->for_each(
                 [&](const CellNumber<Dim>& cell, Offset c) {
                     if (!wanted(cell) || !is_open(c)) return;
-                    const Real open = walls_ ? walls_->open_volume()[c] : 1;
-                    f[c] = std::clamp(filled.open_volume()[c] / open, Real(0), Real(1));
+                    const Real share = filled.open_volume()[c];
+                    const bool cut = walls_ && (liquid_.marks()[c] & cell_mark::whole) == 0;
+                    f[c] = cut && share > 0 && share < 1
+                               ? WaterAmongWalls<Dim>::share(*grid_, cell, params.wall, water)
+                               : share;
                 },
                 Layout<Dim>::ghosts);
         };
@@ -272,7 +299,13 @@ private:
             }
         });
         open_ = projection.outflows(wet_);
-        for (const auto& open : open_in_) open_.insert(open_.end(), open.begin(), open.end());
+        still_.clear();
+        for (const auto& found : open_in_)
+            for (const OpenFace& open : found)
+                if (open.slope != 0)
+                    open_.push_back(open);
+                else
+                    still_.push_back({open.face, open.axis});
     }
 
     struct Place {
@@ -287,6 +320,10 @@ private:
             const auto add = [&](Offset face, int above) {
                 const Offset wet = above > 0 ? c + s : c - s;
                 if (wet_[wet] == 0 || (walls_ && walls_->open_area()[a][face] == 0)) return;
+                if (walls_ && liquid_.is_ashore(c)) {
+                    open.push_back({face, wet, a});
+                    return;
+                }
                 const Real plain = above / grid_->gap(a, above > 0 ? number + 1 : number);
                 const Real share = liquid_.surface_share(wet, level + above * up, a, -above, least_share);
                 open.push_back({face, wet, a, plain / share, plain});
@@ -312,6 +349,7 @@ private:
     PerAxis<WetRows<Dim>, Dim> faces_;
     VelocityExtension<Dim> extension_;
     std::vector<OpenFace> open_;
+    std::vector<WaterFace> still_;
     std::vector<std::vector<OpenFace>> open_in_;  ///< [plane]
 };
 

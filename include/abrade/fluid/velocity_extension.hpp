@@ -1,31 +1,47 @@
 #pragma once
 // Velocities of the air beside water: the water's, carried on outward.
 
+#include <abrade/fluid/walls.hpp>
 #include <abrade/fluid/wet_rows.hpp>
 
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace abrade {
 
+/// A face of the velocity component along an axis.
+struct WaterFace {
+    Offset face = 0;
+    int axis = 0;
+};
+
 /// Gives faces between dry cells the mean of the known velocities around them, layer by layer outward from
 /// the water, as far as the stencils of the next step reach. Known are faces of wet cells; beyond the first
-/// layer also those that hold liquid of their own, which fly on as they do. Same bits for any number of
-/// threads.
+/// layer also those that hold liquid of their own, which fly on as they do; beside walls, beyond the last.
+/// Same bits for any number of threads.
 template <int Dim>
 class VelocityExtension {
 public:
     static constexpr int layers = 3;
+    static constexpr int wedge = 8;  ///< longest of water on a wall that has no pressure of its own [cells]
 
     explicit VelocityExtension(const Layout<Dim>& layout)
         : layout_(layout), state_(layout.total, unknown), before_(layout),
-          found_(static_cast<std::size_t>(layout.planes())) {}
+          found_(static_cast<std::size_t>(layout.planes())), waiting_(found_) {}
 
-    /// `wet`: cells whose pressure is known, ghosts included; `rows`: rows to be looked at; `held`: share of
-    /// a cell that liquid fills; `open_area` may be none.
+    struct Water {
+        const Field<std::uint8_t>& wet;      ///< 1 where the pressure is known, ghosts included
+        const WetRows<Dim>& rows;            ///< to be looked at
+        const Field<Real>& held;             ///< share of a cell that liquid fills [-]
+        const Walls<Dim>* walls;             ///< may be none
+        std::span<const WaterFace> still{};  ///< faces of wet cells that no pressure moves
+    };
+
     template <class State>
-    void extend(FaceField<Dim, State>& u, const Field<std::uint8_t>& wet, const WetRows<Dim>& rows,
-                const Field<State>& held, const FaceField<Dim>* open_area) {
+    void extend(FaceField<Dim, State>& u, const Water& water) {
+        const auto& [wet, rows, held, walls, still] = water;
         // Where water has left nothing is known any more.
         before_.for_each_row([&](int plane, int row, const RowRange& r) {
             std::fill_n(state_.data() + layout_.row_start(plane, row) + r.begin, r.length(), unknown);
@@ -33,14 +49,17 @@ public:
         before_ = rows;
         for (int a = 0; a < Dim; ++a) {
             begin(a, wet, rows);
-            if (open_area) close((*open_area)[a], u[a], rows);
+            for (const WaterFace& face : still)
+                if (face.axis == a) state_[face.face] = unknown;
+            if (walls) close(walls->open_area()[a], u[a], rows);
             riders_[a].clear();
             for (int layer = 0; layer < layers; ++layer) {
                 take_means(u[a], rows);
                 if (layer == 0) find_riders(a, held);
                 know_found(rows);
-                if (layer == 0) know_liquid(a, held, rows);
+                if (layer == 0) know_liquid(a, held, rows, walls);
             }
+            if (walls) extend_wedges(u[a], rows);
             rows.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = layout_.row_start(plane, row);
                 State* const __restrict v = u[a].data() + start;
@@ -107,7 +126,6 @@ private:
     /// One layer.
     template <class State>
     void take_means(Field<State>& u, const WetRows<Dim>& rows) {
-        const auto stride = layout_.stride;
         rows.for_each_plane([&](int plane) {
             std::vector<Offset>& found = found_[static_cast<std::size_t>(plane)];
             found.clear();
@@ -117,15 +135,19 @@ private:
                 for_edge_cells(state_, layout_, start, r, [&](int i) { found.push_back(start + i); });
             }
             // None of them is known before all have their value.
-            for (const Offset c : found) {
-                State sum = 0;
-                int count = 0;
-                for (const Offset s : stride)
-                    for (const Offset n : {c - s, c + s})
-                        if (state_[n] == known) sum += u[n], ++count;
-                u[c] = sum / static_cast<State>(count);
-            }
+            for (const Offset c : found) take_mean(u, c);
         });
+    }
+    /// Of what is known beside a face; answers whether anything is.
+    template <class State>
+    bool take_mean(Field<State>& u, Offset c) const noexcept {
+        State sum = 0;
+        int count = 0;
+        for (const Offset s : layout_.stride)
+            for (const Offset n : {c - s, c + s})
+                if (state_[n] == known) sum += u[n], ++count;
+        if (count > 0) u[c] = sum / static_cast<State>(count);
+        return count > 0;
     }
     void know_found(const WetRows<Dim>& rows) {
         rows.for_each_plane([&](int plane) {
@@ -133,13 +155,29 @@ private:
         });
     }
 
-    /// While faces of the first layer are found, but not yet known.
+    /// Farther along water on walls; what is not reached flies on.
     template <class State>
-    void find_riders(int a, const Field<State>& held) {
+    void extend_wedges(Field<State>& u, const WetRows<Dim>& rows) {
+        rows.for_each_plane([&](int plane) { found_[static_cast<std::size_t>(plane)].clear(); });
+        for (int layer = layers; layer < wedge; ++layer) {
+            for (std::size_t p = 0; p < waiting_.size(); ++p)
+                for (const Offset c : waiting_[p])
+                    if (state_[c] == unknown && take_mean(u, c)) found_[p].push_back(c);
+            know_found(rows);
+        }
+        for (auto& waiting : waiting_) {
+            for (const Offset c : waiting)
+                if (state_[c] == unknown) state_[c] = known;
+            waiting.clear();
+        }
+    }
+
+    /// While faces of the first layer are found, but not yet known.
+    void find_riders(int a, const Field<Real>& held) {
         const auto wet = [&](Offset c) { return state_[c] == known; };
         for (const auto& found : found_)
             for (const Offset c : found) {
-                if (held[c] + held[c - layout_.stride[a]] < State(1e-6)) continue;
+                if (held[c] + held[c - layout_.stride[a]] < 1e-6) continue;
                 int count = 0;
                 for (const Offset s : layout_.stride) count += wet(c - s) + wet(c + s);
                 for (const Offset s : layout_.stride)
@@ -148,18 +186,30 @@ private:
             }
     }
 
-    /// Drops and sheets thinner than a cell.
-    template <class State>
-    void know_liquid(int a, const Field<State>& held, const WetRows<Dim>& rows) {
+    /// Drops and sheets thinner than a cell. Not beside cells that `walls` cut: where a surface meets a wall
+    /// at a shallow angle it ends in a wedge of several such cells, which lies on the wall.
+    void know_liquid(int a, const Field<Real>& held, const WetRows<Dim>& rows, const Walls<Dim>* walls) {
         const Offset back = layout_.stride[a];
         rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout_.row_start(plane, row);
-            const State* const __restrict h = held.data() + start;
+            const Real* const __restrict h = held.data() + start;
             std::uint8_t* const __restrict state = state_.data() + start;
+            if (walls) {
+                const Real* const open = walls->open_volume().data() + start;
+                auto& waiting = waiting_[static_cast<std::size_t>(plane)];
+                for (int i = r.begin; i < r.end; ++i) {
+                    if (state[i] != unknown || !(h[i] + h[i - back] > 1e-6)) continue;
+                    if (open[i] == 1 && open[i - back] == 1)
+                        state[i] = known;
+                    else
+                        waiting.push_back(start + i);
+                }
+                return;
+            }
             for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
 #pragma omp simd
                 for (int i = first; i < first + lanes; ++i) {
-                    const bool found = (state[i] == unknown) & (h[i] + h[i - back] > State(1e-6));
+                    const bool found = (state[i] == unknown) & (h[i] + h[i - back] > 1e-6);
                     state[i] = static_cast<std::uint8_t>(state[i] | (found ? known : unknown));
                 }
             trim(state, r);
@@ -171,7 +221,8 @@ private:
     Field<std::uint8_t> state_;
     WetRows<Dim> before_;  ///< looked at the last time
     PerAxis<std::vector<Rider>, Dim> riders_;
-    std::vector<std::vector<Offset>> found_;  ///< [plane] faces of a layer
+    std::vector<std::vector<Offset>> found_;    ///< [plane] faces of a layer
+    std::vector<std::vector<Offset>> waiting_;  ///< [plane] faces of water on walls
 };
 
 }  // namespace abrade

@@ -23,6 +23,56 @@ public:
     std::array<Pack, Dim> normals(int attempts, const Real* fraction, const std::uint8_t* marks,
                                   std::uint8_t asked, const detail::PackCells& cells,
                                   const detail::PackCells& levels) const noexcept {
+        return solve(problem_of(fraction, marks, asked, cells, levels), attempts);
+    }
+
+    /// How firmly the cells around hold a normal that has been found: the least eigenvalue of the squares'
+    /// second derivatives. 0: it may turn, and none of them would have another fraction.
+    Real hold(const Point<Dim>& found, const Real* fraction, const std::uint8_t* marks, Index cell,
+              Index level) const noexcept {
+        detail::PackCells cells, levels;
+        cells.fill(cell), levels.fill(level);
+        const Problem problem = problem_of(fraction, marks, cell_mark::whole, cells, levels);
+        int held = 0;
+        const Real largest = found.cwiseAbs().maxCoeff(&held);
+        Normal normal;
+        for (int a = 0; a < Dim; ++a) normal[static_cast<std::size_t>(a)] = Pack(found[a] / largest);
+        const Misfit now = misfit(problem, normal);
+        std::array<Misfit, unknowns> changed;
+        for (int a = 0, u = 0; a < Dim; ++a) {
+            if (a == held) continue;
+            Normal turned = normal;
+            turned[static_cast<std::size_t>(a)] += Pack(difference);
+            changed[static_cast<std::size_t>(u++)] = misfit(problem, turned);
+        }
+        Real aa = 0, ab = 0, bb = 0;
+        for (std::size_t k = 0; k < size; ++k) {
+            const Real ja = (changed[0].each[k][0] - now.each[k][0]) / difference;
+            const Real jb = Dim == 3 ? (changed[unknowns - 1].each[k][0] - now.each[k][0]) / difference : 0;
+            aa += ja * ja, ab += ja * jb, bb += jb * jb;
+        }
+        return Dim == 2 ? aa : 0.5 * (aa + bb - std::sqrt(square(aa - bb) + 4 * ab * ab));
+    }
+
+private:
+    static constexpr Real difference = 1e-6;
+    static constexpr int size = detail::Stencil<Dim>::size, own = detail::Stencil<Dim>::own;
+    static constexpr int vertical = Grid<Dim>::vertical;
+    static constexpr int unknowns = Dim - 1;
+    using Normal = std::array<Pack, Dim>;
+
+    struct Problem {
+        std::array<Pack, size> fraction, weight;
+        bool stretched;
+        std::array<Pack, 3> ratio, shift;  ///< of the levels below, at and above: edge, centre; in own edges
+    };
+    struct Misfit {
+        std::array<Pack, size> each;
+        Pack squares;
+    };
+
+    Problem problem_of(const Real* fraction, const std::uint8_t* marks, std::uint8_t asked,
+                       const detail::PackCells& cells, const detail::PackCells& levels) const noexcept {
         Problem problem{};
         problem.stretched = !sizes_.uniform();
         for (int k = 0; k < size; ++k) {
@@ -46,24 +96,8 @@ public:
                                          v == 0 ? -sizes_.gap(level) / edge : sizes_.gap(level + 1) / edge);
             }
         }
-        return solve(problem, attempts);
+        return problem;
     }
-
-private:
-    static constexpr int size = detail::Stencil<Dim>::size, own = detail::Stencil<Dim>::own;
-    static constexpr int vertical = Grid<Dim>::vertical;
-    static constexpr int unknowns = Dim - 1;
-    using Normal = std::array<Pack, Dim>;
-
-    struct Problem {
-        std::array<Pack, size> fraction, weight;
-        bool stretched;
-        std::array<Pack, 3> ratio, shift;  ///< of the levels below, at and above: edge, centre; in own edges
-    };
-    struct Misfit {
-        std::array<Pack, size> each;
-        Pack squares;
-    };
 
     /// Differences between neighbours across the stencil, as Youngs weighs them; pairs of which one is not
     /// known are left out.
@@ -156,7 +190,6 @@ private:
         Pack trust = Pack(1);
         PackMask active = now.squares > Pack(1e-26);
         for (int attempt = 0; attempt < attempts && any(active); ++attempt) {
-            constexpr Real difference = 1e-6;
             std::array<Misfit, unknowns> changed;
             for (std::size_t u = 0; u < unknowns; ++u) {
                 std::array<Pack, unknowns> by;

@@ -83,6 +83,7 @@ public:
                  "one of them");
         open_faces_ = open_faces;
         open_volumes_ = open_volumes;
+        at_walls_.set_walls(open_faces, open_volumes);
         marks_ = surface_marks(grid_, sides_, open_volumes_);
     }
 
@@ -167,8 +168,16 @@ public:
     /// the surface beside it tells. Pressure lives in these cells.
     bool is_liquid(Offset cell) const noexcept {
         const Index i = plane_of_[cell];
-        if (i < 0 || (marks_[cell] & cell_mark::whole) != 0) return fraction_[cell] >= 0.5;
-        return planes_.position[static_cast<std::size_t>(i)] >= 0;
+        if (i < 0 || planes_.told[index(i)] == 0 || fraction_[cell] < little) return fraction_[cell] >= 0.5;
+        return planes_.position[index(i)] >= 0;
+    }
+
+    /// Whether a dry cell is that for its wall alone: its centre lies below the surface, all of its open part
+    /// above. Nothing tells where on the way to it the pressure is 0.
+    bool is_ashore(Offset dry) const noexcept {
+        const Index i = plane_of_[dry];
+        return i >= 0 && planes_.told[index(i)] != 0 && fraction_[dry] < little &&
+               planes_.position[index(i)] >= 0;
     }
 
     /// Where the surface is between the centres of two neighbours, as a share of their distance from the
@@ -181,13 +190,11 @@ public:
         const Real edge = sizes_.edge(axis, level), air_edge = sizes_.edge(axis, air_level);
         const Real gap = along_vertical ? sizes_.gap(std::max(level, air_level)) : edge;
         const Real face = 0.5 * edge / gap;
-        // A trace of air or of water tells nothing of where the surface is.
-        constexpr Real trace = SurfaceBand<Dim>::smallest_void;
         // Beyond its own half a plane counts only where it is the only one, and then no farther than the
         // other centre.
         const auto crossing = [&](Offset cell, Real from, Real direction, Real per_gap, bool& found) {
             const Index i = plane_of_[cell];
-            found = i >= 0 && fraction_[cell] > trace && fraction_[cell] < 1 - trace;
+            found = tells(cell);
             if (!found) return face;
             const auto k = static_cast<std::size_t>(i);
             const Real slope = planes_.normal[index(axis)][k] * direction;
@@ -200,7 +207,7 @@ public:
         // planes.
         const auto depth = [&](Offset cell, Index cell_level, Real& found) {
             const Index i = plane_of_[cell];
-            if (i < 0 || fraction_[cell] <= trace || fraction_[cell] >= 1 - trace) return false;
+            if (!tells(cell)) return false;
             const auto k = static_cast<std::size_t>(i);
             const auto slope = [&](int a) {
                 return planes_.normal[index(a)][k] / sizes_.edge(a, cell_level);
@@ -227,6 +234,15 @@ public:
     }
 
 private:
+    static constexpr Real little = 1e-5;  ///< less liquid of a cell than this has no momentum to speak of [-]
+    /// A trace of air or of water tells nothing of where the surface is, but in a cell that a wall cuts.
+    bool tells(Offset cell) const noexcept {
+        constexpr Real trace = SurfaceBand<Dim>::smallest_void;
+        const Index i = plane_of_[cell];
+        return i >= 0 &&
+               (planes_.told[index(i)] != 0 || (fraction_[cell] > trace && fraction_[cell] < 1 - trace));
+    }
+
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner;
     static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
 

@@ -40,7 +40,12 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
     const auto cells = band_.cells();
     const auto levels = band_.levels();
     const auto count = static_cast<Index>(cells.size());
-    const auto cut = [&](Index c) { return fraction_[c] > wisp && fraction_[c] < 1 - wisp; };
+    const bool keep = within_step && !params_.fit_every_sweep;
+    const auto partly = [&](Index c) { return fraction_[c] > wisp && fraction_[c] < 1 - wisp; };
+    const auto cut = [&](Index c) {
+        return partly(c) ||
+               (!keep && open_volumes_ && at_walls_.is_dry_beside_water(c, fraction_.data(), marks_.data()));
+    };
     std::vector<Index> first(static_cast<std::size_t>(block_count(count)) + 1, 0);
     parallel_blocks(count, [&](Index block, Index begin, Index end) {
         Index number = 0;
@@ -50,7 +55,6 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
     for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
     std::swap(planes_, planes_before_);
     planes_.resize(static_cast<std::size_t>(first.back()));
-    const bool keep = within_step && !params_.fit_every_sweep;
     parallel_blocks(count, [&](Index block, Index begin, Index end) {
         auto next = static_cast<std::size_t>(first[static_cast<std::size_t>(block)]);
         for (Index i = begin; i < end; ++i) {
@@ -59,10 +63,11 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
             const Index before = keep ? plane_of_[cells[k]] : -1;
             planes_.cell[next] = cells[k];
             planes_.level[next] = levels[k];
-            planes_.has_normal[next] = before >= 0;
-            if (before >= 0)
+            planes_.has_normal[next] = before >= 0 || !partly(cells[k]), planes_.told[next] = 0;
+            if (planes_.has_normal[next])
                 for (std::size_t a = 0; a < Dim; ++a)
-                    planes_.normal[a][next] = planes_before_.normal[a][static_cast<std::size_t>(before)];
+                    planes_.normal[a][next] =
+                        before >= 0 ? planes_before_.normal[a][static_cast<std::size_t>(before)] : 0;
             ++next;
         }
     });

@@ -81,6 +81,9 @@ public:
         return lead_ != 0;
     }
 
+    /// Before the last step, and before it was moved on.
+    const FaceField<Dim>& velocity() const noexcept { return velocity_; }
+    const Field<std::uint8_t>& wet() const noexcept { return wet_; }
     void took(Real dt) noexcept { last_step_ = dt; }
 
     /// Puts all of it back.
