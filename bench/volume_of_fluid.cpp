@@ -50,6 +50,8 @@ void measure(benchmark::State& state, Tank& tank) {
     }
     state.counters["s/wet_cell"] =
         benchmark::Counter(cells, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["s/cut_cell"] =
+        benchmark::Counter(cut, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
     state.counters["wet_cells"] = cells / static_cast<double>(state.iterations());
     state.counters["cut_share"] = cut / cells;
     state.SetLabel(std::string(instruction_set));

@@ -4,6 +4,7 @@
 #include "run_channel.hpp"
 
 #include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/inflow.hpp>
 
 namespace abrade::examples {
 
@@ -13,35 +14,32 @@ using Flow = GridFluid<3, FreeSurface, Limited, Real, MixingLength>;
 
 Flow grid_channel(const ChannelConfig& c) {
     const WaterStart start(c);
-    const UniformFlow& uniform = start.uniform;
     const Real depth = start.depth;
-    const Real half = 0.5 * c.invert.width;
+    const Real half = 0.5 * c.invert.width, roughness = std::pow(26 * c.water.manning, 6);
     const CellNumber<3> count{cells_along(c, c.invert.length), cells_along(c, c.invert.width),
                               cells_along(c, std::max(2 * depth, depth + c.invert.bed_height(half)))};
     const Point<3> size(c.invert.length / count[0], c.invert.width / count[1], c.fluid.spacing);
     Sides<3> sides;
-    sides[0] = {Side::inflow, Side::outflow};
+    sides[0][1] = Side::outflow;
     sides[2] = {Side::slip, Side::slip};
-    // The profile of uniform flow, at the depth that is given: what enters is the discharge.
-    const Real share = c.invert.flow_area(uniform.depth()) / c.invert.flow_area(depth);
-    const auto enters = [uniform, depth, share](const Point<3>& x, Real) {
-        const Real z = std::min(x.z(), depth) * uniform.depth() / depth;
-        return x.x() > 0 ? Point<3>::Zero().eval()
-                         : Point<3>(share * uniform.sample({0, x.y(), z}, 0).velocity.x(), 0, 0);
-    };
     try {
-        return Flow({.grid = {.cells = count, .low = {0, -half, 0}, .spacing = size},
-                     .sides = sides,
-                     .side_velocity = enters,
-                     .wall = InvertWall(c.invert),
-                     .wall_law = {WallLaw::Kind::logarithmic, std::pow(26 * c.water.manning, 6)},
-                     .inflow_water = [depth](const Point<3>& x) { return depth - x.z(); },
-                     .gravity = c.invert.gravity(),
-                     .density = c.water.density,
-                     .viscosity = c.water.viscosity,
-                     .tolerance = 1e-5,
-                     .start_time = -start.settle},
-                    {.depth = uniform.depth()});
+        GridFluidParams<3> params{.grid = {.cells = count, .low = {0, -half, 0}, .spacing = size},
+                                  .sides = sides,
+                                  .wall = InvertWall(c.invert),
+                                  .wall_law = {WallLaw::Kind::logarithmic, roughness},
+                                  .gravity = c.invert.gravity(),
+                                  .density = c.water.density,
+                                  .viscosity = c.water.viscosity,
+                                  .tolerance = 1e-5,
+                                  .start_time = -start.settle};
+        // The profile of uniform flow, at the depth that is given: what enters is the discharge.
+        const Inflow<3> stream({.discharge = c.water.discharge,
+                                .depth = depth,
+                                .section = c.invert,
+                                .profile = InflowProfile::logarithmic,
+                                .roughness = roughness});
+        stream.give_to(params);
+        return Flow(std::move(params), {.depth = start.uniform.depth()});
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());
     }

@@ -174,7 +174,7 @@ if __name__ == "__main__":
     with open(out, "w", newline="") as file:
         file.write(f"# OpenFOAM {version_of('openfoam', 'icoFoam')}, Debian's build, one core of {processor()}, "
                    f"{datetime.date.today()}, load {os.getloadavg()[0]:.1f}\n")
-        writer = csv.DictWriter(file, rows[0].keys())
+        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
     print(f"-> {out.relative_to(root)}")

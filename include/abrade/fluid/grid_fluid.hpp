@@ -78,7 +78,7 @@ public:
         fastest_ = std::max(fastest_, enters_);
         find_eddies();
         if constexpr (has_surface) {
-            record_ = detail::WaterRecord<Dim>(velocity_, stage_, *water_);
+            record_ = detail::WaterRecord<Dim>(*grid_, velocity_, stage_, *water_);
             heights_ = detail::SurfaceHeights<Dim>(*grid_, water_->walls());
             heights_.find(*grid_, water_->rows(), water_->held());
         } else {
@@ -106,12 +106,13 @@ public:
     FluidStep stable_step() const {
         FluidStep step;
         if (params_.largest_step > 0) step.lower(params_.largest_step, "largest_step");
+        const Point<Dim> falls = params_.acceleration(time_);
         Real per_h2 = 0, fall = 0, shortest = std::numeric_limits<Real>::infinity();
         for (int a = 0; a < Dim; ++a) {
             Real size = std::numeric_limits<Real>::infinity();
             for (int i = 0; i < grid_->cells(a); ++i) size = std::min(size, grid_->size(a, i));
             per_h2 += 1 / square(size);
-            fall += std::abs(params_.gravity[a]) / size;
+            fall += std::abs(falls[a]) / size;
             shortest = std::min(shortest, size);
         }
         // Heun's method is stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum
@@ -127,7 +128,7 @@ public:
                            "CFL");
             step.lower(water_->liquid().stable_step(velocity_), "volume of fluid");
             // The shortest wave that the grid knows, of two cells, must not cross a cell.
-            if (fall > 0) step.lower(std::sqrt(pi * shortest / params_.gravity.norm()), "gravity wave");
+            if (fall > 0) step.lower(std::sqrt(pi * shortest / falls.norm()), "gravity wave");
         } else if (fastest_ > 0) {
             step.lower(params_.courant / fastest_, "CFL");
         }
@@ -213,9 +214,10 @@ private:
     /// how water at rest is accelerated [m/s2].
     void find_pressure_of_weight() {
         for (auto& component : stage_) component.fill(0);
-        if (params_.gravity.isZero()) return;
+        const Point<Dim> falls = params_.acceleration(time_);
+        if (falls.isZero()) return;
         for (int a = 0; a < Dim; ++a) {
-            stage_[a].fill(params_.gravity[a]);
+            stage_[a].fill(falls[a]);
             for (const bool high : {false, true}) {
                 const Side side = params_.sides[a][high];
                 if (side == Side::periodic || side == Side::outflow) continue;
@@ -241,8 +243,9 @@ private:
     void step_full(Real dt) {
         saved_pressure_ = pressure_;  // the velocity is kept by the second stage
         sides_.fill_cells(pressure_);
+        const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
         const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
-            Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), params_.gravity};
+            Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
             advance(projection_.faces(), s);
             sides_.leave(result);
         };
@@ -267,8 +270,10 @@ private:
             restore();
             throw FluidError(place_in_time(dt) + beyond.what());
         }
+        // The velocity goes from half a step before the new surface to half a step behind it.
+        const Point<Dim> falls = params_.acceleration(time_ + dt);
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
-            Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), params_.gravity};
+            Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), falls};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
             s.open_area = water.open_area(), s.open_middle = water.open_middle();
             advance(water.faces(), s);

@@ -12,6 +12,10 @@ namespace abrade {
 template <int Dim>
 using PlaceFunction = std::function<Real(const Point<Dim>&)>;
 
+/// What acts on a unit mass at a time [s], beside gravity [m/s2].
+template <int Dim>
+using BodyForce = std::function<Point<Dim>(Real)>;
+
 /// What water on a grid is made from.
 template <int Dim>
 struct GridFluidParams {
@@ -28,15 +32,25 @@ struct GridFluidParams {
     PlaceFunction<Dim> inflow_water{};                        ///< the same beyond sides where water flows in
     std::function<Point<Dim>(const Point<Dim>&)> velocity{};  ///< at the start; none: at rest
     Point<Dim> gravity = Point<Dim>::Zero();                  ///< [m/s2]
-    Real density = 1000;                                      ///< [kg/m3]
-    Real viscosity = 1.31e-3;                                 ///< dynamic [Pa s]
-    Real courant = 0.5;                                       ///< limit of dt sum |u_a| / h_a [-]
-    Real largest_step = 0;                                    ///< [s]; 0: none
+    /// In a tank that moves: minus its acceleration. Smooth over a step, or with a `largest_step` that makes
+    /// it so; none: gravity alone.
+    BodyForce<Dim> body_force{};
+    Real density = 1000;       ///< [kg/m3]
+    Real viscosity = 1.31e-3;  ///< dynamic [Pa s]
+    Real courant = 0.5;        ///< limit of dt sum |u_a| / h_a [-]
+    Real largest_step = 0;     ///< [s]; 0: none
     /// Root mean square of the share of its volume that a cell may gain or lose in a step [-]. Where there is
     /// a surface the next step takes it back: no volume is lost, whatever the tolerance.
     Real tolerance = 1e-6;
     Real fastest = 100;   ///< beyond it a run is wrong [m/s]
     Real start_time = 0;  ///< [s]; before 0: it settles before the solids begin
+
+    /// Gravity and body force at a time [m/s2].
+    Point<Dim> acceleration(Real time) const {
+        Point<Dim> sum = gravity;
+        if (body_force) sum += body_force(time);
+        return sum;
+    }
 
     void validate() const {
         grid.validate();
@@ -44,6 +58,11 @@ struct GridFluidParams {
         wall_law.validate();
         for (int a = 0; a < Dim; ++a)
             require_finite(gravity[a], std::string("GridFluid.gravity.") + Grid<Dim>::axis_name(a), "m/s2");
+        require_finite(start_time, "GridFluid.start_time", "s");
+        if (body_force)
+            for (int a = 0; a < Dim; ++a)
+                require_finite(body_force(start_time)[a],
+                               std::string("GridFluid.body_force.") + Grid<Dim>::axis_name(a), "m/s2");
         require_positive(density, "GridFluid.density", "kg/m3", "water has 1000 kg/m3");
         require_not_negative(viscosity, "GridFluid.viscosity", "Pa s",
                              "water has 1.31e-3 Pa s at 10 degrees C");
@@ -54,7 +73,6 @@ struct GridFluidParams {
         require(tolerance > 0 && tolerance <= 0.01,
                 {"GridFluid.tolerance", "in (0, 0.01]", "", "1e-6 is usual, 1e-4 is fast"}, tolerance);
         require_positive(fastest, "GridFluid.fastest", "m/s", "100 m/s is far beyond any channel");
-        require_finite(start_time, "GridFluid.start_time", "s");
         bool in = false, out = false;
         for (int a = 0; a < Dim; ++a)
             for (const Side side : sides[a])

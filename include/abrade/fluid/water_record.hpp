@@ -13,25 +13,36 @@ class WaterRecord {
 public:
     WaterRecord() = default;
     /// At the start; `acceleration`: of the water as it stands [m/s2].
-    WaterRecord(const FaceField<Dim>& velocity, const FaceField<Dim>& acceleration,
+    WaterRecord(const Grid<Dim>& grid, const FaceField<Dim>& velocity, const FaceField<Dim>& acceleration,
                 const SurfaceWater<Dim>& water)
-        : rows_(water.rows()), velocity_(velocity), pressure_(water.wet().size()), wet_(water.wet()),
-          fraction_(water.liquid().fraction()), surplus_(water.liquid().surplus()) {
-        for (int a = 0; a < Dim; ++a)
-            for (Offset c = 0; c < velocity_[a].size(); ++c) velocity_[a][c] -= acceleration[a][c];
+        : rows_(water.rows()), velocity_(velocity), change_(face_field<Dim, float>(grid.layout())),
+          pressure_(water.wet().size()), wet_(water.wet()), fraction_(water.liquid().fraction()),
+          surplus_(water.liquid().surplus()) {
+        for (int a = 0; a < Dim; ++a) {
+            for (Offset c = 0; c < change_[a].size(); ++c)
+                change_[a][c] = static_cast<float>(acceleration[a][c]);
+            size_[a] = grid.size(a, 0);
+            for (int k = 1; k < grid.cells(a); ++k) size_[a] = std::min(size_[a], grid.size(a, k));
+        }
     }
 
     /// Keeps what there is before a step of dt [s], and leads: returns whether the velocity has changed.
     ///
     /// Liquid and velocity leap over each other, so the velocity stands half a step ahead. At the start it is
-    /// moved there; where the length of the step changes so does that, and water is moved on by its last
-    /// change. Or waves would gain energy by steps that follow their speed.
+    /// moved there; where the length of the step changes so does that, and water is moved on by its change in
+    /// the last step. Or waves would gain energy by steps that follow their speed. No further than a
+    /// quarter of a cell then: an impact's change does not go on.
     bool keep(FaceField<Dim>& velocity, const Field<Real>& pressure, const SurfaceWater<Dim>& water,
               Real dt) {
         const WetRows<Dim> before = std::exchange(rows_, water.rows());
-        // At the start what was kept lacks the acceleration of one second.
-        const Real lead = last_step_ == 0 ? 0.5 * dt : std::clamp(0.5 * (dt / last_step_ - 1), -0.5, 0.5);
+        // Of the change at the start, which is that of one second, half a step; then of the last step's.
+        const bool knows = last_step_ == 0 || restored_;
+        const Real led = std::exchange(
+            lead_, last_step_ == 0 ? 0.5 * dt : std::clamp(0.5 * (dt / last_step_ - 1), -0.5, 0.5));
+        const Real led_far =
+            std::exchange(far_, last_step_ == 0 ? std::numeric_limits<Real>::infinity() : 0.25);
         for (int a = 0; a < Dim; ++a) {
+            const Real most = far_ * size_[a] / dt, led_most = led_far * size_[a] / last_step_;
             const Offset back = rows_.layout().stride[a];
             rows_.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = rows_.layout().row_start(plane, row);
@@ -42,6 +53,7 @@ public:
                 const std::uint8_t* const __restrict was_wet_back = was_wet - back;
                 Real* const __restrict now = velocity[a].data() + start;
                 Real* const __restrict kept = velocity_[a].data() + start;
+                float* const __restrict changes = change_[a].data() + start;
                 // What is given to air is no change of its own.
                 const int begin = std::max(r.begin, known.begin), end = std::min(r.end, known.end);
                 constexpr int lanes = Layout<Dim>::lanes;
@@ -49,10 +61,13 @@ public:
 #pragma omp simd
                     for (int i = first; i < first + lanes; ++i) {
                         const int of_water = (wet[i] | wet_back[i]) & (was_wet[i] | was_wet_back[i]);
-                        const Real old = kept[i], change = now[i] - old;
                         const bool stays = of_water != 0 && i >= begin && i < end;
+                        const Real last = static_cast<Real>(changes[i]);
+                        const Real began = kept[i] + std::clamp(led * last, -led_most, led_most);
+                        const auto change = static_cast<float>(stays ? (knows ? last : now[i] - began) : 0);
                         kept[i] = now[i];
-                        now[i] += lead * (stays ? change : 0);
+                        changes[i] = change;
+                        now[i] += std::clamp(lead_ * static_cast<Real>(change), -most, most);
                     }
             });
         }
@@ -60,7 +75,8 @@ public:
         rows_.copy(pressure, pressure_);
         rows_.copy(water.liquid().fraction(), fraction_);
         rows_.copy(water.liquid().surplus(), surplus_);
-        return lead != 0;
+        restored_ = false;
+        return lead_ != 0;
     }
 
     /// Before the last step, and before it was moved on.
@@ -69,19 +85,25 @@ public:
     void took(Real dt) noexcept { last_step_ = dt; }
 
     /// Puts all of it back.
-    void restore(FaceField<Dim>& velocity, Field<Real>& pressure, SurfaceWater<Dim>& water) const {
+    void restore(FaceField<Dim>& velocity, Field<Real>& pressure, SurfaceWater<Dim>& water) {
         rows_.copy(velocity_, velocity);
         rows_.copy(pressure_, pressure);
         water.restore(fraction_, surplus_, rows_);
+        restored_ = true;
     }
 
 private:
-    WetRows<Dim> rows_;  ///< where it is kept
-    FaceField<Dim> velocity_;
+    Point<Dim> size_;               ///< of the smallest cells [m]
+    WetRows<Dim> rows_;             ///< where it is kept
+    FaceField<Dim> velocity_;       ///< before it was moved on
+    FaceField<Dim, float> change_;  ///< in the step before; at the start the acceleration
     Field<Real> pressure_;
     Field<std::uint8_t> wet_;
     Field<Real> fraction_, surplus_;
-    Real last_step_ = 0;  ///< [s]
+    Real last_step_ = 0;     ///< [s]
+    Real lead_ = 0;          ///< of that change, by which the velocity was moved on [-]; [s] at the start
+    Real far_ = 0;           ///< no further than this [cell]
+    bool restored_ = false;  ///< the change is that of the present velocity
 };
 
 }  // namespace abrade::detail

@@ -163,7 +163,7 @@ template <int Dim>
 void for_edge_cells(const Field<std::uint8_t>& marks, const Layout<Dim>& layout, Offset row_start,
                     const RowRange& r, auto&& body) {
     constexpr int lanes = Layout<Dim>::lanes;
-    const auto [s0, s1, s2] = std::array{layout.stride[0], layout.stride[1], layout.stride[Dim - 1]};
+    const Offset s0 = layout.stride[0], s1 = layout.stride[1], s2 = layout.stride[Dim - 1];
     for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
         const std::uint8_t* const __restrict here = marks.data() + row_start + first;
         alignas(lanes) std::uint8_t edge[lanes];
