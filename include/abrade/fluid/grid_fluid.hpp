@@ -236,11 +236,7 @@ private:
         for (const WaterFace& f : water_->still()) stage_[f.axis][f.face] = 0;
         outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1]});
         projection_.project(stage_, pressure_, 1, 1e-12);
-        // Nothing falls where there is no water: friction of walls would take its part of that.
-        grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
-            for (int a = 0; a < Dim; ++a)
-                if ((water_->wet()[c] | water_->wet()[c - layout().stride[a]]) == 0) stage_[a][c] = 0;
-        });
+        water_->clear_air(stage_);
         finish(stage_);
     }
 

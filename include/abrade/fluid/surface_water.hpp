@@ -134,6 +134,14 @@ public:
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
     }
 
+    /// Nothing falls where there is no water: friction of walls would take its part of that.
+    void clear_air(FaceField<Dim>& u) const {
+        grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
+            for (int a = 0; a < Dim; ++a)
+                if ((wet_[c] | wet_[c - layout().stride[a]]) == 0) u[a][c] = 0;
+        });
+    }
+
     /// Faces of cells cut by walls that have become wet: in both stages the pressure did not know them, and
     /// air has no momentum. They begin as they were, `fallen` faster: so it finds what it finds beside them.
     void begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before, const Field<std::uint8_t>& was_wet,
