@@ -71,9 +71,15 @@ TEST_CASE("level and tilted, in a box and in an invert") {
 }
 
 TEST_CASE("a surface that passes through centres of cells") {
-    const Real depth = 12.5 * cell;
-    const Real found = unrest(pool<2>(depth, 0, false), depth);
-    MESSAGE("box, level, half a cell: " << found << " sqrt(g h)");
-    WARN(found < 1e-6);
-    CHECK(found < 1);
+    const auto check = [](Real found, const std::string& what) {
+        MESSAGE(what << ", surface at centres of cells: " << found << " sqrt(g h)");
+        CHECK(found < 1e-6);
+    };
+    const Real flat = 12.5 * cell, deep = 13 * cell;
+    check(unrest(pool<2>(flat, 0, false), flat), "box, 2-D");
+    // Tilted, it passes through one of them.
+    const Real through = flat - 0.05 / std::sqrt(1 - square(0.05)) * 0.5 * cell;
+    check(unrest(pool<2>(through, 0.05, false), through), "box, 2-D, tilted");
+    check(unrest(pool<3>(deep, 0, false), deep), "box, 3-D");
+    check(unrest(pool<3>(deep, 0.05, false), deep), "box, 3-D, tilted");
 }

@@ -292,6 +292,7 @@ private:
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.friction().take(velocity_, taken, 0.5);
         water.find(projection_, pressure_, sides_);
+        water.weigh_reached(velocity_, 0.5 * dt * falls);
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // At steady sides there is what was there at the beginning of the step.
         if (!params_.steady_sides) sides_.fill(velocity_, &water.rows());

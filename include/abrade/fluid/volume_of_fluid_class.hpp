@@ -173,55 +173,37 @@ public:
 
     /// Where the surface is between the centres of two neighbours, as a share of their distance from the
     /// liquid one, f >= 1/2, to the other one, at `side` (-1 or 1) of it along `axis`. Exact for planes,
-    /// second order for curved surfaces; at least `least`.
-    Real surface_share(Offset liquid, Index level, int axis, int side, Real least = 1e-3) const noexcept {
+    /// second order for curved surfaces. The liquid one's centre counts as `least` of a cell below the
+    /// surface at least, so that shares along all axes tell the same pressure there.
+    Real surface_share(Offset liquid, Index level, int axis, int side, Real least = 0) const noexcept {
         const Offset air = liquid + side * layout_.stride[index(axis)];
         const bool along_vertical = axis == vertical;
         const Index air_level = along_vertical ? level + side : level;
-        const Real edge = sizes_.edge(axis, level), air_edge = sizes_.edge(axis, air_level);
+        const Real edge = sizes_.edge(axis, level);
         const Real gap = along_vertical ? sizes_.gap(std::max(level, air_level)) : edge;
-        const Real face = 0.5 * edge / gap;
-        // A trace of air or of water tells nothing of where the surface is.
-        constexpr Real trace = SurfaceBand<Dim>::smallest_void;
-        // Beyond its own half a plane counts only where it is the only one, and then no farther than the
-        // other centre.
-        const auto crossing = [&](Offset cell, Real from, Real direction, Real per_gap, bool& found) {
-            const Index i = plane_of_[cell];
-            found = i >= 0 && fraction_[cell] > trace && fraction_[cell] < 1 - trace;
-            if (!found) return face;
-            const auto k = static_cast<std::size_t>(i);
-            const Real slope = planes_.normal[index(axis)][k] * direction;
-            const Real distance = planes_.position[k];
-            if (!(slope > 1e-9 * std::abs(distance))) return from == 0 ? Real(1) : Real(0);
-            return from + distance / slope * per_gap;
-        };
+        const Real face = 0.5 * edge / gap, shallow = least * sizes_.edge(vertical, level);
+        Sight own = sight_of(liquid, level, axis), other = sight_of(air, air_level, axis);
+        if (std::abs(own.depth) < shallow) own.depth = shallow;
         // Along a surface that is nearly level a crossing may lie anywhere; the pressure of a column's height
         // falls by the difference of both: the share is that of the distances of both centres from their
         // planes.
-        const auto depth = [&](Offset cell, Index cell_level, Real& found) {
-            const Index i = plane_of_[cell];
-            if (i < 0 || fraction_[cell] <= trace || fraction_[cell] >= 1 - trace) return false;
-            const auto k = static_cast<std::size_t>(i);
-            const auto slope = [&](int a) {
-                return planes_.normal[index(a)][k] / sizes_.edge(a, cell_level);
-            };
-            Real squares = 0;
-            for (int a = 0; a < Dim; ++a) squares += square(slope(a));
-            found = planes_.position[k] / std::sqrt(squares);
-            return square(slope(axis)) < 0.1 * squares;
+        if (own.nearly_level && other.nearly_level && own.depth >= 0 && other.depth < 0)
+            return own.depth / (own.depth - other.depth);
+        // Beyond its own half a plane counts only where it is the only one, and then no farther than the
+        // other centre.
+        const auto crossing = [&](const Sight& of, Real from, Real per_gap) {
+            const Real fall = of.slope * side;
+            if (!of.known) return face;
+            if (!(fall > 1e-9 * std::abs(of.depth) / per_gap)) return from == 0 ? Real(1) : Real(0);
+            return from + of.depth / fall * per_gap;
         };
-        Real below = 0, above = 0;
-        if (depth(liquid, level, below) && depth(air, air_level, above) && below >= 0 && above < 0)
-            return std::clamp(below / (below - above), least, Real(1));
-        bool own = false, other = false;
-        const Real near = crossing(liquid, 0, side, edge / gap, own);
-        const Real far = crossing(air, 1, side, air_edge / gap, other);
+        const Real near = crossing(own, 0, 1 / gap), far = crossing(other, 1, 1 / gap);
         Real share = face;
-        if (own && (!other || near <= face))
+        if (own.known && (!other.known || near <= face))
             share = near;
-        else if (other && (!own || far >= face))
+        else if (other.known && (!own.known || far >= face))
             share = far;
-        else if (own)
+        else if (own.known)
             share = 0.5 * (near + far);
         return std::clamp(share, least, Real(1));
     }
@@ -229,6 +211,24 @@ public:
 private:
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner;
     static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// A cell's plane, seen along an axis; not known where there is none, or a trace of air or of water.
+    struct Sight {
+        bool known = false, nearly_level = false;  ///< level: along the axis
+        Real depth = 0;                            ///< of the centre below the plane, along its normal [m]
+        Real slope = 0;                            ///< component of the unit normal
+    };
+    Sight sight_of(Offset cell, Index level, int axis) const noexcept {
+        constexpr Real trace = SurfaceBand<Dim>::smallest_void;
+        const Index i = plane_of_[cell];
+        if (i < 0 || fraction_[cell] <= trace || fraction_[cell] >= 1 - trace) return {};
+        const auto k = static_cast<std::size_t>(i);
+        const auto slope = [&](int a) { return planes_.normal[index(a)][k] / sizes_.edge(a, level); };
+        Real squares = 0;
+        for (int a = 0; a < Dim; ++a) squares += square(slope(a));
+        const Real per_length = 1 / std::sqrt(squares), along = slope(axis) * per_length;
+        return {true, square(along) < 0.1, planes_.position[k] * per_length, along};
+    }
 
     Real open_volume(Offset c, Index level) const noexcept {
         return sizes_.volume(level) * (open_volumes_ ? (*open_volumes_)[c] : 1);
