@@ -36,6 +36,7 @@ public:
                 fail({std::string("GridFluid.sides.") + Grid<Dim>::axis_name(a),
                       "not periodic where there is a surface", "", "take slip walls, or a FullBox"},
                      "periodic");
+        liquid_.set_gravity(params.gravity);
         if (params.wall) {
             walls_ = std::make_shared<Walls<Dim>>(grid, params.wall);
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());

@@ -1,6 +1,6 @@
 #pragma once
-// The class VolumeOfFluid: what it holds and answers. What a step does stands in volume_sweeps.hpp; users
-// include volume_of_fluid.hpp, which has both.
+// The class VolumeOfFluid: what it holds and answers. What a step does stands in volume_sweeps.hpp and
+// volume_settling.hpp; users include volume_of_fluid.hpp, which has all.
 
 #include <abrade/fluid/surface_at_walls.hpp>
 #include <abrade/fluid/surface_band.hpp>
@@ -85,6 +85,9 @@ public:
         open_volumes_ = open_volumes;
         marks_ = surface_marks(grid_, sides_, open_volumes_);
     }
+
+    /// What films fall off sides by [m/s2]; none: they stay at any side they lie on.
+    void set_gravity(const Point<Dim>& gravity) noexcept { gravity_ = gravity; }
 
     /// To be set by the user, then `prepare`.
     Field<Real>& fraction() noexcept { return fraction_; }
@@ -312,6 +315,7 @@ private:
     void fluxes_of_band(int axis);
     void fluxes_of_planes(int axis);
     void join_periodic(int axis);
+    Real stray(int axis, Offset c, int way, Real volume) const noexcept;
     void even_out_rims(int axis);
     void settle(VolumeStep& step);
     struct Neighbours;
@@ -364,6 +368,7 @@ private:
     std::vector<Index> settled_;      ///< cells of the last band, and those that took what was moved aside
     std::vector<std::uint8_t> bulk_;  ///< [band cell] full, and so are its neighbours
     long steps_ = 0;
+    Point<Dim> gravity_ = Point<Dim>::Zero();
 
     const FaceField<Dim>* velocity_ = nullptr;  ///< of the step at work
     std::array<std::vector<Real>, Dim>
