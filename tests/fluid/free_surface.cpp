@@ -73,7 +73,7 @@ void check_planes(bool stretched) {
                     if (i < 0 || i >= grid.cells(a) || water.fraction()[grid.layout().at(other)] >= 0.5)
                         continue;
                     const Real here = distance(grid.centre(cell)), there = distance(grid.centre(other));
-                    const Real share = std::clamp(here / (here - there), 1e-3, 1.0);
+                    const Real share = std::clamp(here / (here - there), 0.0, 1.0);
                     worst_share = std::max(worst_share,
                                            std::abs(share - water.surface_share(c, cell[Dim - 1], a, side)));
                     ++pairs;
@@ -425,7 +425,7 @@ TEST_CASE("a planar surface is exact up to walls that cut cells") {
                     const Offset o = grid.layout().at(other);
                     const Real there = water_level(grid.centre(other));
                     if (open[o] < 0.02 || there <= 0) continue;
-                    const Real share = std::clamp(here / (here - there), 1e-3, 1.0);
+                    const Real share = std::clamp(here / (here - there), 0.0, 1.0);
                     worst = std::max(worst, std::abs(share - water.surface_share(c, cell[1], a, side)));
                     ++pairs;
                 }

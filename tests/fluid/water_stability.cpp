@@ -158,6 +158,25 @@ TEST_CASE("films thinner than a cell: at rest, flowing, running down a slope to 
     CHECK(fastest(runs) < std::sqrt(2 * 3 * 1.0) * 3);
 }
 
+TEST_CASE("films under a lid fall, land and stay") {
+    for (const Real width : {0.2, 1.0}) {
+        GridFluid<2> flow(basin([width](const Point<2>& x) {
+            return std::min(x[1] - (1 - 0.3 / 32), width - std::abs(x[0] - 0.5));
+        }));
+        Real most = 0;
+        while (flow.time() < 0.8) {
+            run(flow, 0.02);
+            most = std::max(most, fastest(flow));
+        }
+        MESSAGE("fastest " << most << " m/s, freely " << std::sqrt(2 * g));
+        CHECK(most < 1.1 * std::sqrt(2 * g));
+        CHECK(fastest(flow) == 0);
+        flow.grid().for_each([&](const CellNumber<2>& cell, Offset c) {
+            if (cell[1] > 0) CHECK(flow.liquid().fraction()[c] == 0);
+        });
+    }
+}
+
 TEST_CASE("a jet that plunges and traps air: what is trapped is a void, so it fills") {
     auto params = basin([](const Point<2>& x) {
         return std::max(0.3 - x[1], std::min(0.06 - std::abs(x[0] - 0.5), x[1] - 0.3));

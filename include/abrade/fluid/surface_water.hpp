@@ -8,6 +8,7 @@
 #include <abrade/fluid/water_among_walls.hpp>
 
 #include <memory>
+#include <utility>
 
 namespace abrade::detail {
 
@@ -18,7 +19,7 @@ class SurfaceWater {
                          vertical = Grid<Dim>::vertical;
     /// Nearer to a cell's centre than this share of the way to the next one the surface is taken to be here:
     /// conductances grow as its inverse.
-    static constexpr Real least_share = 1e-6;
+    static constexpr Real least_share = 1e-8;
 
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
@@ -36,6 +37,7 @@ public:
                 fail({std::string("GridFluid.sides.") + Grid<Dim>::axis_name(a),
                       "not periodic where there is a surface", "", "take slip walls, or a FullBox"},
                      "periodic");
+        liquid_.set_gravity(params.gravity);
         if (params.wall) {
             walls_ = std::make_shared<Walls<Dim>>(grid, params.wall);
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
@@ -189,6 +191,20 @@ public:
                              (a == b ? grid_->gap(b, n) : grid_->size(b, n));
                 }
                 result[a][r.carrier] -= viscous * shear * (1 / own - 1 / (own + more));
+            }
+        }
+    }
+
+    /// After `find`, in a step's second stage: faces that the water has just reached. What they had of the
+    /// first stage was carried on from others, on which pressure and weight balance; but the pressure is yet
+    /// to be pushed on them, so they get that half of their weight. `fall`: gravity times half a step [m/s].
+    void weigh_reached(FaceField<Dim>& velocity, const Point<Dim>& fall) const {
+        for (int a = 0; a < Dim; ++a) {
+            if (fall[a] == 0) continue;
+            Offset last = -1;  // a face has as many riders as carriers, one after the other
+            for (const auto& r : extension_.riders(a)) {
+                if (r.face == std::exchange(last, r.face)) continue;
+                if ((wet_[r.face] | wet_[r.face - layout().stride[a]]) != 0) velocity[a][r.face] += fall[a];
             }
         }
     }

@@ -1,6 +1,6 @@
 #pragma once
-// The class VolumeOfFluid: what it holds and answers. What a step does stands in volume_sweeps.hpp; users
-// include volume_of_fluid.hpp, which has both.
+// The class VolumeOfFluid: what it holds and answers. What a step does stands in volume_sweeps.hpp and
+// volume_settling.hpp; users include volume_of_fluid.hpp, which has all.
 
 #include <abrade/fluid/surface_at_walls.hpp>
 #include <abrade/fluid/surface_band.hpp>
@@ -86,6 +86,9 @@ public:
         at_walls_.set_walls(open_faces, open_volumes);
         marks_ = surface_marks(grid_, sides_, open_volumes_);
     }
+
+    /// What films fall off sides by [m/s2]; none: they stay at any side they lie on.
+    void set_gravity(const Point<Dim>& gravity) noexcept { gravity_ = gravity; }
 
     /// To be set by the user, then `prepare`.
     Field<Real>& fraction() noexcept { return fraction_; }
@@ -182,53 +185,37 @@ public:
 
     /// Where the surface is between the centres of two neighbours, as a share of their distance from the
     /// liquid one, f >= 1/2, to the other one, at `side` (-1 or 1) of it along `axis`. Exact for planes,
-    /// second order for curved surfaces; at least `least`.
-    Real surface_share(Offset liquid, Index level, int axis, int side, Real least = 1e-3) const noexcept {
+    /// second order for curved surfaces. The liquid one's centre counts as `least` of a cell below the
+    /// surface at least, so that shares along all axes tell the same pressure there.
+    Real surface_share(Offset liquid, Index level, int axis, int side, Real least = 0) const noexcept {
         const Offset air = liquid + side * layout_.stride[index(axis)];
         const bool along_vertical = axis == vertical;
         const Index air_level = along_vertical ? level + side : level;
-        const Real edge = sizes_.edge(axis, level), air_edge = sizes_.edge(axis, air_level);
+        const Real edge = sizes_.edge(axis, level);
         const Real gap = along_vertical ? sizes_.gap(std::max(level, air_level)) : edge;
-        const Real face = 0.5 * edge / gap;
-        // Beyond its own half a plane counts only where it is the only one, and then no farther than the
-        // other centre.
-        const auto crossing = [&](Offset cell, Real from, Real direction, Real per_gap, bool& found) {
-            const Index i = plane_of_[cell];
-            found = tells(cell);
-            if (!found) return face;
-            const auto k = static_cast<std::size_t>(i);
-            const Real slope = planes_.normal[index(axis)][k] * direction;
-            const Real distance = planes_.position[k];
-            if (!(slope > 1e-9 * std::abs(distance))) return from == 0 ? Real(1) : Real(0);
-            return from + distance / slope * per_gap;
-        };
+        const Real face = 0.5 * edge / gap, shallow = least * sizes_.edge(vertical, level);
+        Sight own = sight_of(liquid, level, axis), other = sight_of(air, air_level, axis);
+        if (std::abs(own.depth) < shallow) own.depth = shallow;
         // Along a surface that is nearly level a crossing may lie anywhere; the pressure of a column's height
         // falls by the difference of both: the share is that of the distances of both centres from their
         // planes.
-        const auto depth = [&](Offset cell, Index cell_level, Real& found) {
-            const Index i = plane_of_[cell];
-            if (!tells(cell)) return false;
-            const auto k = static_cast<std::size_t>(i);
-            const auto slope = [&](int a) {
-                return planes_.normal[index(a)][k] / sizes_.edge(a, cell_level);
-            };
-            Real squares = 0;
-            for (int a = 0; a < Dim; ++a) squares += square(slope(a));
-            found = planes_.position[k] / std::sqrt(squares);
-            return square(slope(axis)) < 0.1 * squares;
+        if (own.nearly_level && other.nearly_level && own.depth >= 0 && other.depth < 0)
+            return own.depth / (own.depth - other.depth);
+        // Beyond its own half a plane counts only where it is the only one, and then no farther than the
+        // other centre.
+        const auto crossing = [&](const Sight& of, Real from, Real per_gap) {
+            const Real fall = of.slope * side;
+            if (!of.known) return face;
+            if (!(fall > 1e-9 * std::abs(of.depth) / per_gap)) return from == 0 ? Real(1) : Real(0);
+            return from + of.depth / fall * per_gap;
         };
-        Real below = 0, above = 0;
-        if (depth(liquid, level, below) && depth(air, air_level, above) && below >= 0 && above < 0)
-            return std::clamp(below / (below - above), least, Real(1));
-        bool own = false, other = false;
-        const Real near = crossing(liquid, 0, side, edge / gap, own);
-        const Real far = crossing(air, 1, side, air_edge / gap, other);
+        const Real near = crossing(own, 0, 1 / gap), far = crossing(other, 1, 1 / gap);
         Real share = face;
-        if (own && (!other || near <= face))
+        if (own.known && (!other.known || near <= face))
             share = near;
-        else if (other && (!own || far >= face))
+        else if (other.known && (!own.known || far >= face))
             share = far;
-        else if (own)
+        else if (own.known)
             share = 0.5 * (near + far);
         return std::clamp(share, least, Real(1));
     }
@@ -245,6 +232,22 @@ private:
 
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner;
     static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// A cell's plane, seen along an axis; not known where there is none, or a trace of air or of water.
+    struct Sight {
+        bool known = false, nearly_level = false;  ///< level: along the axis
+        Real depth = 0;                            ///< of the centre below the plane, along its normal [m]
+        Real slope = 0;                            ///< component of the unit normal
+    };
+    Sight sight_of(Offset cell, Index level, int axis) const noexcept {
+        if (!tells(cell)) return {};
+        const auto k = static_cast<std::size_t>(plane_of_[cell]);
+        const auto slope = [&](int a) { return planes_.normal[index(a)][k] / sizes_.edge(a, level); };
+        Real squares = 0;
+        for (int a = 0; a < Dim; ++a) squares += square(slope(a));
+        const Real per_length = 1 / std::sqrt(squares), along = slope(axis) * per_length;
+        return {true, square(along) < 0.1, planes_.position[k] * per_length, along};
+    }
 
     Real open_volume(Offset c, Index level) const noexcept {
         return sizes_.volume(level) * (open_volumes_ ? (*open_volumes_)[c] : 1);
@@ -328,6 +331,7 @@ private:
     void fluxes_of_band(int axis);
     void fluxes_of_planes(int axis);
     void join_periodic(int axis);
+    Real stray(int axis, Offset c, int way, Real volume) const noexcept;
     void even_out_rims(int axis);
     void settle(VolumeStep& step);
     struct Neighbours;
@@ -380,6 +384,7 @@ private:
     std::vector<Index> settled_;      ///< cells of the last band, and those that took what was moved aside
     std::vector<std::uint8_t> bulk_;  ///< [band cell] full, and so are its neighbours
     long steps_ = 0;
+    Point<Dim> gravity_ = Point<Dim>::Zero();
 
     const FaceField<Dim>* velocity_ = nullptr;  ///< of the step at work
     std::array<std::vector<Real>, Dim>
