@@ -197,13 +197,15 @@ public:
 
     /// After `find`, in a step's second stage: faces that the water has just reached. What they had of the
     /// first stage was carried on from others, on which pressure and weight balance; but the pressure is yet
-    /// to be pushed on them, so they get that half of their weight. `fall`: gravity times half a step [m/s].
+    /// to be pushed on them, so they get that half of their weight. Cells that walls cut have `begin_faces`.
+    /// `fall`: gravity times half a step [m/s].
     void weigh_reached(FaceField<Dim>& velocity, const Point<Dim>& fall) const {
         for (int a = 0; a < Dim; ++a) {
             if (fall[a] == 0) continue;
             Offset last = -1;  // a face has as many riders as carriers, one after the other
             for (const auto& r : extension_.riders(a)) {
                 if (r.face == std::exchange(last, r.face)) continue;
+                if (walls_ && is_cut(r.face, layout().stride[a])) continue;
                 if ((wet_[r.face] | wet_[r.face - layout().stride[a]]) != 0) velocity[a][r.face] += fall[a];
             }
         }
