@@ -146,13 +146,11 @@ private:
         return static_cast<std::size_t>(plane * layout.rows_per_plane() + row);
     }
 
-    static int whole(int i) noexcept { return i & ~(lanes - 1); }
-
     /// The longest run of packs of cells that lie amid others; none: empty, at the end.
     RowRange even_part(Offset start, RowRange r) const noexcept {
-        RowRange longest{whole(r.end + lanes - 1), 0}, run;
+        RowRange longest{Layout<Dim>::pack(r.end + lanes - 1), 0}, run;
         longest.end = longest.begin;
-        for (int i = whole(r.begin); i < r.end; i += lanes) {
+        for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes) {
             bool even = i >= r.begin && i + lanes <= r.end;
             for (int k = i; even && k < i + lanes; ++k) {
                 even = dirichlet[start + k] == 0;
@@ -175,7 +173,7 @@ private:
         join_row(x, start);
         const Terms terms(*this, x, plane, row, start);
         const EvenTerms even_terms(*this, terms);
-        for (int i = whole(r.begin); i < even.begin; i += lanes) body(terms, i);
+        for (int i = Layout<Dim>::pack(r.begin); i < even.begin; i += lanes) body(terms, i);
         for (int i = even.begin; i < even.end; i += lanes) body(even_terms, i);
         for (int i = even.end; i < r.end; i += lanes) body(terms, i);
     }
