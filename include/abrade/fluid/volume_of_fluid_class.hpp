@@ -171,7 +171,8 @@ public:
     /// the surface beside it tells. Pressure lives in these cells.
     bool is_liquid(Offset cell) const noexcept {
         const Index i = plane_of_[cell];
-        if (i < 0 || planes_.told[index(i)] == 0 || fraction_[cell] < little) return fraction_[cell] >= 0.5;
+        const Real f = fraction_[cell];
+        if (i < 0 || planes_.told[index(i)] == 0 || f < little || f > nearly_full) return f >= 0.5;
         return planes_.position[index(i)] >= 0;
     }
 
@@ -222,6 +223,8 @@ public:
 
 private:
     static constexpr Real little = 1e-5;  ///< less liquid of a cell than this has no momentum to speak of [-]
+    /// Without a pressure of its own a cell that holds more than this takes in more than it has room for [-].
+    static constexpr Real nearly_full = 0.9;
     /// A trace of air or of water tells nothing of where the surface is, but in a cell that a wall cuts.
     bool tells(Offset cell) const noexcept {
         constexpr Real trace = SurfaceBand<Dim>::smallest_void;
