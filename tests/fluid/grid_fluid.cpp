@@ -196,6 +196,11 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     params.sides[0] = {Side::periodic, Side::wall};
     CHECK(says(params).find("periodic at both ends") != std::string::npos);
     params = good;
+    params.sides[1] = {Side::periodic, Side::periodic};
+    CHECK(says(params) ==
+          "GridFluid.sides.z must be not periodic where there is a surface, got periodic; close the floor, "
+          "or take a FullBox");
+    params = good;
     params.sides[0][0] = Side::inflow;
     CHECK(says(params).starts_with("GridFluid.side_velocity must be given where a side is an inflow"));
     params = good;

@@ -55,6 +55,19 @@ TEST_CASE("short steps: what is left of a standing wave's energy is the grid's")
     CHECK(std::abs(found.lost_per_period) < 0.01);
 }
 
+TEST_CASE("a wave that runs around a periodic box three times") {
+    for (const int n : {24, 48}) {
+        const RunningWave wave;
+        auto flow = wave.box(n);
+        flow.advance(3 * 2 * pi / wave.frequency());
+        const RunningWave::Found found = wave.found_in(flow);
+        const Real speed_error = found.phase / (6 * pi), left = found.amplitude / wave.amplitude;
+        MESSAGE(n << " cells: speed " << 100 * speed_error << " %, amplitude left " << left);
+        CHECK(std::abs(speed_error) < 0.01);
+        CHECK(std::abs(left - 1) < 0.1);
+    }
+}
+
 TEST_CASE("a solitary wave keeps height, energy and speed over twenty depths") {
     const SolitaryWave wave;
     auto flow = wave.channel(10);

@@ -24,6 +24,51 @@ Real fastest(const Flow& flow) {
     return most;
 }
 
+/// A wave that runs around in a box whose ends are one: eta = a cos(k x - omega t), omega^2 = g k tanh(k h),
+///   u = a omega cosh(k z) / sinh(k h) cos(k x - omega t),  w = a omega sinh(k z) / sinh(k h) sin(k x - omega
+///   t).
+/// Without viscosity.
+struct RunningWave {
+    Real length = 1, depth = 0.3, amplitude = 0.005;  ///< L, h, a [m]
+
+    Real number() const { return 2 * pi / length; }                                                 ///< k
+    Real frequency() const { return std::sqrt(gravity * number() * std::tanh(number() * depth)); }  ///< omega
+
+    /// `n` cells along it.
+    GridFluid<2> box(int n) const {
+        const Real h = length / n, k = number();
+        GridFluidParams<2> params;
+        params.grid = {.cells = {n, static_cast<int>(std::ceil((depth + 4 * amplitude) / h)) + 2},
+                       .spacing = {h, h}};
+        params.sides = Sides<2>::all(Side::slip);
+        params.sides[0] = {Side::periodic, Side::periodic};
+        params.water = [*this, k](const Point<2>& x) {
+            return depth + amplitude * std::cos(k * x[0]) - x[1];
+        };
+        params.velocity = [*this, k](const Point<2>& x) {
+            const Real speed = amplitude * frequency() / std::sinh(k * depth), z = std::min(x[1], depth);
+            return Point<2>(speed * std::cosh(k * z) * std::cos(k * x[0]),
+                            speed * std::sinh(k * z) * std::sin(k * x[0]));
+        };
+        params.gravity = {0, -gravity};
+        params.viscosity = 0;
+        return GridFluid<2>(params);
+    }
+
+    struct Found {
+        Real amplitude = 0, phase = 0;  ///< [m]; omega t, from -pi to pi
+    };
+    Found found_in(const GridFluid<2>& flow) const {
+        Real c = 0, s = 0;
+        const int n = flow.grid().cells(0);
+        for (int i = 0; i < n; ++i) {
+            const Real x = flow.grid().centre(0, i), eta = flow.surface_at({x, 0}) - depth;
+            c += 2 * eta * std::cos(number() * x) / n, s += 2 * eta * std::sin(number() * x) / n;
+        }
+        return {std::hypot(c, s), std::atan2(s, c)};
+    }
+};
+
 /// A wave that stands in a tank, eta = a cos(k x) cos(omega t), omega^2 = g k tanh(k h), k = n pi / L; in a
 /// square tank eta = a cos(k x) cos(k y) cos(omega t), whose wave number is sqrt(2) k. Without viscosity.
 struct StandingWave {

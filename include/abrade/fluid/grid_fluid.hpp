@@ -51,7 +51,7 @@ public:
         sides_.set_time(time_);
         if constexpr (has_surface) {
             water_.emplace(*grid_, params_);
-            water_->find(projection_, pressure_, sides_);
+            water_->find(projection_, pressure_);
             outflows_ = detail::Outflows<Dim>(*grid_, params_);
         } else if (params_.wall || params_.outflow_water) {
             fail({params_.wall ? "GridFluid.wall" : "GridFluid.outflow_water", "left out of a FullBox", "",
@@ -264,6 +264,7 @@ private:
     void step_below_surface(Real dt) {
         auto& water = *water_;
         if (record_.keep(velocity_, pressure_, water, dt)) finish(velocity_);
+        sides_.join_cells(pressure_);
         try {
             water.move(velocity_, dt);
         } catch (const InputError& beyond) {  // more than a cell would leave it
@@ -287,6 +288,7 @@ private:
             sides_.leave(result);
         };
         stage(velocity_, stage_, 0, -dt);
+        for (auto& component : stage_) sides_.join_cells(component);
         // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
         const auto taken = water.friction().apply(stage_, dt, nu());
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
@@ -295,7 +297,7 @@ private:
         // The old pressure is taken back: below the new surface it pushes anew.
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.friction().take(velocity_, taken, 0.5);
-        water.find(projection_, pressure_, sides_);
+        water.find(projection_, pressure_);
         water.weigh_reached(velocity_, 0.5 * dt * falls);
         water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * falls);
         for (const WaterFace& f : water.still())
@@ -338,7 +340,7 @@ private:
         if (!params_.steady_sides) sides_.set_time(time_);
         if constexpr (has_surface) {
             record_.restore(velocity_, pressure_, *water_);
-            water_->find(projection_, pressure_, sides_);
+            water_->find(projection_, pressure_);
             finish(velocity_);
         } else {
             std::swap(velocity_, saved_velocity_);

@@ -26,20 +26,21 @@ public:
         : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides),
           friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
           burden_(grid.layout().total), wet_(grid.layout().total), rows_(grid.layout()),
-          extension_(grid.layout()), open_in_(static_cast<std::size_t>(grid.layout().planes())) {
+          extension_(grid.layout(), sides_), open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         // The projection begins with a full box.
         for (int plane = 0; plane < layout().planes(); ++plane)
             for (int row = 0; row < layout().rows_per_plane(); ++row)
                 rows_.row(plane, row) = {0, layout().row_length()};
-        for (int a = 0; a < Dim; ++a)
-            if (sides_.periodic(a))
-                fail({std::string("GridFluid.sides.") + Grid<Dim>::axis_name(a),
-                      "not periodic where there is a surface", "", "take slip walls, or a FullBox"},
-                     "periodic");
+        if (sides_.periodic(vertical))
+            fail({"GridFluid.sides.z", "not periodic where there is a surface", "",
+                  "close the floor, or take a FullBox"},
+                 "periodic");
         liquid_.set_gravity(params.gravity);
         if (params.wall) {
-            walls_ = std::make_shared<Walls<Dim>>(grid, params.wall);
+            const auto walls = std::make_shared<Walls<Dim>>(grid, params.wall);
+            walls->repeat(sides_);
+            walls_ = walls;
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
             friction_ = WallFriction<Dim>(grid, params.sides, params.wall_law, walls_.get());
             held_ = Field<Real>(layout().total);
@@ -47,6 +48,7 @@ public:
             for (const WallCell<Dim>& w : walls_->wall_cells())
                 for (int b = 0; b < Dim; ++b)
                     open_middle_[b][w.cell] = 0.5 * (1 - walls_->open_volume()[w.cell]) * w.normal[b];
+            for (auto& b : open_middle_) join(b);
         }
         fill(params);
     }
@@ -68,17 +70,24 @@ public:
     const WallFriction<Dim>& friction() const noexcept { return friction_; }
     const WetRows<Dim>& rows() const noexcept { return rows_; }
 
+    /// Copies to beyond periodic sides.
+    void join(auto& field) const noexcept { fill_periodic(field, layout(), sides_); }
+
     /// Moves the liquid with the velocity over a step.
     void move(const FaceField<Dim>& velocity, Real step) {
         rows_.copy(held(), before_);
+        join(before_);
         liquid_.advance(velocity, step);
         rows_before_ = rows_;
         find_rows();
         hold();
+        for (auto& moved : liquid_.moved()) join(moved);
     }
 
-    /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
+    /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes. A
+    /// trace of air makes no surface: or round-off would choose between them.
     void carry_by(const FaceField<Dim>& stage, Real step) {
+        constexpr Real full = 1 - SurfaceBand<Dim>::smallest_void;
         for (int a = 0; a < Dim; ++a) {
             const LevelTable<Dim, Real> swept(*grid_, [&](int k) {
                 CellNumber<Dim> cell{};
@@ -99,17 +108,19 @@ public:
                 for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
 #pragma omp simd
                     for (int i = first; i < first + lanes; ++i) {
-                        const Real least = std::min(std::min(f[i], f_back[i]), std::min(g[i], g_back[i]));
-                        const Real old = c[i], full = v[i] * area[i];
-                        c[i] = least == 1 && i >= r.begin && i < r.end ? full : old;
+                        const Real old = c[i], swept_by_it = v[i] * area[i];
+                        const bool in_bulk = (f[i] >= full) & (f_back[i] >= full) & (g[i] >= full) &
+                                             (g_back[i] >= full) & (i >= r.begin) & (i < r.end);
+                        c[i] = in_bulk ? swept_by_it : old;
                     }
             });
+            join(liquid_.moved()[a]);
         }
     }
 
     /// Which cells are wet below the present surface and where it crosses the lines between centres; takes
     /// the pressure from dry cells.
-    void find(Projection<Dim, Real>& projection, Field<Real>& pressure, const VelocitySides<Dim>& sides) {
+    void find(Projection<Dim, Real>& projection, Field<Real>& pressure) {
         WetRows<Dim> rows = rows_;
         rows.include(rows_before_);
         const Field<Real>& f = liquid_.fraction();
@@ -131,7 +142,7 @@ public:
                 wet_[c] = liquid_.is_liquid(c) && is_open(c);
                 if (!wet_[c]) pressure[c] = 0;
             }
-        sides.join_cells(wet_);
+        join(wet_);
         find_open_faces(projection);
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
     }
@@ -156,9 +167,12 @@ public:
                 for (const int end : {0, 1}) {
                     const Offset s = layout().stride[a], face = c + end * s, other = face - (1 - end) * s;
                     const int number = cell[a] + end;
-                    if (number > 0 && number < grid_->cells(a) && was_wet[other] == 0 &&
-                        walls_->open_area()[a][face] > 0)
-                        u[a][face] = before[a][face] + fallen[a];
+                    const bool at_side = number == 0 || number == grid_->cells(a);
+                    if ((at_side && !sides_.periodic(a)) || was_wet[other] != 0 ||
+                        walls_->open_area()[a][face] == 0)
+                        continue;
+                    const Offset inside = face - (number == grid_->cells(a) ? number * s : 0);
+                    u[a][inside] = before[a][inside] + fallen[a];
                 }
         }
     }
@@ -180,7 +194,7 @@ public:
                 // only.
                 if (more == 0 || own < 0.5 || (walls_ && is_cut(r.carrier, back))) continue;
                 const CellNumber<Dim> cell = layout().number(r.carrier);
-                if (cell[a] <= 0 || cell[a] >= grid_->cells(a)) continue;
+                if ((cell[a] == 0 && !sides_.periodic(a)) || cell[a] >= grid_->cells(a)) continue;
                 Real shear = 0;
                 for (int b = 0; b < Dim; ++b) {
                     const int n = cell[b];
@@ -282,6 +296,7 @@ private:
             Real* const __restrict held = held_.data() + start;
             for (int i = r.begin; i < r.end; ++i) held[i] = f[i] * v[i];
         });
+        join(held_);
     }
 
     /// Rows that hold water and what is near, and faces that carry momentum.
@@ -344,15 +359,18 @@ private:
             const int level = Dim == 3 ? place.row : place.i, up = a == vertical;
             // `above`: 1 where the wet cell is the upper one, -1 where it is the lower.
             const auto add = [&](Offset face, int above) {
-                const Offset wet = above > 0 ? c + s : c - s;
+                Offset wet = above > 0 ? c + s : c - s;
                 if (wet_[wet] == 0 || (walls_ && walls_->open_area()[a][face] == 0)) return;
-                if (walls_ && liquid_.is_ashore(c)) {
-                    open.push_back({face, wet, a});
-                    return;
-                }
                 const Real plain = above / grid_->gap(a, above > 0 ? number + 1 : number);
                 const Real share = liquid_.surface_share(wet, level + above * up, a, -above, least_share);
-                open.push_back({face, wet, a, plain / share, plain});
+                // Across a periodic side: what is meant stands at the other end.
+                const int end = number + above;
+                const Offset around = (end < 0 ? 1 : end < grid_->cells(a) ? 0 : -1) * grid_->cells(a) * s;
+                wet += around, face += above > 0 ? around : 0;
+                if (walls_ && liquid_.is_ashore(c))
+                    open.push_back({face, wet, a});
+                else
+                    open.push_back({face, wet, a, plain / share, plain});
             };
             add(c + s, 1);
             add(c, -1);

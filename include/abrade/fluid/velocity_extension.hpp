@@ -2,7 +2,6 @@
 // Velocities of the air beside water: the water's, carried on outward.
 
 #include <abrade/fluid/walls.hpp>
-#include <abrade/fluid/wet_rows.hpp>
 
 #include <cstdint>
 #include <span>
@@ -27,8 +26,8 @@ public:
     static constexpr int layers = 3;
     static constexpr int wedge = 8;  ///< longest of water on a wall that has no pressure of its own [cells]
 
-    explicit VelocityExtension(const Layout<Dim>& layout)
-        : layout_(layout), state_(layout.total, unknown), before_(layout),
+    VelocityExtension(const Layout<Dim>& layout, const Sides<Dim>& sides)
+        : layout_(layout), sides_(sides), state_(layout.total, unknown), before_(layout),
           found_(static_cast<std::size_t>(layout.planes())), waiting_(found_) {}
 
     struct Water {
@@ -54,6 +53,7 @@ public:
             if (walls) close(walls->open_area()[a], u[a], rows);
             riders_[a].clear();
             for (int layer = 0; layer < layers; ++layer) {
+                join(u[a]);
                 take_means(u[a], rows);
                 if (layer == 0) find_riders(a, held);
                 know_found(rows);
@@ -98,6 +98,7 @@ private:
                 for (int i = first; i < first + lanes; ++i)
                     state[i] = static_cast<std::uint8_t>(here[i] | here[i - back]);
             trim(state, r);
+            if (sides_.periodic(a)) return;
             const auto fix = [&](std::uint8_t& s) { s = s == known ? known : fixed; };
             if (a == Layout<Dim>::inner) {
                 if (r.begin == 0) fix(state[0]);
@@ -138,6 +139,20 @@ private:
             for (const Offset c : found) take_mean(u, c);
         });
     }
+    /// Faces beyond periodic sides are those inside.
+    template <class State>
+    void join(Field<State>& u) {
+        fill_periodic(state_, layout_, sides_);
+        fill_periodic(u, layout_, sides_);
+    }
+    Offset inside(Offset face) const noexcept {
+        const CellNumber<Dim> number = layout_.number(face);
+        for (int a = 0; a < Dim; ++a)
+            if (sides_.periodic(a))
+                face += layout_.cells[a] * layout_.stride[a] *
+                        ((number[a] < 0) - (number[a] >= layout_.cells[a]));
+        return face;
+    }
     /// Of what is known beside a face; answers whether anything is.
     template <class State>
     bool take_mean(Field<State>& u, Offset c) const noexcept {
@@ -160,6 +175,7 @@ private:
     void extend_wedges(Field<State>& u, const WetRows<Dim>& rows) {
         rows.for_each_plane([&](int plane) { found_[static_cast<std::size_t>(plane)].clear(); });
         for (int layer = layers; layer < wedge; ++layer) {
+            join(u);
             for (std::size_t p = 0; p < waiting_.size(); ++p)
                 for (const Offset c : waiting_[p])
                     if (state_[c] == unknown && take_mean(u, c)) found_[p].push_back(c);
@@ -182,7 +198,7 @@ private:
                 for (const Offset s : layout_.stride) count += wet(c - s) + wet(c + s);
                 for (const Offset s : layout_.stride)
                     for (const Offset n : {c - s, c + s})
-                        if (wet(n)) riders_[a].push_back({c, n, 1.0 / count});
+                        if (wet(n)) riders_[a].push_back({c, inside(n), 1.0 / count});
             }
     }
 
@@ -218,6 +234,7 @@ private:
 
     static constexpr int lanes = Layout<Dim>::lanes;
     Layout<Dim> layout_;
+    Sides<Dim> sides_;
     Field<std::uint8_t> state_;
     WetRows<Dim> before_;  ///< looked at the last time
     PerAxis<std::vector<Rider>, Dim> riders_;

@@ -74,6 +74,7 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
     });
     for (const Index c : planes_before_.cell) plane_of_[c] = -1;
     for (Index i = 0; i < planes_.count(); ++i) plane_of_[planes_.cell[static_cast<std::size_t>(i)]] = i;
+    fill_periodic(plane_of_, layout_, sides_);
     normals_.find(planes_, fraction_.data(), marks_.data(), !keep);
     if (open_volumes_ && !keep) at_walls_.find(planes_, fraction_.data(), marks_.data(), plane_of_.data());
 }

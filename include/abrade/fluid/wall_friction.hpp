@@ -51,7 +51,7 @@ public:
         law_.validate();
         if (law_.kind == WallLaw::Kind::slip) return;
         if (walls)
-            for (const WallCell<Dim>& w : walls->wall_cells()) add(grid, *walls, w);
+            for (const WallCell<Dim>& w : walls->wall_cells()) add(grid, sides, *walls, w);
         if (law_.kind == WallLaw::Kind::logarithmic) add_sides(grid, sides, walls);
         for (auto& list : held_) merge(list);
     }
@@ -117,7 +117,8 @@ private:
         return std::sqrt(sum);
     }
 
-    void add(const Grid<Dim>& grid, const Walls<Dim>& walls, const WallCell<Dim>& wall) {
+    void add(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>& walls,
+             const WallCell<Dim>& wall) {
         const CellNumber<Dim> cell = layout_.number(wall.cell);
         for (int a = 0; a < Dim; ++a) {
             // A closed face leaves all to the other.
@@ -129,13 +130,15 @@ private:
                 if (upper) ++of[a];
                 const Offset face = layout_.at(of), back = layout_.stride[a];
                 // A face at a side of the box is the side's.
-                if (walls.open_area()[a][face] == 0 || of[a] == 0 || of[a] == grid.cells(a)) continue;
+                const bool at_side = of[a] == 0 || of[a] == grid.cells(a);
+                if (walls.open_area()[a][face] == 0 || (at_side && !sides.periodic(a))) continue;
                 const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
                 Point<Dim> middle = grid.face_centre(a, of);  // of what is open
                 for (int b = 0; b < Dim; ++b)
                     middle[b] += 0.5 * (1 - open) * wall.normal[b] * grid.size(b, cell[b]);
                 const Real distance = wall.normal.dot(middle - wall.point);
-                held_[a].push_back({face, std::max(distance, 0.05 * grid.size(a, cell[a])),
+                const Offset around = of[a] == grid.cells(a) ? grid.cells(a) * back : 0;
+                held_[a].push_back({face - around, std::max(distance, 0.05 * grid.size(a, cell[a])),
                                     part * wall.area / (std::max(open, 0.01) * grid.volume(cell))});
             }
         }

@@ -2,6 +2,7 @@
 // Solid walls of any shape on a grid: how much of each cell and of each face they leave open.
 
 #include <abrade/core/parallel.hpp>
+#include <abrade/fluid/side_ghosts.hpp>
 #include <abrade/fluid/wall_shapes.hpp>
 #include <abrade/fluid/wall_slab.hpp>
 
@@ -104,6 +105,12 @@ public:
             to[at(a)] = (std::min(last, grid_.cells(a) + ghosts - 1) + ghosts) / side;
         }
         renew(wall, from, to);
+    }
+
+    /// Beyond periodic sides stands what stands inside. Until the next `update`.
+    void repeat(const Sides<Dim>& sides) {
+        fill_periodic(shares_.volume, grid_.layout(), sides);
+        for (auto& area : shares_.area) fill_periodic(area, grid_.layout(), sides);
     }
 
     const Params& params() const noexcept { return params_; }

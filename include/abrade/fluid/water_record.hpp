@@ -74,6 +74,7 @@ public:
             });
         }
         rows_.copy(water.wet(), wet_);
+        water.join(wet_);
         rows_.copy(pressure, pressure_);
         rows_.copy(water.liquid().fraction(), fraction_);
         rows_.copy(water.liquid().surplus(), surplus_);
