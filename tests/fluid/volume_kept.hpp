@@ -56,7 +56,7 @@ void run(const GridFluidParams<Dim>& params, const std::string& name, int steps)
 }
 
 template <int Dim>
-GridFluid<Dim>::Params tank(PlaceFunction<Dim> water) {
+typename GridFluid<Dim>::Params tank(PlaceFunction<Dim> water) {
     typename GridFluid<Dim>::Params params;
     const int n = Dim == 2 ? 32 : 24;
     params.grid.cells.fill(n);

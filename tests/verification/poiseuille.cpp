@@ -19,20 +19,19 @@ TEST_CASE("between level walls: resistance of second order where cells are open 
     struct Case {
         Real share, profile, resistance;  ///< bounds on 16 cells are what was measured and a tenth more
     };
-    for (const auto& [share, profile, resistance] :
-         {Case{1, 0.00136, 0.0086}, Case{0.75, 0.0096, 0.0087}, Case{0.6, 0.0141, 0.0091},
-          Case{0.25, 0.00088, 0.0019}}) {
-        const Errors coarse = Channel{.cells = 8, .share = share}.errors(),
-                     fine = Channel{.cells = 16, .share = share}.errors();
-        CAPTURE(share);
-        MESSAGE("open share " << share << ": velocity " << fine.profile << ", order "
+    for (const Case& wall : {Case{1, 0.00136, 0.0086}, Case{0.75, 0.0096, 0.0087}, Case{0.6, 0.0141, 0.0091},
+                             Case{0.25, 0.00088, 0.0019}}) {
+        const Errors coarse = Channel{.cells = 8, .share = wall.share}.errors(),
+                     fine = Channel{.cells = 16, .share = wall.share}.errors();
+        CAPTURE(wall.share);
+        MESSAGE("open share " << wall.share << ": velocity " << fine.profile << ", order "
                               << order(coarse.profile, fine.profile) << "; resistance " << fine.resistance
                               << ", order " << order(coarse.resistance, fine.resistance));
-        CHECK(fine.profile < profile);
-        CHECK(std::abs(fine.resistance) < resistance);
+        CHECK(fine.profile < wall.profile);
+        CHECK(std::abs(fine.resistance) < wall.resistance);
         CHECK(order(coarse.resistance, fine.resistance) > 1.9);
         CHECK(order(coarse.profile, fine.profile) > 1.4);
-        if (share == 1)
+        if (wall.share == 1)
             CHECK(order(coarse.profile, fine.profile) > 1.9);
         else
             WARN(order(coarse.profile, fine.profile) > 1.9);
@@ -43,17 +42,16 @@ TEST_CASE("between walls at an angle to the grid: second order is missed") {
     struct Case {
         Real degrees, profile, resistance;  ///< as above
     };
-    for (const auto& [degrees, profile, resistance] :
-         {Case{10, 0.0082, 0.0103}, Case{30, 0.0084, 0.0197}, Case{45, 0.0070, 0.0049}}) {
-        const Real angle = degrees * pi / 180;
+    for (const Case& wall : {Case{10, 0.0082, 0.0103}, Case{30, 0.0084, 0.0197}, Case{45, 0.0070, 0.0049}}) {
+        const Real angle = wall.degrees * pi / 180;
         const Errors coarse = Channel{.cells = 8, .angle = angle}.errors(),
                      fine = Channel{.cells = 16, .angle = angle}.errors();
-        CAPTURE(degrees);
-        MESSAGE(degrees << " degrees: velocity " << fine.profile << ", order "
-                        << order(coarse.profile, fine.profile) << "; resistance " << fine.resistance
-                        << ", order " << order(coarse.resistance, fine.resistance));
-        CHECK(fine.profile < profile);
-        CHECK(std::abs(fine.resistance) < resistance);
+        CAPTURE(wall.degrees);
+        MESSAGE(wall.degrees << " degrees: velocity " << fine.profile << ", order "
+                             << order(coarse.profile, fine.profile) << "; resistance " << fine.resistance
+                             << ", order " << order(coarse.resistance, fine.resistance));
+        CHECK(fine.profile < wall.profile);
+        CHECK(std::abs(fine.resistance) < wall.resistance);
         CHECK(order(coarse.profile, fine.profile) > 1.35);
         WARN(order(coarse.profile, fine.profile) > 1.9);
     }

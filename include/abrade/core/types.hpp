@@ -5,6 +5,10 @@
 #error "Abrade needs C++20: compile with -std=c++20 or later"
 #endif
 
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+#error "Abrade's guards look for NaN and infinity: compile without -ffast-math and -ffinite-math-only"
+#endif
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 

@@ -5,6 +5,8 @@
 #include <abrade/fluid/multigrid.hpp>
 #include <abrade/fluid/water_cells.hpp>
 
+#include <bit>
+
 namespace abrade {
 
 /// Solves  div(grad phi) = div(u) - target  and takes grad phi from u; phi = p dt / density.
@@ -16,6 +18,7 @@ template <int Dim, class State>
 class Projection {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner,
                          vertical = Grid<Dim>::vertical;
+    using Bits = std::conditional_t<sizeof(State) == 8, std::int64_t, std::int32_t>;
 
 public:
     /// A box full of water.
@@ -247,7 +250,9 @@ private:
                     if (inverse[i] > 0) fastest = std::max(fastest, rate);
                 }
             } else {
-#pragma omp simd reduction(+ : sum) reduction(max : fastest)
+                // Compared by their bits, in the same order from 0 on: clang++ puts no largest real in packs.
+                auto most = std::bit_cast<Bits>(fastest);
+#pragma omp simd reduction(+ : sum) reduction(max : most)
                 for (int i = r.begin; i < r.end; ++i) {
                     State out = area0[i] * (high[0][i] - low[0][i]) + area1[i] * (high[1][i] - low[1][i]);
                     State rate = std::abs(low[0][i]) * per0[i] + std::abs(low[1][i]) * per1[i];
@@ -258,8 +263,9 @@ private:
                     out = inverse[i] > 0 ? out : State(0);
                     b[i] = static_cast<float>(-out);
                     sum += out * out;
-                    fastest = std::max(fastest, inverse[i] > 0 ? rate : State(0));
+                    most = std::max(most, std::bit_cast<Bits>(inverse[i] > 0 ? rate : State(0)));
                 }
+                fastest = std::bit_cast<State>(most);
             }
             total += static_cast<Real>(sum);
         }

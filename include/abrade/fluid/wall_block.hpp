@@ -112,7 +112,7 @@ private:
         Corners<Size> d;
         for (std::size_t k = 0; k < d.size(); ++k) {
             Cell c = cell;
-            for (std::size_t s = 0; s < Size; ++s) c[axes[s]] += (k >> s) & 1;
+            for (std::size_t s = 0; s < Size; ++s) c[axes[s]] += static_cast<int>((k >> s) & 1);
             d[k] = distance_[at(c)];
         }
         return d;

@@ -9,10 +9,6 @@
 #include <chrono>
 #include <iosfwd>
 
-#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
-#error "Abrade's guards look for NaN and infinity: compile without -ffast-math and -ffinite-math-only"
-#endif
-
 namespace abrade {
 
 /// Stands in the contact slot until `.contact(law)` fills it.
