@@ -23,7 +23,8 @@ class SurfaceWater {
 
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
-        : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides),
+        : grid_(&grid), sides_(params.sides),
+          liquid_(grid, params.sides, {.smallest_void = std::clamp(params.tolerance, 1e-6, 1e-4)}),
           friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
           burden_(grid.layout().total), wet_(grid.layout().total), rows_(grid.layout()),
           extension_(grid.layout()), open_in_(static_cast<std::size_t>(grid.layout().planes())) {
