@@ -118,8 +118,17 @@ private:
     void close(const Field<Real>& open_area, Field<State>& u, const WetRows<Dim>& rows) {
         rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout_.row_start(plane, row);
-            for (Offset c = start + r.begin; c < start + r.end; ++c)
-                if (open_area[c] == 0) state_[c] = fixed, u[c] = 0;
+            const Real* const __restrict open = open_area.data() + start;
+            State* const __restrict v = u.data() + start;
+            std::uint8_t* const __restrict state = state_.data() + start;
+            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
+#pragma omp simd
+                for (int i = first; i < first + lanes; ++i) {
+                    const State value = v[i];
+                    const bool closed = open[i] == 0 && i >= r.begin && i < r.end;
+                    v[i] = closed ? State(0) : value;
+                    state[i] = closed ? fixed : state[i];
+                }
         });
     }
 
