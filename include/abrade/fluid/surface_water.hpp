@@ -42,6 +42,7 @@ public:
         if (params.wall) {
             walls_ = std::make_shared<Walls<Dim>>(grid, params.wall);
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
+            extension_.set_walls(*walls_);
             friction_ = WallFriction<Dim>(grid, params.sides, params.wall_law, walls_.get());
             held_ = Field<Real>(layout().total);
             open_middle_ = face_field<Dim>(layout());
@@ -164,7 +165,7 @@ public:
         }
     }
 
-    void extend(FaceField<Dim>& u) { extension_.extend(u, {wet_, rows_, held(), walls(), still_}); }
+    void extend(FaceField<Dim>& u) { extension_.extend(u, {wet_, rows_, held(), still_}); }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
     /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
