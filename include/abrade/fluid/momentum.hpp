@@ -258,10 +258,13 @@ private:
     static bool is_full(const State* now, const State* before, Offset back) noexcept {
         const State* const now_back = now - back;
         const State* const before_back = before - back;
-        int short_of = 0;
-#pragma omp simd reduction(| : short_of)
-        for (int k = 0; k < lanes; ++k)
-            short_of |= (now[k] < 1) | (now_back[k] < 1) | (before[k] < 1) | (before_back[k] < 1);
+        State short_of = 0;  // a number, not a flag: one width for all
+#pragma omp simd reduction(+ : short_of)
+        for (int k = 0; k < lanes; ++k) {
+            const State least = now[k] < now_back[k] ? now[k] : now_back[k];
+            const State least_before = before[k] < before_back[k] ? before[k] : before_back[k];
+            short_of += (least < least_before ? least : least_before) < 1 ? State(1) : State(0);
+        }
         return short_of == 0;
     }
 

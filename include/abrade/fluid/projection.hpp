@@ -225,48 +225,46 @@ private:
             const State per2 = Dim == 3 ? static_cast<State>(1 / grid_->size(Dim - 1, row)) : State(0);
             float* const __restrict b = multigrid_.right_side().data() + start;
             const float* const __restrict inverse = m.inverse_diagonal.data() + start;
+            // Without walls shares are never read, nor are volumes and surplus where there is none.
+            const Real* const surplus = surplus_ ? surplus_->data() + start : nullptr;
+            const Real* const volume = open_volume_ ? open_volume_->data() + start : nullptr;
+            const auto per_step = static_cast<State>(1 / step_);
             State sum = 0;
-            if (open_area_ || surplus_) {
-                for (int i = r.begin; i < r.end; ++i) {
-                    const auto share = [&](int a, const PerAxis<const Real*, 3>& side) {
-                        return open_area_ ? static_cast<State>(side[a][i]) : State(1);
-                    };
-                    State out =
-                        area0[i] * (high[0][i] * share(0, high_open) - low[0][i] * share(0, low_open)) +
-                        area1[i] * (high[1][i] * share(1, high_open) - low[1][i] * share(1, low_open));
-                    if constexpr (Dim == 3)
-                        out += area2[i] * (high[2][i] * share(2, high_open) - low[2][i] * share(2, low_open));
-                    if (surplus_ && open_volume_)
-                        out -=
-                            static_cast<State>((*surplus_)[start + i] * (*open_volume_)[start + i] / step_) *
-                            area0[i] / per0[i];
-                    else if (surplus_)
-                        out -= static_cast<State>((*surplus_)[start + i] / step_) * area0[i] / per0[i];
-                    out = inverse[i] > 0 ? out : State(0);
-                    b[i] = static_cast<float>(-out);
-                    sum += out * out;
-                    State rate = std::abs(low[0][i]) * per0[i] + std::abs(low[1][i]) * per1[i];
-                    if constexpr (Dim == 3) rate += std::abs(low[2][i]) * per2;
-                    if (inverse[i] > 0) fastest = std::max(fastest, rate);
-                }
-            } else {
-                // Compared by their bits, in the same order from 0 on: clang++ puts no largest real in packs.
-                auto most = std::bit_cast<Bits>(fastest);
+            // Compared by their bits, in the same order from 0 on: clang++ puts no largest real in packs.
+            auto most = std::bit_cast<Bits>(fastest);
+            const auto all = [&]<bool Open, bool Surplus>() {
 #pragma omp simd reduction(+ : sum) reduction(max : most)
                 for (int i = r.begin; i < r.end; ++i) {
-                    State out = area0[i] * (high[0][i] - low[0][i]) + area1[i] * (high[1][i] - low[1][i]);
+                    const auto net = [&](State area, const State* from, const State* to,
+                                         const Real* from_open, const Real* to_open) {
+                        if constexpr (Open)
+                            return area * (to[i] * static_cast<State>(to_open[i]) -
+                                           from[i] * static_cast<State>(from_open[i]));
+                        else
+                            return area * (to[i] - from[i]);
+                    };
+                    State out = net(area0[i], low[0], high[0], low_open[0], high_open[0]) +
+                                net(area1[i], low[1], high[1], low_open[1], high_open[1]);
                     State rate = std::abs(low[0][i]) * per0[i] + std::abs(low[1][i]) * per1[i];
                     if constexpr (Dim == 3) {
-                        out += area2[i] * (high[2][i] - low[2][i]);
+                        out += net(area2[i], low[2], high[2], low_open[2], high_open[2]);
                         rate += std::abs(low[2][i]) * per2;
+                    }
+                    if constexpr (Surplus) {
+                        const Real beyond = Open ? surplus[i] * volume[i] : surplus[i];
+                        out -= static_cast<State>(beyond) * per_step * (area0[i] / per0[i]);
                     }
                     out = inverse[i] > 0 ? out : State(0);
                     b[i] = static_cast<float>(-out);
                     sum += out * out;
                     most = std::max(most, std::bit_cast<Bits>(inverse[i] > 0 ? rate : State(0)));
                 }
-                fastest = std::bit_cast<State>(most);
-            }
+            };
+            if (open_area_)
+                surplus ? all.template operator()<true, true>() : all.template operator()<true, false>();
+            else
+                surplus ? all.template operator()<false, true>() : all.template operator()<false, false>();
+            fastest = std::bit_cast<State>(most);
             total += static_cast<Real>(sum);
         }
         rates_[static_cast<std::size_t>(plane)] = static_cast<Real>(fastest);

@@ -15,13 +15,11 @@ namespace abrade {
 template <int Dim>
 class SurfaceBand {
 public:
-    /// Air of less than this share of a cell [-] is a defect of the velocity's divergence, not a surface.
-    static constexpr Real smallest_void = 1e-6;
-
     SurfaceBand() = default;
-    explicit SurfaceBand(const Layout<Dim>& layout)
-        : layout_(layout), air_(layout.total, 0), edge_(layout.total, 0), near_(layout.total, 0),
-          band_(layout.total, 0), searched_(layout) {}
+    /// `smallest_void`: air of less than this share of a cell [-] is none.
+    SurfaceBand(const Layout<Dim>& layout, Real smallest_void)
+        : layout_(layout), smallest_void_(smallest_void), air_(layout.total, 0), edge_(layout.total, 0),
+          near_(layout.total, 0), band_(layout.total, 0), searched_(layout) {}
 
     /// Finds the band within `rows`, which hold everything wet and one cell around it at least.
     void find(const Field<Real>& fraction, const Field<std::uint8_t>& marks, const WetRows<Dim>& rows,
@@ -40,12 +38,12 @@ public:
             const Real* f = fraction.data() + start;
             const std::uint8_t* mark = marks.data() + start;
             std::uint8_t* air = air_.data() + start;
+            const Real full = 1 - smallest_void_;
 #if defined(_OPENMP)
 #pragma omp simd
 #endif
             for (int i = range.begin; i < range.end; ++i)
-                air[i] = static_cast<std::uint8_t>((f[i] < 1 - smallest_void) &
-                                                   ((mark[i] & cell_mark::open) != 0));
+                air[i] = static_cast<std::uint8_t>((f[i] < full) & ((mark[i] & cell_mark::open) != 0));
         });
         fill_periodic(air_, layout_, sides);
         for_each_inflow_cell(sides, [&](Offset ghost, Offset) {
@@ -197,6 +195,7 @@ private:
     }
 
     Layout<Dim> layout_{};
+    Real smallest_void_ = 0;
     Field<std::uint8_t> air_, edge_, near_, band_;  ///< near: to an edge in the same row
     WetRows<Dim> searched_;
     std::vector<Index> cell_, level_;

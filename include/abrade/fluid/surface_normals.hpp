@@ -9,11 +9,12 @@ namespace abrade {
 /// Reconstruction of the surface by planes. Exact for a planar surface of any tilt, beside sides and walls
 /// too.
 ///
-/// Away from them: height functions. The liquid of a column of up to 7 cells along the axis that lies nearest
-/// to the normal is its height S; with complete columns (full at one end, dry at the other) on both sides
+/// Away from them: height functions. The liquid of a column of up to 7 cells, 3 near sides and walls, along
+/// the axis that lies nearest to the normal is its height S; with complete columns (full at one end, dry at
+/// the other) on both sides
 ///   dS/dt = [S(t + 1) - S(t - 1)] / 2,
-/// which is second order, and exact where the surface is a plane. Where a column is not complete, and beside
-/// sides and walls, `VolumeFit` takes over.
+/// which is second order, and exact where the surface is a plane. Where a column is not complete, and in the
+/// cells beside sides and walls, `VolumeFit` takes over.
 template <int Dim>
 class SurfaceNormals {
 public:
@@ -28,7 +29,8 @@ public:
         parallel_blocks(planes.count(), [&](Index, Index first, Index last) {
             Block block(*this, planes, fraction, marks);
             block.sort(first, last);
-            for (int way = 0; way < 2 * Dim; ++way) block.heights(way);
+            for (int way = 0; way < 2 * Dim; ++way)
+                for (const bool deep : {false, true}) block.heights(way, deep);
             block.fit(exact ? 10 : 0);
             block.place();
         });
@@ -55,7 +57,7 @@ private:
         SurfacePlanes<Dim>& planes;
         const Real* fraction;
         const std::uint8_t* marks;
-        std::array<List, 2 * Dim> ways{};  ///< 2 axis + (air above)
+        std::array<std::array<List, 2 * Dim>, 2> ways{};  ///< [deep][2 axis + (air above)]
         List rest{}, kept{};
 
         /// A pack of a list, its last item repeated.
@@ -118,7 +120,7 @@ private:
                     for (int a = 0; a < Dim; ++a)
                         if (std::abs(g[at(a)][lane]) > std::abs(g[at(axis)][lane])) axis = a;
                     const bool deep = (marks[cell[at(lane)]] & cell_mark::deep(axis)) != 0;
-                    (deep ? ways[at(2 * axis + (g[at(axis)][lane] <= 0))] : rest).add(item[at(lane)]);
+                    ways[deep][at(2 * axis + (g[at(axis)][lane] <= 0))].add(item[at(lane)]);
                 }
             }
         }
@@ -127,17 +129,23 @@ private:
             Pack amount;
             PackMask complete;
         };
+        /// Of the cells of a column, in the height of the middle one.
+        struct Heights {
+            std::array<Pack, 7> height{};
+            bool stretched = false;
+            int reach = 3;  ///< cells to each side of the middle
+        };
 
         /// Liquid of the columns that stand `step` aside. `air` leads one cell towards the air. Cells that
         /// are nearly full or dry end a column but count as they are: a plane that cuts off less than a
         /// thousandth of a cell cuts no cell beyond it.
-        Column column(const PackCells& cell, Offset step, Offset air, const std::array<Pack, 7>& height,
-                      bool stretched) const noexcept {
+        Column column(const PackCells& cell, Offset step, Offset air, const Heights& heights) const noexcept {
+            const auto& [height, stretched, reach] = heights;
             const Pack dry = Pack(1e-3), full = Pack(1 - 1e-3);
             const Pack own = detail::values_at(fraction, cell, step);
             Pack amount = own;
             PackMask to_air = own > dry, to_liquid = own < full;
-            for (int k = 1; k <= 3; ++k) {
+            for (int k = 1; k <= reach; ++k) {
                 if (any(to_air)) {
                     const Pack f = detail::values_at(fraction, cell, step + k * air);
                     const Pack part = stretched ? f * height[at(3 + k)] : f;
@@ -156,16 +164,17 @@ private:
             return {amount, !(to_air | to_liquid)};
         }
 
-        void heights(int way) noexcept {
+        void heights(int way, bool deep) noexcept {
             const int axis = way / 2;
             const Real out = way % 2 == 0 ? -1 : 1;  // where the air is
             const Offset air = (way % 2 == 0 ? -1 : 1) * self.layout_.stride[at(axis)];
             const bool stretched = !self.sizes_.uniform();
-            const List& list = ways[at(way)];
+            const List& list = ways[deep][at(way)];
             for (int i = 0; i < list.count; i += pack_lanes) {
                 const auto item = items(list, i);
                 const PackCells cell = cells(item);
-                std::array<Pack, 7> height;
+                Heights heights{.stretched = stretched && axis == vertical, .reach = deep ? 3 : 1};
+                auto& height = heights.height;
                 std::array<Pack, 2> gap{Pack(1), Pack(1)};  // to the levels below and above
                 height.fill(Pack(1));
                 if (stretched)
@@ -178,15 +187,14 @@ private:
                         gap[0].set(lane, self.sizes_.gap(level) / own);
                         gap[1].set(lane, self.sizes_.gap(level + 1) / own);
                     }
-                const bool weighed = stretched && axis == vertical;
                 std::array<Pack, Dim> normal;
                 normal[at(axis)] = Pack(out);
                 PackMask complete = Pack(0) < Pack(1);
                 for (int t = 0; t < Dim; ++t) {
                     if (t == axis) continue;
                     const Offset step = self.layout_.stride[at(t)];
-                    const Column low = column(cell, -step, air, height, weighed);
-                    const Column high = column(cell, step, air, height, weighed);
+                    const Column low = column(cell, -step, air, heights);
+                    const Column high = column(cell, step, air, heights);
                     complete = complete & low.complete & high.complete;
                     const Pack apart = t == vertical ? gap[0] + gap[1] : Pack(2);
                     normal[at(t)] = (low.amount - high.amount) / apart;

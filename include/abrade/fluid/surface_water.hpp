@@ -23,7 +23,8 @@ class SurfaceWater {
 
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
-        : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides),
+        : grid_(&grid), sides_(params.sides),
+          liquid_(grid, params.sides, {.smallest_void = std::clamp(params.tolerance, 1e-6, 1e-4)}),
           friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
           burden_(grid.layout().total), wet_(grid.layout().total), rows_(grid.layout()),
           extension_(grid.layout(), sides_), open_in_(static_cast<std::size_t>(grid.layout().planes())) {
@@ -42,6 +43,7 @@ public:
             walls->repeat(sides_);
             walls_ = walls;
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
+            extension_.set_walls(*walls_);
             friction_ = WallFriction<Dim>(grid, params.sides, params.wall_law, walls_.get());
             held_ = Field<Real>(layout().total);
             open_middle_ = face_field<Dim>(layout());
@@ -177,7 +179,7 @@ public:
         }
     }
 
-    void extend(FaceField<Dim>& u) { extension_.extend(u, {wet_, rows_, held(), walls(), still_}); }
+    void extend(FaceField<Dim>& u) { extension_.extend(u, {wet_, rows_, held(), still_}); }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
     /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken

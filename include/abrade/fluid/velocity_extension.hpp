@@ -3,7 +3,9 @@
 
 #include <abrade/fluid/walls.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,47 +32,53 @@ public:
         : layout_(layout), sides_(sides), state_(layout.total, unknown), before_(layout),
           found_(static_cast<std::size_t>(layout.planes())), waiting_(found_) {}
 
+    /// Walls that close faces; they must outlive this.
+    void set_walls(const Walls<Dim>& walls) {
+        walls_ = &walls;
+        for (int a = 0; a < Dim; ++a) {
+            closed_[a] = Field<std::uint8_t>(layout_.total, 0);
+            walls.grid().for_each(
+                [&](const CellNumber<Dim>&, Offset c) { closed_[a][c] = walls.open_area()[a][c] == 0; });
+        }
+    }
+
     struct Water {
         const Field<std::uint8_t>& wet;      ///< 1 where the pressure is known, ghosts included
         const WetRows<Dim>& rows;            ///< to be looked at
         const Field<Real>& held;             ///< share of a cell that liquid fills [-]
-        const Walls<Dim>* walls;             ///< may be none
         std::span<const WaterFace> still{};  ///< faces of wet cells that no pressure moves
     };
 
     template <class State>
     void extend(FaceField<Dim, State>& u, const Water& water) {
-        const auto& [wet, rows, held, walls, still] = water;
+        const auto& [wet, rows, held, still] = water;
         // Where water has left nothing is known any more.
         before_.for_each_row([&](int plane, int row, const RowRange& r) {
             std::fill_n(state_.data() + layout_.row_start(plane, row) + r.begin, r.length(), unknown);
         });
         before_ = rows;
         for (int a = 0; a < Dim; ++a) {
-            begin(a, wet, rows);
+            begin(a, u[a], wet, rows);
             for (const WaterFace& face : still)
                 if (face.axis == a) state_[face.face] = unknown;
-            if (walls) close(walls->open_area()[a], u[a], rows);
             riders_[a].clear();
             for (int layer = 0; layer < layers; ++layer) {
                 join(u[a]);
                 take_means(u[a], rows);
                 if (layer == 0) find_riders(a, held);
                 know_found(rows);
-                if (layer == 0) know_liquid(a, held, rows, walls);
+                if (layer == 0) know_liquid(a, held, rows);
             }
-            if (walls) extend_wedges(u[a], rows);
+            if (walls_) extend_wedges(u[a], rows);
             rows.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = layout_.row_start(plane, row);
                 State* const __restrict v = u[a].data() + start;
                 const std::uint8_t* const __restrict state = state_.data() + start;
-                for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
-#pragma omp simd
-                    for (int i = first; i < first + lanes; ++i) {
-                        const State value = v[i];
-                        const bool dry = state[i] == unknown && i >= r.begin && i < r.end;
-                        v[i] = dry ? State(0) : value;
-                    }
+                for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
+                    if (!any_unknown(state + first)) continue;
+                    for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
+                        v[i] = state[i] == unknown ? State(0) : v[i];
+                }
             });
         }
     }
@@ -87,16 +95,27 @@ private:
     static constexpr std::uint8_t fixed =
         2;  ///< what is there is of no use to others: closed, or a side's own
 
-    void begin(int a, const Field<std::uint8_t>& wet, const WetRows<Dim>& rows) {
+    /// Faces of wet cells are known, closed ones fixed at 0.
+    template <class State>
+    void begin(int a, Field<State>& u, const Field<std::uint8_t>& wet, const WetRows<Dim>& rows) {
         const Offset back = layout_.stride[a];
+        const bool walls = walls_ != nullptr;
         rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout_.row_start(plane, row);
             const std::uint8_t* const __restrict here = wet.data() + start;
+            const std::uint8_t* const __restrict closed = walls ? closed_[a].data() + start : here;
             std::uint8_t* const __restrict state = state_.data() + start;
-            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
+            State* const __restrict v = u.data() + start;
+            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
 #pragma omp simd
                 for (int i = first; i < first + lanes; ++i)
                     state[i] = static_cast<std::uint8_t>(here[i] | here[i - back]);
+                if (!walls || !any(closed + first)) continue;
+#pragma omp simd
+                for (int i = first; i < first + lanes; ++i) state[i] = closed[i] != 0 ? fixed : state[i];
+                for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
+                    v[i] = closed[i] != 0 ? State(0) : v[i];
+            }
             trim(state, r);
             if (sides_.periodic(a)) return;
             const auto fix = [&](std::uint8_t& s) { s = s == known ? known : fixed; };
@@ -108,20 +127,25 @@ private:
         });
     }
 
+    /// Whether one byte of a pack is not 0.
+    static bool any(const std::uint8_t* pack) noexcept {
+        std::uint64_t eights[lanes / 8], all = 0;
+        std::memcpy(eights, pack, sizeof eights);
+        for (const std::uint64_t eight : eights) all |= eight;
+        return all != 0;
+    }
+    static bool any_unknown(const std::uint8_t* state) noexcept {
+        alignas(lanes) std::uint8_t is[lanes];
+#pragma omp simd
+        for (int k = 0; k < lanes; ++k) is[k] = state[k] == unknown;
+        return any(is);
+    }
+
     /// What whole packs have set around a row's range is unknown.
     static void trim(std::uint8_t* state, const RowRange& r) noexcept {
         const int first = Layout<Dim>::pack(r.begin), last = Layout<Dim>::pack(r.end + lanes - 1);
         std::fill_n(state + first, r.begin - first, unknown);
         std::fill_n(state + r.end, last - r.end, unknown);
-    }
-
-    template <class State>
-    void close(const Field<Real>& open_area, Field<State>& u, const WetRows<Dim>& rows) {
-        rows.for_each_row([&](int plane, int row, const RowRange& r) {
-            const Offset start = layout_.row_start(plane, row);
-            for (Offset c = start + r.begin; c < start + r.end; ++c)
-                if (open_area[c] == 0) state_[c] = fixed, u[c] = 0;
-        });
     }
 
     /// One layer.
@@ -202,39 +226,33 @@ private:
             }
     }
 
-    /// Drops and sheets thinner than a cell. Not beside cells that `walls` cut: where a surface meets a wall
+    /// Drops and sheets thinner than a cell. Not beside cells that walls cut: where a surface meets a wall
     /// at a shallow angle it ends in a wedge of several such cells, which lies on the wall.
-    void know_liquid(int a, const Field<Real>& held, const WetRows<Dim>& rows, const Walls<Dim>* walls) {
+    void know_liquid(int a, const Field<Real>& held, const WetRows<Dim>& rows) {
         const Offset back = layout_.stride[a];
         rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout_.row_start(plane, row);
-            const Real* const __restrict h = held.data() + start;
-            std::uint8_t* const __restrict state = state_.data() + start;
-            if (walls) {
-                const Real* const open = walls->open_volume().data() + start;
-                auto& waiting = waiting_[static_cast<std::size_t>(plane)];
-                for (int i = r.begin; i < r.end; ++i) {
+            const Real* const h = held.data() + start;
+            const Real* const open = walls_ ? walls_->open_volume().data() + start : nullptr;
+            std::uint8_t* const state = state_.data() + start;
+            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
+                if (!any_unknown(state + first)) continue;
+                for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i) {
                     if (state[i] != unknown || !(h[i] + h[i - back] > 1e-6)) continue;
-                    if (open[i] == 1 && open[i - back] == 1)
+                    if (!open || (open[i] == 1 && open[i - back] == 1))
                         state[i] = known;
                     else
-                        waiting.push_back(start + i);
+                        waiting_[static_cast<std::size_t>(plane)].push_back(start + i);
                 }
-                return;
             }
-            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
-#pragma omp simd
-                for (int i = first; i < first + lanes; ++i) {
-                    const bool found = (state[i] == unknown) & (h[i] + h[i - back] > 1e-6);
-                    state[i] = static_cast<std::uint8_t>(state[i] | (found ? known : unknown));
-                }
-            trim(state, r);
         });
     }
 
     static constexpr int lanes = Layout<Dim>::lanes;
     Layout<Dim> layout_;
     Sides<Dim> sides_;
+    const Walls<Dim>* walls_ = nullptr;
+    FaceField<Dim, std::uint8_t> closed_;  ///< 1 where walls close a face; a byte of it costs less to read
     Field<std::uint8_t> state_;
     WetRows<Dim> before_;  ///< looked at the last time
     PerAxis<std::vector<Rider>, Dim> riders_;

@@ -52,13 +52,22 @@ public:
         /// Whether normals are found anew for every sweep, not once a step (docs/verification tells what
         /// for).
         bool fit_every_sweep = false;
+        /// Air of less than this share of a cell [-] is a defect of the velocity's divergence, not a surface:
+        /// take what a projection leaves, where that is more.
+        Real smallest_void = 1e-6;
+
+        void validate() const {
+            require(smallest_void >= 0 && smallest_void <= 1e-3,
+                    {"VolumeOfFluid.smallest_void", "from 0 to 1e-3", "", "1e-6 is usual"}, smallest_void);
+        }
     };
 
     VolumeOfFluid(const Grid<Dim>& grid, const Sides<Dim>& sides, const Params& params)
-        : params_(params), grid_(grid), sides_((sides.validate(), sides)), layout_(grid.layout()),
-          sizes_(grid), normals_(layout_, sizes_), at_walls_(layout_, sizes_), fraction_(layout_.total, 0),
-          surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
-          band_(layout_), wet_(layout_), active_(layout_), touched_(layout_) {
+        : params_((params.validate(), params)), grid_(grid), sides_((sides.validate(), sides)),
+          layout_(grid.layout()), sizes_(grid), normals_(layout_, sizes_), at_walls_(layout_, sizes_),
+          fraction_(layout_.total, 0), surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)),
+          plane_of_(layout_.total, -1), band_(layout_, params_.smallest_void), wet_(layout_),
+          active_(layout_), touched_(layout_) {
         for (int a = 0; a < Dim; ++a) wraps_[index(a)] = sides_.periodic(a);
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
@@ -100,7 +109,7 @@ public:
             const Real f = fraction_[c];
             if (!(f >= 0 && f <= 1)) fail_fraction(cell, f);
             set_cell(c, marks_[c] & cell_mark::open ? f : 0);
-            if (f >= 1 - SurfaceBand<Dim>::smallest_void && f < 1) settled_.push_back(static_cast<Index>(c));
+            if (f >= full() && f < 1) settled_.push_back(static_cast<Index>(c));
         });
         wet_.find(fraction_);
         locate();
@@ -225,12 +234,12 @@ private:
     static constexpr Real little = 1e-5;  ///< less liquid of a cell than this has no momentum to speak of [-]
     /// Without a pressure of its own a cell that holds more than this takes in more than it has room for [-].
     static constexpr Real nearly_full = 0.9;
+    Real full() const noexcept { return 1 - params_.smallest_void; }  ///< from here on there is no surface
     /// A trace of air or of water tells nothing of where the surface is, but in a cell that a wall cuts.
     bool tells(Offset cell) const noexcept {
-        constexpr Real trace = SurfaceBand<Dim>::smallest_void;
         const Index i = plane_of_[cell];
-        return i >= 0 &&
-               (planes_.told[index(i)] != 0 || (fraction_[cell] > trace && fraction_[cell] < 1 - trace));
+        return i >= 0 && (planes_.told[index(i)] != 0 ||
+                          (fraction_[cell] > params_.smallest_void && fraction_[cell] < full()));
     }
 
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner;
@@ -273,23 +282,7 @@ private:
     }
 
     /// Share of its open volume that leaves a cell at the surface per second, at most [1/s].
-    Real outflow_rate(const FaceField<Dim>& velocity) const {
-        const auto cells = band_.cells();
-        const auto count = static_cast<Index>(cells.size());
-        std::vector<Real> most(static_cast<std::size_t>(block_count(count)), 0);
-        parallel_blocks(count, [&](Index block, Index first, Index last) {
-            Real largest = 0;
-            for (Index i = first; i < last; ++i) {
-                const Real rate = rate_of(velocity, i);
-                if (!(rate <= largest)) largest = rate;  // keeps what is not a number
-            }
-            most[static_cast<std::size_t>(block)] = largest;
-        });
-        Real largest = 0;
-        for (const Real rate : most)
-            if (!(rate <= largest)) largest = rate;
-        return largest;
-    }
+    Real outflow_rate(const FaceField<Dim>& velocity) const;
     Real rate_of(const FaceField<Dim>& velocity, Index i) const noexcept {
         const auto k = static_cast<std::size_t>(i);
         const Offset c = band_.cells()[k];
@@ -319,7 +312,7 @@ private:
         band_.find(fraction_, marks_, active_, sides_);
         // What has left the band with less air than makes a surface is full from now on; the rest is surplus.
         for (const Index c : settled_)
-            if (fraction_[c] >= 1 - SurfaceBand<Dim>::smallest_void && !band_.holds(c)) {
+            if (fraction_[c] >= full() && !band_.holds(c)) {
                 surplus_[c] += fraction_[c] - 1;
                 fraction_[c] = 1;
             }

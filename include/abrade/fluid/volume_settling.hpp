@@ -91,7 +91,7 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
     const auto cells = band_.cells();
     const auto levels = band_.levels();
     const auto count = static_cast<Index>(cells.size());
-    constexpr Real full = 1 - SurfaceBand<Dim>::smallest_void;
+    const Real full = this->full();
     bulk_.resize(cells.size());
     parallel_for(count, [&](Index i) {
         const auto k = static_cast<std::size_t>(i);

@@ -79,6 +79,25 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
     if (open_volumes_ && !keep) at_walls_.find(planes_, fraction_.data(), marks_.data(), plane_of_.data());
 }
 
+template <int Dim>
+Real VolumeOfFluid<Dim>::outflow_rate(const FaceField<Dim>& velocity) const {
+    const auto cells = band_.cells();
+    const auto count = static_cast<Index>(cells.size());
+    std::vector<Real> most(static_cast<std::size_t>(block_count(count)), 0);
+    parallel_blocks(count, [&](Index block, Index first, Index last) {
+        Real largest = 0;
+        for (Index i = first; i < last; ++i) {
+            const Real rate = rate_of(velocity, i);
+            if (!(rate <= largest)) largest = rate;  // keeps what is not a number
+        }
+        most[static_cast<std::size_t>(block)] = largest;
+    });
+    Real largest = 0;
+    for (const Real rate : most)
+        if (!(rate <= largest)) largest = rate;
+    return largest;
+}
+
 /// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
 /// band; and what divergence leaves in the bulk.
 template <int Dim>

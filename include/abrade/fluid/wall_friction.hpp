@@ -53,7 +53,14 @@ public:
         if (walls)
             for (const WallCell<Dim>& w : walls->wall_cells()) add(grid, sides, *walls, w);
         if (law_.kind == WallLaw::Kind::logarithmic) add_sides(grid, sides, walls);
-        for (auto& list : held_) merge(list);
+        for (auto& list : held_) {
+            merge(list);
+            for (Held& h : list)
+                h.per_speed =
+                    law_.kind == WallLaw::Kind::no_slip
+                        ? 1 / h.distance
+                        : square(karman / std::log(30 * std::max(h.distance / law_.roughness, 0.5)));
+        }
     }
 
     bool empty() const noexcept {
@@ -89,18 +96,18 @@ private:
         Offset face = 0;
         Real distance = 0;    ///< of the face's centre from the wall [m]
         Real per_volume = 0;  ///< wall area over open volume [1/m]
+        Real per_speed = 0;   ///< C over viscosity [1/m], or over |u| [-]
     };
 
     template <class State>
     Real taken_share(const FaceField<Dim, State>& u, int a, const Held& h, Real step,
                      Real viscosity) const noexcept {
         if (law_.kind == WallLaw::Kind::no_slip) {
-            const Real z = step * h.per_volume * viscosity / h.distance;
+            const Real z = step * h.per_volume * viscosity * h.per_speed;
             return z / (1 + z);
         }
         // The root of v (1 + z v / u) = u.
-        const Real z = step * h.per_volume * speed(u, a, h.face) *
-                       square(karman / std::log(30 * std::max(h.distance / law_.roughness, 0.5)));
+        const Real z = step * h.per_volume * speed(u, a, h.face) * h.per_speed;
         return 1 - 2 / (1 + std::sqrt(1 + 4 * z));
     }
 

@@ -35,6 +35,7 @@ public:
     bool keep(FaceField<Dim>& velocity, const Field<Real>& pressure, const SurfaceWater<Dim>& water,
               Real dt) {
         const WetRows<Dim> before = std::exchange(rows_, water.rows());
+        const auto bounded = [](Real x, Real most) { return x > most ? most : x < -most ? -most : x; };
         // Of the change at the start, which is that of one second, half a step; then of the last step's.
         const bool knows = last_step_ == 0 || (restored_ && known_);
         const Real led = std::exchange(
@@ -65,11 +66,11 @@ public:
                         const int of_water = (wet[i] | wet_back[i]) & (was_wet[i] | was_wet_back[i]);
                         const bool stays = of_water != 0 && i >= begin && i < end;
                         const Real last = static_cast<Real>(changes[i]);
-                        const Real began = kept[i] + std::clamp(led * last, -led_most, led_most);
+                        const Real began = kept[i] + bounded(led * last, led_most);
                         const auto change = static_cast<float>(stays ? (knows ? last : now[i] - began) : 0);
                         kept[i] = now[i];
                         changes[i] = change;
-                        now[i] += std::clamp(lead_ * static_cast<Real>(change), -most, most);
+                        now[i] += bounded(lead_ * static_cast<Real>(change), most);
                     }
             });
         }
