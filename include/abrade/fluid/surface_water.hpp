@@ -78,7 +78,14 @@ public:
     }
 
     /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
+    /// So it is where that velocity crosses more than a cell: the pressure of an impact, which lasted one
+    /// step, has pushed it for another, and a speed that carries itself would grow without bound.
     void carry_by(const FaceField<Dim>& stage, Real step) {
+        const LevelTable<Dim, Real> volumes(*grid_, [&](int k) {
+            CellNumber<Dim> cell{};
+            cell[vertical] = k;
+            return grid_->volume(cell);
+        });
         for (int a = 0; a < Dim; ++a) {
             const LevelTable<Dim, Real> swept(*grid_, [&](int k) {
                 CellNumber<Dim> cell{};
@@ -94,14 +101,15 @@ public:
                 const Real* const __restrict f_back = f - back;
                 const Real* const __restrict g = before_.data() + start;
                 const Real* const __restrict g_back = g - back;
-                const auto area = swept.row(row);
+                const auto area = swept.row(row), room = volumes.row(row);
                 constexpr int lanes = Layout<Dim>::lanes;
                 for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
 #pragma omp simd
                     for (int i = first; i < first + lanes; ++i) {
                         const Real least = std::min(std::min(f[i], f_back[i]), std::min(g[i], g_back[i]));
                         const Real old = c[i], full = v[i] * area[i];
-                        c[i] = least == 1 && i >= r.begin && i < r.end ? full : old;
+                        const bool own = least == 1 && std::abs(full) <= room[i];
+                        c[i] = own && i >= r.begin && i < r.end ? full : old;
                     }
             });
         }
