@@ -209,4 +209,90 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     params = good;
     params.courant = 2;
     CHECK(says(params).starts_with("GridFluid.courant must be in (0, 1], got 2"));
+    constexpr Real nan = std::numeric_limits<Real>::quiet_NaN(), inf = std::numeric_limits<Real>::infinity();
+    params = good;
+    params.grid.cells[1] = 2, params.grid.levels = {0, 0.5, inf};
+    CHECK(says(params).starts_with("Grid.levels[2] must be finite, got inf m"));
+    params = good;
+    params.grid.low[0] = 1e15;
+    CHECK(says(params).starts_with("Grid.low.x must be within 1e12 cells of 0, got 1e+15 m; numbers cannot"));
+    params = good;
+    params.velocity = [](const Point<2>& x) { return Point<2>(0, x[0] > 0.9 && x[1] > 0.8 ? nan : 0); };
+    CHECK(says(params).starts_with("GridFluid.velocity.z at x = 0.9375 m, z = 0.875 m, t = 0 s must"));
+    params = good;
+    params.inflow_water = good.water;
+    CHECK(says(params).starts_with("GridFluid.inflow_water must be left out where no side is an inflow"));
+    params.sides[0] = {Side::inflow, Side::outflow};
+    params.side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.5 ? inf : 1, 0); };
+    CHECK(
+        says(params).starts_with("GridFluid.side_velocity.x at x = 0 m, z = 0.5625 m, t = 0 s must be "
+                                 "finite, got inf m/s"));
+    params.side_velocity = [](const Point<2>&, Real) { return Point<2>(1, 0); };
+    CHECK(says(params) == "");
+    params.outflow_water = [](const Point<2>& x) { return x[1] > 0.5 ? nan : 0; };
+    CHECK(says(params).starts_with("GridFluid.outflow_water at x = 1 m, z = 0.5625 m must be finite, got"));
+    params.outflow_water = {};
+    params.wall = [](const Point<2>& x) { return x[0] - 0.2; };
+    CHECK(
+        says(params).starts_with("GridFluid.wall must be open somewhere at the inflow (lower side along "
+                                 "x), got 0 of 8 faces; move the wall"));
+    params.wall = [](const Point<2>& x) { return x[1] - 0.6; };
+    CHECK(says(params).starts_with("GridFluid.inflow_water must be > 0 somewhere at the inflow"));
+    GridFluid<2> flow(good);
+    CHECK_THROWS_WITH_AS(flow.advance(nan), doctest::Contains("GridFluid.advance: to_time"), InputError);
+}
+
+TEST_CASE(
+    "what is given later and is no number, and functions that throw: named, and the flow is as it was") {
+    auto params = basin(16, [](const Point<2>& x) { return 0.5 - x[1]; });
+    params.sides[0] = {Side::inflow, Side::outflow};
+    params.inflow_water = params.water;
+    params.steady_sides = false;
+    params.side_velocity = [](const Point<2>&, Real t) { return Point<2>(std::sqrt(0.1 - t), 0); };
+    GridFluid<2> flow(params);
+    std::string message;
+    try {
+        flow.advance(1);
+    } catch (const FluidError& error) {
+        message = error.what();
+    }
+    MESSAGE(message);
+    CHECK(message.find("GridFluid.side_velocity.x at x = 0 m") != std::string::npos);
+    CHECK(flow.time() < 0.1);
+    flow.advance(0.099);
+    CHECK(flow.time() == 0.099);
+    CHECK(std::isfinite(flow.kinetic_energy()));
+    params.side_velocity = [](const Point<2>&, Real t) {
+        if (t > 0.05) throw std::runtime_error("no record of the river");
+        return Point<2>(0.5, 0);
+    };
+    GridFluid<2> ends(params);
+    CHECK_THROWS_WITH_AS(ends.advance(1), doctest::Contains("no record of the river"), FluidError);
+    ends.advance(0.0499);
+    CHECK(ends.time() == 0.0499);
+}
+
+TEST_CASE("an inflow that begins later enters a dry box") {
+    auto params = basin(16, {});
+    params.sides[0] = {Side::inflow, Side::outflow};
+    params.inflow_water = [](const Point<2>& x) { return 0.25 - x[1]; };
+    params.steady_sides = false;
+    params.side_velocity = [](const Point<2>&, Real t) { return Point<2>(std::min(10 * t, 1.0), 0); };
+    params.largest_step = 1e-3;
+    GridFluid<2> flow(params);
+    flow.advance(0.2);
+    // 0.05 m come in until 0.1 s and 0.1 m after, up to a step.
+    CHECK(flow.liquid().volume() == doctest::Approx(0.15 * 0.25).epsilon(0.02));
+}
+
+TEST_CASE("a box that fills: refused as soon as nothing is left that could rise") {
+    auto params = basin(16, [](const Point<2>& x) { return 0.5 - x[1]; });
+    params.sides[0][0] = Side::inflow;
+    params.side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] < 0.25 ? 1 : 0, 0); };
+    params.inflow_water = [](const Point<2>&) { return 1.0; };
+    GridFluid<2> flow(params);
+    CHECK_THROWS_WITH_AS(flow.advance(4), doctest::Contains("more flows in than out"), FluidError);
+    MESSAGE("until " << flow.time() << " s; " << flow.liquid().volume() << " of 1 m2");
+    CHECK(flow.liquid().volume() < 1.02);
+    CHECK(flow.liquid().volume() > 0.95);
 }

@@ -93,4 +93,7 @@ TEST_CASE("bad input names field, value, rule and remedy") {
           "Inflow.depth must be such that its surface lies below the top of the box (0.16 m), got 0.2 m; "
           "give the "
           "box more cells upwards");
+    CHECK(message_of([&] { Inflow<2>({.discharge = 1, .depth = 0.1, .bed = -0.02}).give_to(box); }) ==
+          "Inflow.bed must be no lower than the floor of the box (0 m), got -0.02 m; what flows below it "
+          "would not enter: give the box more cells downwards");
 }

@@ -193,6 +193,22 @@ TEST_CASE("a jet that plunges and traps air: what is trapped is a void, so it fi
     CHECK(fastest(closed) < 5);
 }
 
+TEST_CASE("water that lands all at once: its impact's pressure lasts one step, the next is longer") {
+    for (const int width : {1, 2}) {
+        auto params = basin([](const Point<2>& x) { return std::min(x[1] - 1.5, 2.5 - x[1]); });
+        params.grid = {.cells = {width, 64}, .spacing = {0.05, 0.05}};
+        GridFluid<2> shaft(params);
+        Real most = 0, energy = 0;
+        while (shaft.time() < 2) {
+            run(shaft, shaft.stable_step().seconds);
+            most = std::max(most, fastest(shaft));
+            energy = std::max(energy, shaft.kinetic_energy());
+        }
+        MESSAGE(width << " wide: fastest " << most << " m/s, freely " << std::sqrt(2 * g * 1.5));
+        CHECK(energy < 1.05 * 1000 * g * 1.5 * width * 0.05);
+    }
+}
+
 TEST_CASE("no water, then some: a dry bed that water flows onto") {
     auto params = basin({});
     params.sides[0] = {Side::inflow, Side::outflow};

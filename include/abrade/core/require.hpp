@@ -19,10 +19,11 @@ struct InputError : std::invalid_argument {
 
 /// The shortest text that reads back as the same number: "0.3", "5e+06", "nan".
 inline std::string to_text(Real value) {
+    if (std::isnan(value)) return "nan";  // whatever its sign
     char buffer[40];
     for (int digits = 6; digits <= 17; ++digits) {
         std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
-        if (std::isnan(value) || std::strtod(buffer, nullptr) == value) break;
+        if (std::strtod(buffer, nullptr) == value) break;
     }
     return buffer;
 }

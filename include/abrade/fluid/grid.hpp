@@ -190,8 +190,12 @@ public:
                         {"Grid.cells." + name, "from 1 to 1048575", "", "give the number of cells along it"},
                         cells[a]);
                 require_finite(low[a], "Grid.low." + name, "m");
-                if (a != vertical || levels.empty())
-                    require_positive(spacing[a], "Grid.spacing." + name, "m");
+                if (a == vertical && !levels.empty()) continue;
+                require_positive(spacing[a], "Grid.spacing." + name, "m");
+                require(std::abs(low[a]) <= 1e12 * spacing[a],
+                        {"Grid.low." + name, "within 1e12 cells of 0", "m",
+                         "numbers cannot tell such cells apart: put the origin near the box"},
+                        low[a]);
             }
             Real all = 1;
             for (const int n : cells) all *= n + 2 * Layout<Dim>::ghosts + 8;
@@ -201,12 +205,14 @@ public:
                     {"Grid.levels.size()", "the number of cells along z and one more", "",
                      "give the height of each face, floor and ceiling included"},
                     static_cast<Real>(levels.size()));
-            for (std::size_t k = 1; k < levels.size(); ++k)
-                require(levels[k] > levels[k - 1],
-                        {"Grid.levels[" + std::to_string(k) + "]",
-                         "above the level before it (" + to_text(levels[k - 1]) + " m)", "m",
-                         "sort the levels upwards"},
+            for (std::size_t k = 0; k < levels.size(); ++k) {
+                const std::string name = "Grid.levels[" + std::to_string(k) + "]";
+                require_finite(levels[k], name, "m");
+                require(k == 0 || levels[k] > levels[k - 1],
+                        {name, "above the level before it (" + to_text(levels[k > 0 ? k - 1 : 0]) + " m)",
+                         "m", "sort the levels upwards"},
                         levels[k]);
+            }
         }
     };
 
@@ -255,6 +261,13 @@ public:
         Point<Dim> x = centre(cell);
         x[axis] = face(axis, cell[axis]);
         return x;
+    }
+    /// Sizes inside the box [m].
+    Real smallest(int axis) const noexcept {
+        return *std::min_element(size_[axis].begin(), size_[axis].end());  // ghosts are as those beside them
+    }
+    Real largest(int axis) const noexcept {
+        return *std::max_element(size_[axis].begin(), size_[axis].end());
     }
     Real low(int axis) const noexcept { return face(axis, 0); }
     Real high(int axis) const noexcept { return face(axis, cells(axis)); }
@@ -314,5 +327,14 @@ private:
     Layout<Dim> layout_;
     PerAxis<std::vector<Real>, Dim> faces_, size_, centre_, gap_;
 };
+
+/// "x = 0.1 m, z = 0.2 m", for errors.
+template <int Dim>
+std::string place_text(const Point<Dim>& x) {
+    std::string text;
+    for (int a = 0; a < Dim; ++a)
+        text += std::string(a > 0 ? ", " : "") + Grid<Dim>::axis_name(a) + " = " + short_text(x[a]) + " m";
+    return text;
+}
 
 }  // namespace abrade

@@ -43,14 +43,15 @@ public:
     explicit GridFluid(Params params, Turbulence turbulence = {})
         : params_((params.validate(), std::move(params))),
           grid_(std::make_shared<const Grid<Dim>>(params_.grid)),
-          sides_(*grid_, gliding_sides(params_.sides, params_.wall_law), params_.side_velocity),
+          sides_(*grid_, gliding_sides(params_.sides, params_.wall_law), params_.side_velocity,
+                 params_.start_time),
           projection_(*grid_, params_.sides), velocity_(face_field<Dim, State>(layout())), stage_(velocity_),
           pressure_(layout().total),
           side_friction_(*grid_, params_.sides, side_law(params_.wall_law), nullptr),
           time_(params_.start_time) {
-        sides_.set_time(time_);
         if constexpr (has_surface) {
             water_.emplace(*grid_, params_);
+            detail::check_inflows(params_, water_->liquid(), water_->walls());
             water_->find(projection_, pressure_);
             outflows_ = detail::Outflows<Dim>(*grid_, params_);
         } else if (params_.wall || params_.outflow_water) {
@@ -63,12 +64,7 @@ public:
             if constexpr (has_surface) walls = water_->walls();
             eddies_.emplace(*grid_, params_, turbulence, walls);
         }
-        if (params_.velocity) {
-            grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
-                for (int a = 0; a < Dim; ++a)
-                    velocity_[a][c] = static_cast<State>(params_.velocity(grid_->face_centre(a, cell))[a]);
-            });
-        }
+        detail::give_velocity(*grid_, params_, velocity_);
         sides_.fill(velocity_);
         if (params_.velocity) {
             Field<State> potential(layout().total);
@@ -112,8 +108,7 @@ public:
         const Point<Dim> falls = params_.acceleration(time_);
         Real per_h2 = 0, fall = 0, shortest = std::numeric_limits<Real>::infinity();
         for (int a = 0; a < Dim; ++a) {
-            Real size = std::numeric_limits<Real>::infinity();
-            for (int i = 0; i < grid_->cells(a); ++i) size = std::min(size, grid_->size(a, i));
+            const Real size = grid_->smallest(a);
             per_h2 += 1 / square(size);
             fall += std::abs(falls[a]) / size;
             shortest = std::min(shortest, size);
@@ -140,6 +135,7 @@ public:
 
     /// Goes on to exactly `to_time` in steps of its own. Throws FluidError.
     void advance(Real to_time) {
+        require_finite(to_time, "GridFluid.advance: to_time", "s");
         while (time_ < to_time) {
             const Real left = to_time - time_;
             const Real steps = std::ceil(left / stable_step().seconds - 1e-9);
@@ -155,10 +151,15 @@ public:
     /// One step of dt [s]. Throws FluidError where it goes wrong, and leaves the flow as it was.
     void step(Real dt) {
         require_positive(dt, "GridFluid.step: dt", "s");
-        if constexpr (has_surface)
-            step_below_surface(dt);
-        else
-            step_full(dt);
+        try {
+            if constexpr (has_surface)
+                step_below_surface(dt);
+            else
+                step_full(dt);
+        } catch (const std::exception& wrong) {  // more than a cell would leave it, a given function fails
+            take_back();
+            throw FluidError(place_in_time(dt) + wrong.what());
+        }
         check(dt);
         find_eddies();
         time_ += dt;
@@ -229,11 +230,7 @@ private:
                 });
             }
         }
-        if (const FaceField<Dim>* open = water_->open_area())
-            grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
-                for (int a = 0; a < Dim; ++a) stage_[a][c] *= (*open)[a][c] > 0;
-            });
-        for (const WaterFace& f : water_->still()) stage_[f.axis][f.face] = 0;
+        water_->clear_walls(stage_);
         outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1]});
         projection_.project(stage_, pressure_, 1, 1e-12);
         water_->clear_air(stage_);
@@ -241,9 +238,10 @@ private:
     }
 
     void step_full(Real dt) {
+        const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
+        if (!params_.steady_sides) sides_.set_time(time_ + dt);
         saved_pressure_ = pressure_;  // the velocity is kept by the second stage
         sides_.fill_cells(pressure_);
-        const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
         const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
             Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
             advance(projection_.faces(), s);
@@ -251,7 +249,6 @@ private:
         };
         stage(velocity_, stage_, 0);
         const auto taken = side_friction_.apply(stage_, dt, nu());
-        if (!params_.steady_sides) sides_.set_time(time_ + dt);
         sides_.fill(stage_);
         stage(stage_, saved_velocity_, 0.5);
         side_friction_.take(saved_velocity_, taken, 0.5);
@@ -265,12 +262,7 @@ private:
         auto& water = *water_;
         if (record_.keep(velocity_, pressure_, water, dt)) finish(velocity_);
         sides_.join_cells(pressure_);
-        try {
-            water.move(velocity_, dt);
-        } catch (const InputError& beyond) {  // more than a cell would leave it
-            restore();
-            throw FluidError(place_in_time(dt) + beyond.what());
-        }
+        water.move(velocity_, dt);
         // The velocity goes from half a step before the new surface to half a step behind it.
         const Point<Dim> falls = params_.acceleration(time_ + dt);
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
@@ -303,8 +295,8 @@ private:
         for (const WaterFace& f : water.still())
             velocity_[f.axis][f.face] = record_.velocity()[f.axis][f.face];
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
-        // At steady sides there is what was there at the beginning of the step.
-        if (!params_.steady_sides) sides_.fill(velocity_, &water.rows());
+        // Whole sides: where they change there may not have been water before.
+        if (!params_.steady_sides) sides_.fill(velocity_);
         report_ =
             projection_.project(velocity_, pressure_, dt, params_.tolerance, true, &water.liquid().surplus());
         finish(velocity_);
@@ -315,7 +307,6 @@ private:
         advance_momentum<Scheme, Turbulence::has_eddies>(*grid_, faces, stage);
     }
 
-    /// Of the present velocity.
     void find_eddies() {
         if constexpr (Turbulence::has_eddies) {
             if constexpr (has_surface)
@@ -347,24 +338,36 @@ private:
             std::swap(pressure_, saved_pressure_);
         }
     }
+    /// After a step that threw: a full box has not changed by then.
+    void take_back() {
+        if constexpr (has_surface)
+            restore();
+        else if (!params_.steady_sides)
+            sides_.set_time(time_);
+    }
     void check(Real dt) {
         Real size = 0;
-        for (int a = 0; a < Dim; ++a)
-            for (int i = 0; i < grid_->cells(a); ++i) size = std::max(size, grid_->size(a, i));
-        const bool found = std::isfinite(report_.after) && report_.after <= 1;
+        for (int a = 0; a < Dim; ++a) size = std::max(size, grid_->largest(a));
+        // Without a surface and an outflow the pressure is known but for a constant, and takes no volume.
+        const bool brimful = enters_ > 0 && projection_.multigrid().floating() &&
+                             report_.after > std::max(10 * params_.tolerance, 1e-5);
+        const bool found = std::isfinite(report_.after) && report_.after <= 1 && !brimful;
         // The bound is cheap, the speed itself is not.
         if (found && (report_.courant / dt * size <= params_.fastest ||
                       detail::FastFace<Dim>(*grid_, velocity_).speed <= params_.fastest))
             return;
-        const std::string where = detail::FastFace<Dim>(*grid_, velocity_).text();
-        const std::string cause = !std::isfinite(report_.after) ? "the velocity is not a number"
-                                  : report_.after > 1
-                                      ? "the pressure was not found, a cell gains " +
-                                            short_text(report_.after) + " of its volume in a step"
-                                      : "beyond GridFluid.fastest";
+        std::string cause = "beyond GridFluid.fastest";
+        if (!std::isfinite(report_.after))
+            cause = "the velocity is not a number";
+        else if (brimful)
+            cause = "more flows in than out, and no surface is left to rise; make a side an outflow";
+        else if (report_.after > 1)
+            cause = "no pressure was found, cells gain " + short_text(report_.after) + " of their volume";
+        if (!brimful)
+            cause += "; " + detail::FastFace<Dim>(*grid_, velocity_).text() +
+                     "; take a smaller courant, or a finer grid there";
         restore();
-        throw FluidError(place_in_time(dt) + cause + "; " + where +
-                         "; take a smaller courant, or a finer grid there");
+        throw FluidError(place_in_time(dt) + cause);
     }
     std::string place_in_time(Real dt) const {
         return "step " + std::to_string(steps_) + " (t = " + short_text(time_) +

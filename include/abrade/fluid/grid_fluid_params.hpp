@@ -48,10 +48,17 @@ struct GridFluidParams {
     Real fastest = 100;   ///< beyond it a run is wrong [m/s]
     Real start_time = 0;  ///< [s]; before 0: it settles before the solids begin
 
-    /// Gravity and body force at a time [m/s2].
+    /// Gravity and body force at a time [m/s2]. Throws InputError where that is no number.
     Point<Dim> acceleration(Real time) const {
         Point<Dim> sum = gravity;
-        if (body_force) sum += body_force(time);
+        if (!body_force) return sum;
+        sum += body_force(time);
+        for (int a = 0; a < Dim; ++a)
+            if (!std::isfinite(sum[a]))
+                require_finite(sum[a],
+                               std::string("GridFluid.body_force.") + Grid<Dim>::axis_name(a) +
+                                   " at t = " + short_text(time) + " s",
+                               "m/s2");
         return sum;
     }
 
@@ -84,6 +91,10 @@ struct GridFluidParams {
             fail({"GridFluid.side_velocity", "given where a side is an inflow", "m/s",
                   "give the velocity there"},
                  "none");
+        if (inflow_water && !in)
+            fail({"GridFluid.inflow_water", "left out where no side is an inflow", "",
+                  "make a side an inflow"},
+                 "given");
         if (outflow_water && !out)
             fail({"GridFluid.outflow_water", "left out where no side is an outflow", "",
                   "make a side an outflow"},

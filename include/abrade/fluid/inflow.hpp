@@ -82,6 +82,11 @@ public:
                  "such that its surface lies below the top of the box (" + short_text(top) + " m)", "m",
                  "give the box more cells upwards"},
                 params_.depth);
+        const Real floor = g.levels.empty() ? g.low[vertical] : g.levels.front();
+        require(params_.bed >= floor - 1e-9 * params_.depth,
+                {"Inflow.bed", "no lower than the floor of the box (" + short_text(floor) + " m)", "m",
+                 "what flows below it would not enter: give the box more cells downwards"},
+                params_.bed);
         const Real inside = g.low[0] + 0.5 * g.spacing[0];
         const Inflow stream = *this;
         water.sides[0][0] = Side::inflow;

@@ -25,9 +25,11 @@ public:
                     const Real size = grid.size(a, cell[a]);
                     Point<Dim> x = grid.centre(cell);
                     x[a] += high ? 0.5 * size : -0.5 * size;
-                    const Real depth = held_ ? std::max(params.outflow_water(x), Real(0)) : 0;
-                    faces_.push_back(
-                        {a, c, high ? c + s : c, high ? c : c + s, s, (high ? 2 : -2) / size, depth});
+                    const Real depth = held_ ? params.outflow_water(x) : 0;
+                    if (!std::isfinite(depth))
+                        require_finite(depth, "GridFluid.outflow_water at " + place_text<Dim>(x), "m");
+                    faces_.push_back({a, c, high ? c + s : c, high ? c : c + s, s, (high ? 2 : -2) / size,
+                                      std::max(depth, Real(0))});
                 });
             }
     }

@@ -5,7 +5,7 @@
 #include <abrade/fluid/projection.hpp>
 #include <abrade/fluid/velocity_extension.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
-#include <abrade/fluid/water_among_walls.hpp>
+#include <abrade/fluid/water_start.hpp>
 
 #include <memory>
 #include <utility>
@@ -52,7 +52,8 @@ public:
                     open_middle_[b][w.cell] = 0.5 * (1 - walls_->open_volume()[w.cell]) * w.normal[b];
             for (auto& b : open_middle_) join(b);
         }
-        fill(params);
+        give_water(params, walls_.get(), liquid_);
+        settle();
     }
 
     const VolumeOfFluid<Dim>& liquid() const noexcept { return liquid_; }
@@ -86,10 +87,17 @@ public:
         for (auto& moved : liquid_.moved()) join(moved);
     }
 
-    /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes. A
-    /// trace of air makes no surface: or round-off would choose between them.
+    /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
+    /// So it is where that velocity crosses more than a cell: the pressure of an impact, which lasted one
+    /// step, has pushed it for another, and a speed that carries itself would grow without bound.
+    /// A trace of air makes no surface: or round-off would choose.
     void carry_by(const FaceField<Dim>& stage, Real step) {
-        constexpr Real full = 1 - SurfaceBand<Dim>::smallest_void;
+        const Real full = liquid_.full();
+        const LevelTable<Dim, Real> volumes(*grid_, [&](int k) {
+            CellNumber<Dim> cell{};
+            cell[vertical] = k;
+            return grid_->volume(cell);
+        });
         for (int a = 0; a < Dim; ++a) {
             const LevelTable<Dim, Real> swept(*grid_, [&](int k) {
                 CellNumber<Dim> cell{};
@@ -105,14 +113,15 @@ public:
                 const Real* const __restrict f_back = f - back;
                 const Real* const __restrict g = before_.data() + start;
                 const Real* const __restrict g_back = g - back;
-                const auto area = swept.row(row);
+                const auto area = swept.row(row), room = volumes.row(row);
                 constexpr int lanes = Layout<Dim>::lanes;
                 for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
 #pragma omp simd
                     for (int i = first; i < first + lanes; ++i) {
                         const Real old = c[i], swept_by_it = v[i] * area[i];
                         const bool in_bulk = (f[i] >= full) & (f_back[i] >= full) & (g[i] >= full) &
-                                             (g_back[i] >= full) & (i >= r.begin) & (i < r.end);
+                                             (g_back[i] >= full) & (std::abs(swept_by_it) <= room[i]) &
+                                             (i >= r.begin) & (i < r.end);
                         c[i] = in_bulk ? swept_by_it : old;
                     }
             });
@@ -149,6 +158,14 @@ public:
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
     }
 
+    /// Nothing falls through walls.
+    void clear_walls(FaceField<Dim>& u) const {
+        if (walls_)
+            grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
+                for (int a = 0; a < Dim; ++a) u[a][c] *= walls_->open_area()[a][c] > 0;
+            });
+        for (const WaterFace& f : still_) u[f.axis][f.face] = 0;
+    }
     /// Nothing falls where there is no water: friction of walls would take its part of that.
     void clear_air(FaceField<Dim>& u) const {
         grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
@@ -248,39 +265,6 @@ private:
     }
     bool is_open(Offset c) const noexcept { return !walls_ || walls_->open_volume()[c] > 0; }
 
-    /// Shares of the open volume that lie in the water of the start, and beyond inflows.
-    void fill(const GridFluidParams<Dim>& params) {
-        Field<Real>& f = liquid_.fraction();
-        const auto shares = [&](const PlaceFunction<Dim>& water, auto&& wanted) {
-            if (!water) return;
-            typename Walls<Dim>::Params how{.closed_below = 0, .may_close_all = true, .bounded_slope = false};
-            const Walls<Dim> filled(*grid_, water, how);
-            grid_->for_each(
-                [&](const CellNumber<Dim>& cell, Offset c) {
-                    if (!wanted(cell) || !is_open(c)) return;
-                    const Real share = filled.open_volume()[c];
-                    const bool cut = walls_ && (liquid_.marks()[c] & cell_mark::whole) == 0;
-                    f[c] = cut && share > 0 && share < 1
-                               ? WaterAmongWalls<Dim>::share(*grid_, cell, params.wall, water)
-                               : share;
-                },
-                Layout<Dim>::ghosts);
-        };
-        const auto inside = [&](const CellNumber<Dim>& cell) {
-            for (int a = 0; a < Dim; ++a)
-                if (cell[a] < 0 || cell[a] >= grid_->cells(a)) return false;
-            return true;
-        };
-        shares(params.water, inside);
-        shares(params.inflow_water, [&](const CellNumber<Dim>& cell) {
-            for (int a = 0; a < Dim; ++a)
-                if ((cell[a] < 0 && sides_[a][0] == Side::inflow) ||
-                    (cell[a] >= grid_->cells(a) && sides_[a][1] == Side::inflow))
-                    return true;
-            return false;
-        });
-        settle();
-    }
     void settle() {
         liquid_.prepare();
         rows_before_ = rows_;

@@ -5,13 +5,22 @@
 #include <abrade/fluid/sides.hpp>
 #include <abrade/fluid/wet_rows.hpp>
 
+#include <cmath>
 #include <functional>
+#include <string>
 
 namespace abrade {
 
 /// Velocity at a point of a side at a time [m/s]: of a wall that moves along itself, or of what flows in.
 template <int Dim>
 using SideVelocity = std::function<Point<Dim>(const Point<Dim>&, Real)>;
+
+/// What an error calls a velocity: "GridFluid.velocity.z at x = 0.1 m, z = 0.2 m, t = 0 s".
+template <int Dim>
+std::string velocity_at(std::string_view name, int component, const Point<Dim>& x, Real time) {
+    return std::string(name) + '.' + Grid<Dim>::axis_name(component) + " at " + place_text<Dim>(x) +
+           ", t = " + short_text(time) + " s";
+}
 
 /// A side of the box, or what of it lies beside rows that are wet.
 template <int Dim>
@@ -26,13 +35,14 @@ struct SidePart {
 template <int Dim>
 class VelocitySides {
 public:
-    VelocitySides(const Grid<Dim>& grid, const Sides<Dim>& sides, SideVelocity<Dim> given)
+    VelocitySides(const Grid<Dim>& grid, const Sides<Dim>& sides, SideVelocity<Dim> given, Real time = 0)
         : grid_(&grid), sides_(sides), given_(std::move(given)) {
         sides_.validate();
-        set_time(0);
+        set_time(time);
     }
 
-    /// Asks for the given velocities as they are at a time [s].
+    /// Asks for the given velocities as they are at a time [s]. Throws InputError where one within the
+    /// box is no number.
     void set_time(Real time) {
         if (!given_) return;
         for (int b = 0; b < Dim; ++b)
@@ -46,7 +56,10 @@ public:
                         Point<Dim> x = grid_->face_centre(a, cell);
                         x[b] = high ? grid_->high(b) : grid_->low(b);
                         const bool through = a == b && side == Side::wall;
-                        values.push_back(through ? 0 : given_(x, time)[a]);
+                        const Real u = given_(x, time)[a];
+                        if (!std::isfinite(u) && in_box(cell))
+                            require_finite(u, velocity_at<Dim>("GridFluid.side_velocity", a, x, time), "m/s");
+                        values.push_back(through ? 0 : u);
                     });
                 }
             }
@@ -156,6 +169,11 @@ public:
     }
 
 private:
+    bool in_box(const CellNumber<Dim>& cell) const noexcept {
+        for (int a = 0; a < Dim; ++a)
+            if (cell[a] < 0 || cell[a] >= cells(a)) return false;
+        return true;
+    }
     Offset step(int axis) const noexcept { return grid_->layout().stride[axis]; }
     int cells(int axis) const noexcept { return grid_->cells(axis); }
     Side kind(int axis, bool high) const noexcept { return sides_[axis][high]; }

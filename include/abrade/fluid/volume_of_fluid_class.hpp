@@ -147,6 +147,7 @@ public:
     /// Liquid beyond `fraction()`, in shares of the open volume [-].
     const Field<Real>& surplus() const noexcept { return surplus_; }
     Field<Real>& surplus() noexcept { return surplus_; }
+    Real full() const noexcept { return 1 - params_.smallest_void; }  ///< from here on there is no surface
     const WetRows<Dim>& wet() const noexcept { return wet_; }
     const SurfaceBand<Dim>& band() const noexcept { return band_; }
     const SurfacePlanes<Dim>& planes() const noexcept { return planes_; }
@@ -234,7 +235,6 @@ private:
     static constexpr Real little = 1e-5;  ///< less liquid of a cell than this has no momentum to speak of [-]
     /// Without a pressure of its own a cell that holds more than this takes in more than it has room for [-].
     static constexpr Real nearly_full = 0.9;
-    Real full() const noexcept { return 1 - params_.smallest_void; }  ///< from here on there is no surface
     /// A trace of air or of water tells nothing of where the surface is, but in a cell that a wall cuts.
     bool tells(Offset cell) const noexcept {
         const Index i = plane_of_[cell];

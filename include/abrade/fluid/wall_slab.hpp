@@ -114,11 +114,7 @@ private:
     }
 
     [[noreturn]] static void fail_at(const Point<Dim>& x) {
-        std::string place;
-        for (int a = 0; a < Dim; ++a)
-            place +=
-                std::string(a > 0 ? ", " : "") + Grid<Dim>::axis_name(a) + " = " + short_text(x[a]) + " m";
-        fail({"Walls: distance at " + place, "a number", "m",
+        fail({"Walls: distance at " + place_text<Dim>(x), "a number", "m",
               "look for a division by 0 or the root of a negative number in the shape"},
              "nan");
     }

@@ -1,0 +1,94 @@
+#pragma once
+// What water on a grid begins with, and what only shows once its grid and its walls are there.
+
+#include <abrade/fluid/grid_fluid_params.hpp>
+#include <abrade/fluid/velocity_sides.hpp>
+#include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/water_among_walls.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace abrade::detail {
+
+/// Velocities of the start on faces. Throws InputError where one is no number.
+template <int Dim, class State>
+void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, FaceField<Dim, State>& u) {
+    if (!params.velocity) return;
+    grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
+        for (int a = 0; a < Dim; ++a) {
+            const Point<Dim> x = grid.face_centre(a, cell);
+            const Real value = params.velocity(x)[a];
+            if (!std::isfinite(value))
+                require_finite(value, velocity_at<Dim>("GridFluid.velocity", a, x, params.start_time), "m/s");
+            u[a][c] = static_cast<State>(value);
+        }
+    });
+}
+
+/// Shares of the open volume that lie in the water of the start, and beyond inflows.
+template <int Dim>
+void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, VolumeOfFluid<Dim>& liquid) {
+    const Grid<Dim>& grid = liquid.grid();
+    Field<Real>& f = liquid.fraction();
+    const auto shares = [&](const PlaceFunction<Dim>& water, auto&& wanted) {
+        if (!water) return;
+        typename Walls<Dim>::Params how{.closed_below = 0, .may_close_all = true, .bounded_slope = false};
+        const Walls<Dim> filled(grid, water, how);
+        grid.for_each(
+            [&](const CellNumber<Dim>& cell, Offset c) {
+                if (!wanted(cell) || (walls && walls->open_volume()[c] == 0)) return;
+                const Real share = filled.open_volume()[c];
+                const bool cut = walls && (liquid.marks()[c] & cell_mark::whole) == 0;
+                f[c] = cut && share > 0 && share < 1
+                           ? WaterAmongWalls<Dim>::share(grid, cell, params.wall, water)
+                           : share;
+            },
+            Layout<Dim>::ghosts);
+    };
+    const auto inside = [&](const CellNumber<Dim>& cell) {
+        for (int a = 0; a < Dim; ++a)
+            if (cell[a] < 0 || cell[a] >= grid.cells(a)) return false;
+        return true;
+    };
+    shares(params.water, inside);
+    shares(params.inflow_water, [&](const CellNumber<Dim>& cell) {
+        for (int a = 0; a < Dim; ++a)
+            if ((cell[a] < 0 && params.sides[a][0] == Side::inflow) ||
+                (cell[a] >= grid.cells(a) && params.sides[a][1] == Side::inflow))
+                return true;
+        return false;
+    });
+}
+
+/// Throws InputError where walls close an inflow, or leave nothing of it open that its water reaches.
+template <int Dim>
+void check_inflows(const GridFluidParams<Dim>& params, const VolumeOfFluid<Dim>& liquid,
+                   const Walls<Dim>* walls) {
+    const Grid<Dim>& grid = liquid.grid();
+    for (int a = 0; a < Dim; ++a)
+        for (const bool high : {false, true}) {
+            if (params.sides[a][high] != Side::inflow) continue;
+            Index faces = 0, open = 0, wet = 0;
+            grid.for_each_beside(a, high, [&](const CellNumber<Dim>&, Offset c) {
+                const Offset s = grid.layout().stride[a];
+                ++faces;
+                if (walls && !(walls->open_area()[a][high ? c + s : c] > 0)) return;
+                ++open;
+                wet += liquid.fraction()[high ? c + s : c - s] > 0;
+            });
+            const std::string side =
+                std::string(high ? "upper" : "lower") + " side along " + Grid<Dim>::axis_name(a);
+            const std::string of = " of " + std::to_string(faces) + " faces";
+            if (open == 0)
+                fail({"GridFluid.wall", "open somewhere at the inflow (" + side + ")", "",
+                      "move the wall or the box; is the distance above 0 in the water?"},
+                     "0" + of);
+            if (params.inflow_water && wet == 0)
+                fail({"GridFluid.inflow_water", "> 0 somewhere at the inflow (" + side + ")", "",
+                      "what is open of that side lies above its surface: move the surface or the box"},
+                     "water beyond 0" + of);
+        }
+}
+
+}  // namespace abrade::detail
