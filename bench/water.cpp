@@ -2,6 +2,8 @@
 // how many iterations the pressure takes, up to 2e7 cells; what a second thread gives.
 
 #include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/uniform_flow.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -58,6 +60,45 @@ struct Reach {
     Real step_length() const { return fluid.stable_step().seconds; }
 };
 
+/// The validation's channel in n cells of 0.02 m along it, full of uniform flow, which goes on.
+struct InvertReach {
+    using Fluid = GridFluid<3, FreeSurface, Limited, Real, MixingLength>;
+    Fluid fluid;
+
+    explicit InvertReach(int n) : fluid(channel(n)) {}
+    Real step_length() const { return fluid.stable_step().seconds; }
+
+    static Fluid channel(int n) {
+        constexpr Real spacing = 0.02;
+        Invert invert;
+        invert.length = n * spacing;
+        const UniformFlow uniform{{.section = invert, .discharge = 0.5, .manning = 0.015}};
+        const Real depth = uniform.depth(), half = 0.5 * invert.width, rough = std::pow(26 * 0.015, 6);
+        const int across = static_cast<int>(std::lround(invert.width / spacing));
+        GridFluidParams<3> params{
+            .grid = {.cells = {n, across, 19}, .low = {0, -half, 0}, .spacing = Vec3::Constant(spacing)},
+            .sides = Sides<3>::all(Side::slip),
+            .wall = InvertWall(invert),
+            .wall_law = {WallLaw::Kind::logarithmic, rough},
+            .water = [depth](const Vec3& x) { return depth - x.z(); },
+            .velocity =
+                [uniform, depth](const Vec3& x) {
+                    const Real z = std::min(x.z(), depth);
+                    return Vec3(uniform.sample({0, x.y(), z}, 0).velocity.x(), 0, 0);
+                },
+            .gravity = invert.gravity(),
+            .tolerance = 1e-5};
+        params.sides[0][1] = Side::outflow;
+        Inflow<3>({.discharge = 0.5,
+                   .depth = depth,
+                   .section = invert,
+                   .profile = InflowProfile::logarithmic,
+                   .roughness = rough})
+            .give_to(params);
+        return Fluid(params, {.depth = depth});
+    }
+};
+
 /// The dam break of bench/peers, `times` finer.
 struct DamBreak {
     GridFluid<3> fluid;
@@ -85,6 +126,7 @@ void measure(benchmark::State& state, int threads) {
     for (int step = 0; step < 5; ++step) scene.fluid.step(scene.step_length());
     double wet = 0, iterations = 0, rounds = 0;
     const double from = now();
+    const Real began = scene.fluid.time();
     for (auto _ : state) {
         scene.fluid.step(scene.step_length());
         wet += static_cast<double>(scene.fluid.wet_cells());
@@ -102,6 +144,8 @@ void measure(benchmark::State& state, int threads) {
     state.counters["s/cell_step"] = by(steps * cells);
     state.counters["s/wet_cell_step"] = by(wet);
     state.counters["cells"] = cells;
+    state.counters["wet_cells"] = static_cast<double>(scene.fluid.wet_cells());
+    state.counters["seconds/step"] = (scene.fluid.time() - began) / steps;
     state.counters["iterations"] = iterations / steps;
     state.counters["rounds"] = rounds / steps;
     state.SetLabel(std::string(instruction_set));
@@ -139,6 +183,13 @@ BENCHMARK(water_step<Reach>)
     ->Arg(7700)
     ->Unit(benchmark::kMillisecond);
 
+BENCHMARK(water_step<InvertReach>)
+    ->Name("water_invert")
+    ->Iterations(20)
+    ->Arg(225)
+    ->Arg(2250)
+    ->Unit(benchmark::kMillisecond);
+
 /// Wall clock, for two threads against one: alternate them, take the best
 /// (--benchmark_repetitions=9 --benchmark_enable_random_interleaving=true).
 template <class Scene>
@@ -159,6 +210,12 @@ BENCHMARK(water_threads<Cavity>)
 BENCHMARK(water_threads<DamBreak>)
     ->Name("water_threads_dam_break")
     ->ArgsProduct({{1, 2}, {1, 2}})
+    ->Apply(pairs);
+
+BENCHMARK(water_threads<InvertReach>)
+    ->Name("water_threads_invert")
+    ->ArgsProduct({{225}, {1, 2}})
+    ->Iterations(20)
     ->Apply(pairs);
 
 // --- the pressure alone

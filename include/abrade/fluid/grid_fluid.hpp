@@ -268,7 +268,7 @@ private:
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
             Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), falls};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
-            s.open_area = water.open_area(), s.open_middle = water.open_middle();
+            s.open_area = water.open_area(), s.open_friction = water.open_friction();
             advance(water.faces(), s);
             // At the surface the pressure falls to 0 within another distance than that of the centres.
             for (const OpenFace& open : projection_.open_faces())

@@ -33,8 +33,9 @@ struct MomentumStage {
         nullptr;                         ///< liquid in a cell at the step's beginning, share of the whole [-]
     const Field<State>* held = nullptr;  ///< at its end; none: all cells are full
     const FaceField<Dim>* open_area = nullptr;  ///< share of each face that walls leave open [-]; none: all
-    /// How far the middle of what walls leave open of a cell lies from the cell's, in cells; with open_area.
-    const FaceField<Dim>* open_middle = nullptr;
+    /// [a][b] of the sides along b of component a's control volumes: the share that walls leave open over the
+    /// distance between the middles of what they leave open of both volumes [1/cell]; with open_area.
+    const PerAxis<FaceField<Dim, float>, Dim>* open_friction = nullptr;
     const Field<State>* eddy_viscosity = nullptr;  ///< nu_t of cells, ghosts filled [m2/s]; where Eddies
 };
 
@@ -45,7 +46,9 @@ namespace detail {
 template <class Scheme, bool Eddies, int Dim, class State>
 class MomentumRows {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner, middle = 2;
-    static constexpr int vertical = Grid<Dim>::vertical, lanes = Layout<Dim>::lanes;
+    static constexpr int vertical = Grid<Dim>::vertical;
+    static constexpr int lanes = 64 / sizeof(State);  ///< of a cache line: rows end within fewer of them
+    static constexpr int pack(int i) noexcept { return i & ~(lanes - 1); }
     using Table = LevelTable<Dim, State>;
     /// Below this share of a control volume there is no momentum to speak of: the velocity is taken from
     /// outside.
@@ -55,7 +58,7 @@ class MomentumRows {
 
 public:
     MomentumRows(const Grid<Dim>& grid, const MomentumStage<Dim, State>& stage)
-        : layout_(grid.layout()), s_(stage), pitch_(layout_.row_length() + 2 * lanes) {
+        : layout_(grid.layout()), s_(stage), pitch_(layout_.row_length() + 2 * Layout<Dim>::lanes) {
         for (int a = 0; a < Dim; ++a) {
             const int up = a == vertical;
             lower_half_[a] = Table(grid, [&](int k) { return half(grid, a, k, false); });
@@ -161,22 +164,13 @@ private:
             return carried * value - open * viscosity_over_gap(i) * (high - low);
         };
         if (s_.open_area) {  // friction acts on what is open; the wall's own is added apart
-            const Real* const __restrict open = (*s_.open_area)[b].data() + start;
-            const Real* const __restrict open_back = open - layout_.stride[a];
-            const Real* const __restrict centre = (*s_.open_middle)[b].data() + start;
-            const Real* const __restrict centre_back = centre - layout_.stride[a];
-            for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
+            const float* const __restrict open = (*s_.open_friction)[a][b].data() + start;
+            for (int i = pack(r.begin); i < r.end; i += lanes)
 #pragma omp simd
-                for (int k = i; k < i + lanes; ++k) {
-                    // From middle to middle of what is open of the control volumes, in cells.
-                    const Real gap =
-                        1 + 0.5 * (centre[k] + centre_back[k] - centre[k - across] - centre_back[k - across]);
-                    out[k] = through(
-                        k, static_cast<State>(0.5 * (open[k] + open_back[k]) / std::max(gap, Real(0.25))));
-                }
+                for (int k = i; k < i + lanes; ++k) out[k] = through(k, static_cast<State>(open[k]));
             return;
         }
-        for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
+        for (int i = pack(r.begin); i < r.end; i += lanes)
 #pragma omp simd
             for (int k = i; k < i + lanes; ++k) out[k] = through(k, 1);
     }
@@ -209,7 +203,7 @@ private:
         const State* const now = s_.held ? s_.held->data() + start : nullptr;
         const State* const before = s_.held ? s_.held_before->data() + start : nullptr;
         const Real* const open = s_.open_area ? (*s_.open_area)[a].data() + start : nullptr;
-        for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
+        for (int first = pack(r.begin); first < r.end; first += lanes) {
             // Read as a whole before it is written: `result` may be `start`.
             alignas(64) State value[lanes];
             if (!now || is_full(now + first, before + first, back)) {

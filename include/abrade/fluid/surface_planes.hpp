@@ -66,6 +66,20 @@ Pack values_at(const Number* values, const PackCells& cells, Offset step = 0) no
     (std::make_index_sequence<pack_lanes>{});
 }
 
+/// Which of a pack's cells are flagged: a byte each, 0 or 1.
+inline PackMask flags_at(const std::uint8_t* flags) noexcept {
+#if defined(ABRADE_AVX512)
+    std::uint64_t bytes;
+    std::memcpy(&bytes, flags, sizeof bytes);
+    return {static_cast<NativeBits>(bytes * 0x0102040810204080u >> 56)};  // byte k to bit 56 + k
+#else
+    using Bytes [[gnu::vector_size(pack_lanes)]] = std::uint8_t;
+    Bytes bytes;
+    std::memcpy(&bytes, flags, sizeof bytes);
+    return {__builtin_convertvector(bytes, NativeBits) != 0};
+#endif
+}
+
 /// Four neighbours along a row, from the one `step` away: result[n] stands n cells further.
 inline QuadColumns gather_row(const Real* values, const PackCells& cells, Offset step) noexcept {
     QuadRows rows;

@@ -2,6 +2,7 @@
 // Water below a free surface: where it is, what it touches, and what carries its momentum.
 
 #include <abrade/fluid/grid_fluid_params.hpp>
+#include <abrade/fluid/open_friction.hpp>
 #include <abrade/fluid/projection.hpp>
 #include <abrade/fluid/velocity_extension.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
@@ -46,11 +47,7 @@ public:
             extension_.set_walls(*walls_);
             friction_ = WallFriction<Dim>(grid, params.sides, params.wall_law, walls_.get());
             held_ = Field<Real>(layout().total);
-            open_middle_ = face_field<Dim>(layout());
-            for (const WallCell<Dim>& w : walls_->wall_cells())
-                for (int b = 0; b < Dim; ++b)
-                    open_middle_[b][w.cell] = 0.5 * (1 - walls_->open_volume()[w.cell]) * w.normal[b];
-            for (auto& b : open_middle_) join(b);
+            open_friction_ = open_friction_of(*walls_, sides_);
         }
         give_water(params, walls_.get(), liquid_);
         settle();
@@ -61,8 +58,10 @@ public:
     /// Liquid in each cell, as a share of the whole cell [-]: now, and when the step began.
     const Field<Real>& held() const noexcept { return walls_ ? held_ : liquid_.fraction(); }
     const Field<Real>& held_before() const noexcept { return before_; }
-    /// Where the middle of what walls leave open of a cell lies, from the cell's, in cells.
-    const FaceField<Dim>* open_middle() const noexcept { return walls_ ? &open_middle_ : nullptr; }
+    /// See MomentumStage.
+    const PerAxis<FaceField<Dim, float>, Dim>* open_friction() const noexcept {
+        return walls_ ? &open_friction_ : nullptr;
+    }
     const FaceField<Dim>* open_area() const noexcept { return walls_ ? &walls_->open_area() : nullptr; }
     /// Of momentum, in the stage at work [m3].
     const FaceField<Dim>& carrier() const noexcept { return liquid_.moved(); }
@@ -371,7 +370,7 @@ private:
     VolumeOfFluid<Dim> liquid_;
     std::shared_ptr<const Walls<Dim>> walls_;  ///< shared among copies; the liquid points to them
     WallFriction<Dim> friction_;
-    FaceField<Dim> open_middle_;
+    PerAxis<FaceField<Dim, float>, Dim> open_friction_;  ///< of sides of momentum's control volumes
     Field<Real> held_, before_;
     Field<Real> burden_;  ///< of a face: liquid of others that moves with it [cell], 0 between uses
     Field<std::uint8_t> wet_;

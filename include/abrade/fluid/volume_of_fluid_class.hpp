@@ -67,7 +67,7 @@ public:
           layout_(grid.layout()), sizes_(grid), normals_(layout_, sizes_), at_walls_(layout_, sizes_),
           fraction_(layout_.total, 0), surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)),
           plane_of_(layout_.total, -1), band_(layout_, params_.smallest_void), wet_(layout_),
-          active_(layout_), touched_(layout_) {
+          active_(layout_), touched_(layout_), filled_(layout_.total) {
         for (int a = 0; a < Dim; ++a) wraps_[index(a)] = sides_.periodic(a);
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
@@ -274,6 +274,19 @@ private:
             (*velocity_)[index(axis)][c] * swept_per_speed_[index(axis)][index(level + Layout<Dim>::ghosts)];
         return open_faces_ ? volume * (*open_faces_)[index(axis)][c] : volume;
     }
+    // The same of packs, from one cell on.
+    static Pack at_level(const std::vector<Real>& by_level, Index level) noexcept {
+        const Real* first = by_level.data() + level + Layout<Dim>::ghosts;
+        return Dim == 3 ? Pack(*first) : Pack::load_from_anywhere(first);
+    }
+    Pack swept_of_pack(int axis, Offset c, Index level) const noexcept {
+        const Pack volume = Pack::load_from_anywhere((*velocity_)[index(axis)].data() + c) *
+                            at_level(swept_per_speed_[index(axis)], level);
+        return open_faces_ ? volume * Pack::load_from_anywhere((*open_faces_)[index(axis)].data() + c)
+                           : volume;
+    }
+    /// Calls body(plane, first cell, its level, those in the band) for the band's packs; planes in parallel.
+    void for_band_packs(auto&& body) const;
     void set_cell(Offset c, Real liquid) noexcept {
         fraction_[c] = liquid < wisp ? 0 : liquid > 1 - wisp ? 1 : liquid;
         surplus_[c] = liquid - fraction_[c];
@@ -283,23 +296,8 @@ private:
 
     /// Share of its open volume that leaves a cell at the surface per second, at most [1/s].
     Real outflow_rate(const FaceField<Dim>& velocity) const;
-    Real rate_of(const FaceField<Dim>& velocity, Index i) const noexcept {
-        const auto k = static_cast<std::size_t>(i);
-        const Offset c = band_.cells()[k];
-        if (fraction_[c] == 0) return 0;
-        const Index level = band_.levels()[k];
-        Real rate = 0;
-        for (int a = 0; a < Dim; ++a) {
-            const auto& u = velocity[index(a)];
-            const Offset up = c + layout_.stride[index(a)];
-            const Real low = open_faces_ ? (*open_faces_)[index(a)][c] : 1;
-            const Real high = open_faces_ ? (*open_faces_)[index(a)][up] : 1;
-            rate +=
-                (high * std::max(u[up], Real(0)) + low * std::max(-u[c], Real(0))) / sizes_.edge(a, level);
-        }
-        // Cells that are mostly wall do not rule the step: what is too much for them is moved aside.
-        return rate / (open_volumes_ ? std::max((*open_volumes_)[c], Real(0.5)) : 1);
-    }
+    /// The same of one cell of the band.
+    Real rate_of(const FaceField<Dim>& velocity, Index i) const noexcept;
 
     // The surface moves in a step by less than a cell; wisps that are moved aside, by one more.
     void locate() {
@@ -376,9 +374,8 @@ private:
     SurfacePlanes<Dim> planes_, planes_before_;
     SurfaceBand<Dim> band_;
     WetRows<Dim> wet_, active_, touched_;  ///< touched: active now or in the step before
-    std::vector<std::uint8_t> filled_;     ///< [band cell] c of Weymouth and Yue
-    std::vector<Index> settled_;      ///< cells of the last band, and those that took what was moved aside
-    std::vector<std::uint8_t> bulk_;  ///< [band cell] full, and so are its neighbours
+    Field<std::uint8_t> filled_;           ///< 1: c of Weymouth and Yue; of cells of the band
+    std::vector<Index> settled_;  ///< cells of the last band, and those that took what was moved aside
     long steps_ = 0;
     Point<Dim> gravity_ = Point<Dim>::Zero();
 

@@ -3,6 +3,8 @@
 
 #include <abrade/fluid/volume_of_fluid_class.hpp>
 
+#include <bit>
+
 namespace abrade {
 
 /// Gives liquid (or, below 0, the lack of it) to the neighbours of a cell; answers what they could not take.
@@ -88,43 +90,48 @@ void VolumeOfFluid<Dim>::even_out_rims(int axis) {
 template <int Dim>
 void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
     fill_periodic(fraction_, layout_, sides_);
-    const auto cells = band_.cells();
-    const auto levels = band_.levels();
-    const auto count = static_cast<Index>(cells.size());
-    const Real full = this->full();
-    bulk_.resize(cells.size());
-    parallel_for(count, [&](Index i) {
-        const auto k = static_cast<std::size_t>(i);
-        const Offset c = cells[k];
-        bool bulk = fraction_[c] >= full;
-        for (const Offset s : layout_.stride)
-            for (const Offset n : {c - s, c + s})
-                bulk = bulk && (fraction_[n] >= full || (marks_[n] & cell_mark::open) == 0);
-        bulk_[k] = bulk;
-    });
-    std::vector<std::vector<Index>> wrong(static_cast<std::size_t>(block_count(count)));
-    parallel_blocks(count, [&](Index block, Index first, Index last) {
-        for (Index i = first; i < last; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            const Offset c = cells[k];
-            const Real liquid = fraction_[c] + surplus_[c];
-            if (bulk_[k]) {
-                fraction_[c] = 1;
-                surplus_[c] = liquid - 1;
-                continue;
+    const Pack full = Pack(this->full());
+    Field<std::uint8_t>& bulk = filled_;  // which is for the sweeps only
+    for_band_packs([&](int, Offset c, Index, const PackMask& band) {
+        PackMask all = band & (Pack::load(fraction_.data() + c) >= full);
+        for (int a = 0; a < Dim && any(all); ++a)
+            for (const Offset n : {c - layout_.stride[a], c + layout_.stride[a]}) {
+                std::array<std::uint8_t, pack_lanes> closed;
+                for (int lane = 0; lane < pack_lanes; ++lane)
+                    closed[index(lane)] = (marks_[n + lane] & cell_mark::open) == 0;
+                all = all & (detail::flags_at(closed.data()) |
+                             (Pack::load_from_anywhere(fraction_.data() + n) >= full));
             }
-            set_cell(c, liquid);
-            if (std::abs(surplus_[c]) > wisp) wrong[static_cast<std::size_t>(block)].push_back(i);
+        const unsigned lanes = lanes_of(all);
+        for (int lane = 0; lane < pack_lanes; ++lane) bulk[c + lane] = lanes >> lane & 1;
+    });
+    struct Wrong {
+        Offset cell;
+        Index level;
+    };
+    std::vector<std::vector<Wrong>> wrong(static_cast<std::size_t>(layout_.planes()));
+    for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
+        const PackMask in_bulk = detail::flags_at(bulk.data() + c);
+        const Pack f = Pack::load(fraction_.data() + c), surplus = Pack::load(surplus_.data() + c);
+        const Pack liquid = f + surplus;
+        const Pack bounded =
+            select(liquid < Pack(wisp), Pack(0), select(liquid > Pack(1 - wisp), Pack(1), liquid));
+        const Pack now = select(in_bulk, Pack(1), bounded);
+        select(band, now, f).store(fraction_.data() + c);
+        select(band, liquid - now, surplus).store(surplus_.data() + c);
+        const Pack beyond = liquid - bounded;
+        const PackMask found = band & !in_bulk & ((beyond > Pack(wisp)) | (beyond < Pack(-wisp)));
+        for (unsigned lanes = lanes_of(found); lanes != 0; lanes &= lanes - 1) {
+            const int lane = std::countr_zero(lanes);
+            wrong[index(plane)].push_back({c + lane, Dim == 3 ? level : level + lane});
         }
     });
     // One after the other, in order: few, and the same for any number of threads.
-    for (const auto& block : wrong)
-        for (const Index i : block) {
-            const auto k = static_cast<std::size_t>(i);
-            const Offset c = cells[k];
-            const Real room = open_volume(c, levels[k]), amount = surplus_[c] * room;
+    for (const auto& plane : wrong)
+        for (const auto& [c, level] : plane) {
+            const Real room = open_volume(c, level), amount = surplus_[c] * room;
             if (std::abs(surplus_[c]) <= wisp) continue;  // a neighbour has evened it out
-            const Real left = share_out(c, levels[k], amount);
+            const Real left = share_out(c, level, amount);
             surplus_[c] = left / room;
             step.moved_aside += std::abs(amount - left);
             step.left_over += std::abs(surplus_[c]) > wisp;

@@ -4,6 +4,7 @@
 
 #include <abrade/fluid/volume_of_fluid_class.hpp>
 
+#include <bit>
 #include <limits>
 
 namespace abrade {
@@ -38,38 +39,42 @@ void VolumeOfFluid<Dim>::include_inflows() {
 /// they had at its beginning.
 template <int Dim>
 void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
-    const auto cells = band_.cells();
-    const auto levels = band_.levels();
-    const auto count = static_cast<Index>(cells.size());
     const bool keep = within_step && !params_.fit_every_sweep;
-    const auto partly = [&](Index c) { return fraction_[c] > wisp && fraction_[c] < 1 - wisp; };
-    const auto cut = [&](Index c) {
-        return partly(c) ||
-               (!keep && open_volumes_ && at_walls_.is_dry_beside_water(c, fraction_.data(), marks_.data()));
+    const bool walls = open_volumes_ && !keep;
+    // Lanes of a pack that get a plane, and those of them that hold liquid and air.
+    const auto cut = [&](Offset c, const PackMask& band) {
+        const Pack f = Pack::load(fraction_.data() + c);
+        const unsigned partly = lanes_of(band & (f > Pack(wisp)) & (f < Pack(1 - wisp)));
+        unsigned all = partly;
+        if (walls)
+            for (unsigned dry = lanes_of(band & !(f > Pack(0))); dry != 0; dry &= dry - 1) {
+                const int lane = std::countr_zero(dry);
+                if (at_walls_.is_dry_beside_water(c + lane, fraction_.data(), marks_.data()))
+                    all |= 1u << lane;
+            }
+        return std::pair(all, partly);
     };
-    std::vector<Index> first(static_cast<std::size_t>(block_count(count)) + 1, 0);
-    parallel_blocks(count, [&](Index block, Index begin, Index end) {
-        Index number = 0;
-        for (Index i = begin; i < end; ++i) number += cut(cells[static_cast<std::size_t>(i)]);
-        first[static_cast<std::size_t>(block) + 1] = number;
+    std::vector<Index> first(static_cast<std::size_t>(layout_.planes()) + 1, 0);
+    for_band_packs([&](int plane, Offset c, Index, const PackMask& band) {
+        first[index(plane) + 1] += std::popcount(cut(c, band).first);
     });
-    for (std::size_t b = 1; b < first.size(); ++b) first[b] += first[b - 1];
+    for (std::size_t p = 1; p < first.size(); ++p) first[p] += first[p - 1];
     std::swap(planes_, planes_before_);
     planes_.resize(static_cast<std::size_t>(first.back()));
-    parallel_blocks(count, [&](Index block, Index begin, Index end) {
-        auto next = static_cast<std::size_t>(first[static_cast<std::size_t>(block)]);
-        for (Index i = begin; i < end; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            if (!cut(cells[k])) continue;
-            const Index before = keep ? plane_of_[cells[k]] : -1;
-            planes_.cell[next] = cells[k];
-            planes_.level[next] = levels[k];
-            planes_.has_normal[next] = before >= 0 || !partly(cells[k]), planes_.told[next] = 0;
+    for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
+        const auto [all, partly] = cut(c, band);
+        for (unsigned left = all; left != 0; left &= left - 1) {
+            const int lane = std::countr_zero(left);
+            const auto next = static_cast<std::size_t>(first[index(plane)]++);
+            const bool holds = (partly >> lane & 1) != 0;
+            const Index before = keep ? plane_of_[c + lane] : -1;
+            planes_.cell[next] = static_cast<Index>(c + lane);
+            planes_.level[next] = Dim == 3 ? level : level + lane;
+            planes_.has_normal[next] = before >= 0 || !holds, planes_.told[next] = 0;
             if (planes_.has_normal[next])
                 for (std::size_t a = 0; a < Dim; ++a)
                     planes_.normal[a][next] =
                         before >= 0 ? planes_before_.normal[a][static_cast<std::size_t>(before)] : 0;
-            ++next;
         }
     });
     for (const Index c : planes_before_.cell) plane_of_[c] = -1;
@@ -81,21 +86,50 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
 
 template <int Dim>
 Real VolumeOfFluid<Dim>::outflow_rate(const FaceField<Dim>& velocity) const {
-    const auto cells = band_.cells();
-    const auto count = static_cast<Index>(cells.size());
-    std::vector<Real> most(static_cast<std::size_t>(block_count(count)), 0);
-    parallel_blocks(count, [&](Index block, Index first, Index last) {
-        Real largest = 0;
-        for (Index i = first; i < last; ++i) {
-            const Real rate = rate_of(velocity, i);
-            if (!(rate <= largest)) largest = rate;  // keeps what is not a number
+    std::vector<Pack> most(static_cast<std::size_t>(layout_.planes()), Pack(0));
+    for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
+        const PackMask holds = band & !(Pack::load(fraction_.data() + c) == Pack(0));
+        if (!any(holds)) return;
+        Pack rate = Pack(0);
+        for (int a = 0; a < Dim; ++a) {
+            const Offset up = c + layout_.stride[index(a)];
+            const Real* const u = velocity[index(a)].data();
+            Pack low = max(-Pack::load(u + c), Pack(0)),
+                 high = max(Pack::load_from_anywhere(u + up), Pack(0));
+            if (open_faces_) {
+                const Real* const open = (*open_faces_)[index(a)].data();
+                low *= Pack::load(open + c), high *= Pack::load_from_anywhere(open + up);
+            }
+            rate += (low + high) * at_level(areas_[index(a)], level);
         }
-        most[static_cast<std::size_t>(block)] = largest;
+        rate *= at_level(per_volume_, level);
+        // Cells that are mostly wall do not rule the step: what is too much for them is moved aside.
+        if (open_volumes_) rate /= max(Pack::load(open_volumes_->data() + c), Pack(0.5));
+        Pack& largest = most[index(plane)];
+        largest = select(holds & !(rate <= largest), rate, largest);  // keeps what is not a number
     });
     Real largest = 0;
-    for (const Real rate : most)
-        if (!(rate <= largest)) largest = rate;
+    for (const Pack& rates : most)
+        for (int lane = 0; lane < pack_lanes; ++lane)
+            if (!(rates[lane] <= largest)) largest = rates[lane];
     return largest;
+}
+
+template <int Dim>
+Real VolumeOfFluid<Dim>::rate_of(const FaceField<Dim>& velocity, Index i) const noexcept {
+    const auto k = static_cast<std::size_t>(i);
+    const Offset c = band_.cells()[k];
+    if (fraction_[c] == 0) return 0;
+    const Index level = band_.levels()[k];
+    Real rate = 0;
+    for (int a = 0; a < Dim; ++a) {
+        const auto& u = velocity[index(a)];
+        const Offset up = c + layout_.stride[index(a)];
+        const Real low = open_faces_ ? (*open_faces_)[index(a)][c] : 1;
+        const Real high = open_faces_ ? (*open_faces_)[index(a)][up] : 1;
+        rate += (high * std::max(u[up], Real(0)) + low * std::max(-u[c], Real(0))) / sizes_.edge(a, level);
+    }
+    return rate / (open_volumes_ ? std::max((*open_volumes_)[c], Real(0.5)) : 1);
 }
 
 /// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
@@ -128,16 +162,13 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         out[a] = moved_[a].data() + start;
         if (open_faces_) open[a] = (*open_faces_)[a].data() + start;
     }
-    const auto at_level = [&](const std::vector<Real>& table, int i) {
-        const Real* first = table.data() + Layout<Dim>::ghosts;
-        return Dim == 3 ? Pack(first[level]) : Pack::load_from_anywhere(first + i);
-    };
+    const auto level_of = [&](int i) { return Dim == 3 ? level : Index{i}; };
     const PerAxis<Offset, Dim> step = layout_.stride;
     for (int i = range.begin; i < range.end; i += pack_lanes) {
         const Pack own = Pack::load(f + i);
         Pack gone = Pack(0);
         for (std::size_t a = 0; a < Dim; ++a) {
-            const Pack speed = Pack::load(u[a] + i), area = at_level(swept_per_speed_[a], i);
+            const Pack speed = Pack::load(u[a] + i), area = at_level(swept_per_speed_[a], level_of(i));
             Pack low = speed * area, high = Pack::load_from_anywhere(u[a] + i + step[a]) * area;
             if (open_faces_) {
                 low *= Pack::load(open[a] + i);
@@ -152,7 +183,7 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         std::array<std::uint8_t, pack_lanes> in_band;
         std::memcpy(in_band.data(), band + i, pack_lanes);
         const bool deep = in_band == std::array<std::uint8_t, pack_lanes>{};
-        Pack lost = gone * at_level(per_volume_, i);
+        Pack lost = gone * at_level(per_volume_, level_of(i));
         if (open_volumes_) lost /= Pack::load(open_volumes_->data() + start + i);
         if (deep && full == (1u << pack_lanes) - 1)
             (Pack::load(surplus + i) - lost).store(surplus + i);
@@ -163,10 +194,23 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
 }
 
 template <int Dim>
+void VolumeOfFluid<Dim>::for_band_packs(auto&& body) const {
+    Pack lane;
+    for (int l = 0; l < pack_lanes; ++l) lane.set(l, l);
+    active_.for_each_row([&](int p, int r, const RowRange& range) {
+        const Offset start = layout_.row_start(p, r);
+        for (int i = range.begin / pack_lanes * pack_lanes; i < range.end; i += pack_lanes) {
+            PackMask band = detail::flags_at(band_.data() + start + i);
+            if (!any(band)) continue;
+            if (i < range.begin || i + pack_lanes > range.end)
+                band = band & (lane >= Pack(range.begin - i)) & (lane < Pack(range.end - i));
+            body(p, start + i, Dim == 3 ? Index{r} : Index{i}, band);
+        }
+    });
+}
+
+template <int Dim>
 void VolumeOfFluid<Dim>::sweep(int number) {
-    const auto cells = band_.cells();
-    const auto levels = band_.levels();
-    const auto count = static_cast<Index>(cells.size());
     // All orders in turn; in 2-D two, in 3-D six.
     const auto axis_of = [&](int n) {
         const int turn = static_cast<int>(steps_ % Dim), way = static_cast<int>(steps_ / Dim % 2);
@@ -174,10 +218,8 @@ void VolumeOfFluid<Dim>::sweep(int number) {
     };
     const int axis = axis_of(number);
     if (number == 0) {
-        filled_.resize(cells.size());
-        parallel_for(count, [&](Index i) {
-            const auto k = static_cast<std::size_t>(i);
-            filled_[k] = fraction_[cells[k]] > 0.5;
+        for_band_packs([&](int, Offset c, Index, const PackMask&) {
+            for (int lane = 0; lane < pack_lanes; ++lane) filled_[c + lane] = fraction_[c + lane] > 0.5;
         });
     } else {
         reconstruct(true);
@@ -188,44 +230,57 @@ void VolumeOfFluid<Dim>::sweep(int number) {
     join_periodic(axis);
 
     const auto dilatation = [&](int a, Offset c, Index level) {
-        return swept(a, c + layout_.stride[index(a)], level) - swept(a, c, level);
+        return swept_of_pack(a, c + layout_.stride[index(a)], level) - swept_of_pack(a, c, level);
     };
-    const auto& moved = moved_[index(axis)];
+    const Real* const moved = moved_[index(axis)].data();
     const bool last = number == Dim - 1;
-    parallel_for(count, [&](Index i) {
-        const auto k = static_cast<std::size_t>(i);
-        const Offset c = cells[k];
-        const Index level = levels[k];
-        Real added = 0;
-        if (filled_[k]) {
+    for_band_packs([&](int, Offset c, Index level, const PackMask& band) {
+        const PackMask filled = detail::flags_at(filled_.data() + c);
+        Pack left = Pack::load_from_anywhere(moved + c + layout_.stride[index(axis)]) - Pack::load(moved + c);
+        if (any(filled)) {
+            Pack added = Pack(0);
             if (!last)
                 added = dilatation(axis, c, level);
             else
                 for (int n = 0; n < number; ++n) added -= dilatation(axis_of(n), c, level);
+            left -= select(filled, added, Pack(0));
         }
-        const Real left = (moved[c + layout_.stride[index(axis)]] - moved[c]) - added;
-        fraction_[c] -= left * per_open_volume(c, level);
+        Pack change = left * at_level(per_volume_, level);
+        if (open_volumes_) change /= Pack::load(open_volumes_->data() + c);
+        const Pack f = Pack::load(fraction_.data() + c);
+        select(band, f - change, f).store(fraction_.data() + c);
     });
     if (!last) fill_periodic(fraction_, layout_, sides_);
 }
 
-/// Faces whose donor is full or dry, or a ghost: what is swept times its fraction.
+/// Faces of the band whose donor is full or dry, or a ghost: what is swept times its fraction.
 template <int Dim>
 void VolumeOfFluid<Dim>::fluxes_of_band(int axis) {
-    const auto cells = band_.cells();
-    const auto levels = band_.levels();
     const Offset step = layout_.stride[index(axis)];
-    auto& moved = moved_[index(axis)];
-    const auto& u = (*velocity_)[index(axis)];
-    const auto one = [&](Offset face, Index level) {
-        const Real f = fraction_[u[face] > 0 ? face - step : face];
-        moved[face] = f < wisp ? 0 : swept(axis, face, level) * (f > 1 - wisp ? 1 : f);
-    };
-    parallel_for(static_cast<Index>(cells.size()), [&](Index i) {
-        const auto k = static_cast<std::size_t>(i);
-        const Offset c = cells[k];
-        one(c, levels[k]);
-        if (!band_.holds(c + step)) one(c + step, levels[k]);
+    const bool is_outer = axis == Layout<Dim>::outer, is_inner = axis == inner;
+    const int planes = layout_.planes() + is_outer, rows = layout_.rows_per_plane() + !(is_outer || is_inner);
+    parallel_tasks(planes, [&](Index p) {
+        for (int r = 0; r < rows; ++r) {
+            // Upper faces of cells as well as lower ones.
+            RowRange range = active_.range(static_cast<int>(p), r);
+            const int plane_below = static_cast<int>(p) - is_outer, row_below = r - !(is_outer || is_inner);
+            if (is_inner)
+                range.end += !range.empty();
+            else if (plane_below >= 0 && row_below >= 0)
+                range = hull(range, active_.range(plane_below, row_below));
+            const Offset start = layout_.row_start(static_cast<int>(p), r);
+            for (int i = range.begin / pack_lanes * pack_lanes; i < range.end; i += pack_lanes) {
+                const Offset c = start + i;
+                const std::uint8_t* const band = band_.data() + c;
+                if (!any(detail::flags_at(band) | detail::flags_at(band - step))) continue;
+                const Pack speed = Pack::load((*velocity_)[index(axis)].data() + c);
+                const Pack f = select(speed > Pack(0), Pack::load_from_anywhere(fraction_.data() + c - step),
+                                      Pack::load(fraction_.data() + c));
+                const Pack share = select(f > Pack(1 - wisp), Pack(1), f);
+                const Pack flux = swept_of_pack(axis, c, Dim == 3 ? Index{r} : Index{i}) * share;
+                select(f < Pack(wisp), Pack(0), flux).store(moved_[index(axis)].data() + c);
+            }
+        }
     });
 }
 
