@@ -107,6 +107,15 @@ TEST_CASE("a dry box and a single wet cell") {
     CHECK(std::isfinite(fastest(one)));
 }
 
+TEST_CASE("samples beyond the box, and at places that are no number") {
+    const GridFluid<2> flow(basin(16, [](const Point<2>& x) { return 0.5 - x[1]; }));
+    constexpr Real inf = std::numeric_limits<Real>::infinity();
+    for (const Real x : {-inf, -1e300, -1.0, 2.0, 1e300, inf})
+        CHECK(flow.sample({x, 0, 0.2}, 0).depth == doctest::Approx(0.3));
+    CHECK(std::isnan(flow.sample({std::nan(""), 0, 0.2}, 0).depth));
+    CHECK(std::isnan(flow.sample({0.2, 0, std::nan("")}, 0).depth));
+}
+
 TEST_CASE("one copy goes on as the other") {
     GridFluid<2> flow(basin(16, [](const Point<2>& x) { return std::min(0.4 - x[0], 0.6 - x[1]); }));
     flow.advance(0.05);

@@ -20,7 +20,8 @@ GridPlace place_between(Real x, int last, Real first_gap, bool even, auto&& at) 
     if (last == 0) return {};
     int low = 0;
     if (even) {
-        low = static_cast<int>(std::clamp((x - at(0)) / first_gap, Real(0), static_cast<Real>(last - 1)));
+        const Real number = (x - at(0)) / first_gap;
+        low = number > 0 ? static_cast<int>(std::min(number, static_cast<Real>(last - 1))) : 0;  // NaN: 0
     } else {
         for (int end = last; end - low > 1;) {
             const int middle = (low + end) / 2;
