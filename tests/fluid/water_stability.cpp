@@ -262,3 +262,22 @@ TEST_CASE("a pocket of water without a surface beside one that has one") {
     const auto p = [&](int k) { return flow.pressure()[flow.grid().layout().at({4, k})]; };
     CHECK(p(4) - p(20) == doctest::Approx(g * 0.5).epsilon(1e-4));
 }
+
+TEST_CASE("a film on the floor lies still") {
+    auto params = basin([](const Point<2>& x) { return 0.015 - x[1]; });
+    GridFluid<2> flow(params);
+    flow.advance(2);
+    CHECK(flow.kinetic_energy() < 1e-12);
+    CHECK(flow.sample({0.5, 0, 0.01}, 0).velocity.norm() < 0.2);  // not g t
+}
+
+TEST_CASE("a dam takes its own first step at any Courant number that is allowed") {
+    for (const Real courant : {0.5, 0.9, 1.0}) {
+        auto params = basin([](const Point<2>& x) { return std::min(0.4 - x[0], 0.6 - x[1]); });
+        params.courant = courant;
+        GridFluid<2> flow(params);
+        const Real volume = flow.liquid().volume();
+        CHECK_NOTHROW(flow.advance(0.5));
+        CHECK(std::abs(flow.liquid().volume() / volume - 1) < 1e-12);
+    }
+}

@@ -72,7 +72,10 @@ public:
             fastest_ = report_.courant;
         }
         finish(velocity_);
-        if constexpr (has_surface) find_pressure_of_weight();
+        if constexpr (has_surface) {
+            find_pressure_of_weight();
+            first_step_ = std::sqrt(2 * water_->liquid().stable_step(stage_));
+        }
         enters_ = sides_.rate_of_inflow(velocity_);
         fastest_ = std::max(fastest_, enters_);
         find_eddies();
@@ -120,11 +123,10 @@ public:
         if (viscous > 0) step.lower((has_surface ? 0.4 : 0.5) / (viscous * per_h2), "viscosity");
         if constexpr (has_surface) {
             // At its end gravity may have made the water faster by g dt.
-            if (fastest_ > 0 || fall > 0)
-                step.lower(2 * params_.courant /
-                               (fastest_ + std::sqrt(square(fastest_) + 4 * fall * params_.courant)),
-                           "CFL");
+            const Real twice = fastest_ + std::sqrt(square(fastest_) + 4 * fall * params_.courant);
+            if (twice > 0) step.lower(2 * params_.courant / twice, "CFL");
             step.lower(water_->liquid().stable_step(velocity_), "volume of fluid");
+            if (steps_ == 0) step.lower(first_step_, "volume of fluid");
             // The shortest wave that the grid knows, of two cells, must not cross a cell.
             if (fall > 0) step.lower(std::sqrt(pi * shortest / falls.norm()), "gravity wave");
         } else if (fastest_ > 0) {
@@ -388,6 +390,7 @@ private:
     std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies_{};
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
+    Real first_step_ = 0;                       ///< in which what first moves it does not cross a cell [s]
     Index steps_ = 0;
 };
 

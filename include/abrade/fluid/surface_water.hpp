@@ -4,6 +4,7 @@
 #include <abrade/fluid/grid_fluid_params.hpp>
 #include <abrade/fluid/open_friction.hpp>
 #include <abrade/fluid/projection.hpp>
+#include <abrade/fluid/resting_films.hpp>
 #include <abrade/fluid/velocity_extension.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
 #include <abrade/fluid/water_start.hpp>
@@ -24,7 +25,7 @@ class SurfaceWater {
 
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
-        : grid_(&grid), sides_(params.sides),
+        : grid_(&grid), sides_(params.sides), films_(grid, params.sides, params.pressed_axes()),
           liquid_(grid, params.sides, {.smallest_void = std::clamp(params.tolerance, 1e-6, 1e-4)}),
           friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
           burden_(grid.layout().total), wet_(grid.layout().total), rows_(grid.layout()),
@@ -195,7 +196,11 @@ public:
         }
     }
 
-    void extend(FaceField<Dim>& u) { extension_.extend(u, {wet_, rows_, held(), still_}); }
+    /// Velocities of the air beside the water, and of films.
+    void extend(FaceField<Dim>& u) {
+        extension_.extend(u, {wet_, rows_, held(), still_});
+        films_.hold(u, wet_, held());
+    }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
     /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
@@ -367,6 +372,7 @@ private:
 
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
+    RestingFilms<Dim> films_;
     VolumeOfFluid<Dim> liquid_;
     std::shared_ptr<const Walls<Dim>> walls_;  ///< shared among copies; the liquid points to them
     WallFriction<Dim> friction_;

@@ -49,9 +49,8 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
         if (walls)
             for (unsigned dry = lanes_of(band & !(f > Pack(0))); dry != 0; dry &= dry - 1) {
                 const int lane = std::countr_zero(dry);
-                if (at_walls_.is_dry_beside_water(static_cast<Index>(c + lane), fraction_.data(),
-                                                  marks_.data()))
-                    all |= 1u << lane;
+                const auto cell = static_cast<Index>(c + lane);
+                if (at_walls_.is_dry_beside_water(cell, fraction_.data(), marks_.data())) all |= 1u << lane;
             }
         return std::pair(all, partly);
     };

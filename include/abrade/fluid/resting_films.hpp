@@ -1,0 +1,48 @@
+#pragma once
+// Films thinner than half a cell, on sides that something presses them on.
+
+#include <abrade/fluid/sides.hpp>
+#include <abrade/fluid/water_cells.hpp>
+
+#include <vector>
+
+namespace abrade::detail {
+
+/// Liquid between dry cells flies on as it does, and gravity makes it faster. What lies on a closed side does
+/// not fall into it: nothing else would ever stop the face above it.
+template <int Dim>
+class RestingFilms {
+public:
+    /// `pressed`: axes along which anything presses on sides.
+    RestingFilms(const Grid<Dim>& grid, const Sides<Dim>& sides, const PerAxis<bool, Dim>& pressed)
+        : stride_(grid.layout().stride) {
+        for (int a = 0; a < Dim; ++a)
+            for (const bool high : {false, true}) {
+                if (!pressed[a] || !is_closed(sides[a][high]) || grid.cells(a) == 1) continue;
+                const Offset s = stride_[a];
+                grid.for_each_beside(a, high, [&](const CellNumber<Dim>&, Offset c) {
+                    faces_.push_back({a, high ? c : c + s, high ? c - s : c + s, high ? 1.0 : -1.0});
+                });
+            }
+    }
+
+    /// `held`: liquid of a cell, as a share of it [-].
+    void hold(FaceField<Dim>& u, const Field<std::uint8_t>& wet, const Field<Real>& held) const noexcept {
+        for (const Face& f : faces_) {
+            Real& speed = u[f.axis][f.face];
+            if (!(speed * f.into > 0) || (wet[f.face] | wet[f.face - stride_[f.axis]]) != 0) continue;
+            if (held[f.beyond] <= 1e-6) speed = 0;
+        }
+    }
+
+private:
+    struct Face {
+        int axis = 0;
+        Offset face = 0, beyond = 0;  ///< beyond: the cell that the film does not lie in
+        Real into = 0;                ///< the side: -1 or 1
+    };
+    PerAxis<Offset, Dim> stride_;
+    std::vector<Face> faces_;
+};
+
+}  // namespace abrade::detail
