@@ -24,8 +24,10 @@ template <int Dim>
 class SurfaceAtWalls {
 public:
     SurfaceAtWalls() = default;
-    SurfaceAtWalls(const Layout<Dim>& layout, const CellSizes<Dim>& sizes)
-        : stencil_(layout), sizes_(sizes), fit_(layout, sizes), stride_(layout.stride) {}
+    /// `smallest_void`: air of less than this share of a cell [-] is no surface.
+    SurfaceAtWalls(const Layout<Dim>& layout, const CellSizes<Dim>& sizes, Real smallest_void)
+        : stencil_(layout), sizes_(sizes), fit_(layout, sizes), stride_(layout.stride),
+          full_(1 - smallest_void) {}
 
     /// Shares that walls leave open [-]; they must outlive this.
     void set_walls(const FaceField<Dim>* open_faces, const Field<Real>* open_volumes) noexcept {
@@ -48,8 +50,12 @@ public:
         parallel_for(planes.count(), [&](Index i) {
             const auto k = static_cast<std::size_t>(i);
             const std::uint8_t mark = marks[planes.cell[k]];
-            known_[k] = (mark & cell_mark::whole) != 0 && is_wide(planes, k, fraction) &&
-                        ((mark & cell_mark::ringed) != 0 || is_held(planes, k, fraction, marks));
+            const bool whole = (mark & cell_mark::whole) != 0;
+            if (whole && fraction[planes.cell[k]] > full_)
+                known_[k] = of_trace;
+            else
+                known_[k] = whole && is_wide(planes, k, fraction) &&
+                            ((mark & cell_mark::ringed) != 0 || is_held(planes, k, fraction, marks));
             planes.told[k] = 0;
             if (fraction[planes.cell[k]] == 0) planes.distance[k] = -1;  // nothing of it may be rounded
         });
@@ -130,7 +136,7 @@ private:
         int count = 0;
         for (int k = 0; k < detail::Stencil<Dim>::size; ++k) {
             const Index other = plane_of[planes.cell[own] + stencil_.step[static_cast<std::size_t>(k)]];
-            if (other < 0 || !known_[static_cast<std::size_t>(other)]) continue;
+            if (other < 0 || known_[static_cast<std::size_t>(other)] != 1) continue;
             const auto j = static_cast<std::size_t>(other);
             Point<Dim> n, to_own;
             for (int a = 0; a < Dim; ++a) {
@@ -194,6 +200,8 @@ private:
     PerAxis<Offset, Dim> stride_{};
     const FaceField<Dim>* open_faces_ = nullptr;
     const Field<Real>* open_volumes_ = nullptr;
+    Real full_ = 1;
+    static constexpr std::uint8_t of_trace = 2;  ///< no surface: asks nobody, and nobody asks it
     std::vector<std::uint8_t> known_, found_;
     std::vector<Index> open_;
 };

@@ -106,15 +106,24 @@ private:
             const std::uint8_t* const __restrict closed = walls ? closed_[a].data() + start : here;
             std::uint8_t* const __restrict state = state_.data() + start;
             State* const __restrict v = u.data() + start;
+            const std::uint8_t* const __restrict there = here - back;
             for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
+                if (!walls || !any(closed + first)) {
+#pragma omp simd
+                    for (int i = first; i < first + lanes; ++i)
+                        state[i] = static_cast<std::uint8_t>(here[i] | there[i]);
+                    continue;
+                }
+                static_assert(known == 1 && fixed == 2);
 #pragma omp simd
                 for (int i = first; i < first + lanes; ++i)
-                    state[i] = static_cast<std::uint8_t>(here[i] | here[i - back]);
-                if (!walls || !any(closed + first)) continue;
+                    state[i] =
+                        static_cast<std::uint8_t>(((here[i] | there[i]) & ~closed[i]) | closed[i] << 1);
 #pragma omp simd
-                for (int i = first; i < first + lanes; ++i) state[i] = closed[i] != 0 ? fixed : state[i];
-                for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
-                    v[i] = closed[i] != 0 ? State(0) : v[i];
+                for (int i = first; i < first + lanes; ++i) {
+                    const State value = v[i];
+                    v[i] = closed[i] != 0 ? State(0) : value;
+                }
             }
             trim(state, r);
             if (sides_.periodic(a)) return;

@@ -64,10 +64,11 @@ public:
 
     VolumeOfFluid(const Grid<Dim>& grid, const Sides<Dim>& sides, const Params& params)
         : params_((params.validate(), params)), grid_(grid), sides_((sides.validate(), sides)),
-          layout_(grid.layout()), sizes_(grid), normals_(layout_, sizes_), at_walls_(layout_, sizes_),
-          fraction_(layout_.total, 0), surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)),
-          plane_of_(layout_.total, -1), band_(layout_, params_.smallest_void), wet_(layout_),
-          active_(layout_), touched_(layout_), filled_(layout_.total) {
+          layout_(grid.layout()), sizes_(grid), normals_(layout_, sizes_),
+          at_walls_(layout_, sizes_, params_.smallest_void), fraction_(layout_.total, 0),
+          surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
+          band_(layout_, params_.smallest_void), wet_(layout_), active_(layout_), touched_(layout_),
+          filled_(layout_.total) {
         for (int a = 0; a < Dim; ++a) wraps_[index(a)] = sides_.periodic(a);
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
