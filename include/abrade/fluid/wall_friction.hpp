@@ -76,9 +76,12 @@ public:
     PerFace apply(FaceField<Dim, State>& u, Real step, Real viscosity) const {
         PerFace taken;  // of what they are now, all components
         for (int a = 0; a < Dim; ++a) {
-            taken[a].reserve(held_[a].size());
-            for (const Held& h : held_[a])
-                taken[a].push_back(static_cast<Real>(u[a][h.face]) * taken_share(u, a, h, step, viscosity));
+            taken[a].resize(held_[a].size());
+            parallel_for(static_cast<Index>(held_[a].size()), [&](Index i) {
+                const auto k = static_cast<std::size_t>(i);
+                const Held& h = held_[a][k];
+                taken[a][k] = static_cast<Real>(u[a][h.face]) * taken_share(u, a, h, step, viscosity);
+            });
         }
         take(u, taken, 1);
         return taken;
