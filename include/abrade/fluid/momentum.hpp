@@ -47,7 +47,8 @@ template <class Scheme, bool Eddies, int Dim, class State>
 class MomentumRows {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner, middle = 2;
     static constexpr int vertical = Grid<Dim>::vertical;
-    static constexpr int lanes = 64 / sizeof(State);  ///< of a cache line: rows end within fewer of them
+    /// With eddies so much is computed that what lies beyond a row's end counts; without, long loops win.
+    static constexpr int lanes = Eddies ? 64 / static_cast<int>(sizeof(State)) : Layout<Dim>::lanes;
     static constexpr int pack(int i) noexcept { return i & ~(lanes - 1); }
     using Table = LevelTable<Dim, State>;
     /// Below this share of a control volume there is no momentum to speak of: the velocity is taken from
