@@ -301,6 +301,7 @@ private:
         if (!params_.steady_sides) sides_.fill(velocity_);
         report_ =
             projection_.project(velocity_, pressure_, dt, params_.tolerance, true, &water.liquid().surplus());
+        water.limit_narrow_faces(velocity_, projection_);
         finish(velocity_);
     }
 
@@ -394,7 +395,6 @@ private:
     Index steps_ = 0;
 };
 
-static_assert(AdvancingFluid<GridFluid<3>>);
-static_assert(AdvancingFluid<GridFluid<2>>);
+static_assert(AdvancingFluid<GridFluid<2>> && AdvancingFluid<GridFluid<3>>);
 
 }  // namespace abrade

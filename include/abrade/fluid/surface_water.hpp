@@ -2,6 +2,7 @@
 // Water below a free surface: where it is, what it touches, and what carries its momentum.
 
 #include <abrade/fluid/grid_fluid_params.hpp>
+#include <abrade/fluid/narrow_faces.hpp>
 #include <abrade/fluid/open_friction.hpp>
 #include <abrade/fluid/projection.hpp>
 #include <abrade/fluid/resting_films.hpp>
@@ -200,6 +201,10 @@ public:
     void extend(FaceField<Dim>& u) {
         extension_.extend(u, {wet_, rows_, held(), still_});
         films_.hold(u, wet_, held());
+    }
+
+    void limit_narrow_faces(FaceField<Dim>& u, const Projection<Dim, Real>& projection) const {
+        if (walls_) detail::limit_narrow_faces(u, *walls_, projection.open_faces());
     }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
