@@ -302,8 +302,9 @@ private:
                     RowRange r = wet.row(plane, row);
                     const int number = a == outer ? plane : row;
                     if (a == inner) {
-                        if (!r.empty())
-                            r = {std::max(first, r.begin), std::min(layout().row_length(), r.end + 1)};
+                        const int n = layout().row_length();
+                        const bool around = first == 0 && r.end == n;  // its upper face is the row's first
+                        if (!r.empty()) r = {around ? 0 : std::max(first, r.begin), std::min(n, r.end + 1)};
                     } else if (number < first) {
                         r = {};
                     } else {
