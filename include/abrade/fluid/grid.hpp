@@ -267,9 +267,9 @@ public:
         x[axis] = face(axis, cell[axis]);
         return x;
     }
-    /// Sizes inside the box [m].
+    /// Of all cells along an axis [m]; ghosts are as large as those beside them.
     Real smallest(int axis) const noexcept {
-        return *std::min_element(size_[axis].begin(), size_[axis].end());  // ghosts are as those beside them
+        return *std::min_element(size_[axis].begin(), size_[axis].end());
     }
     Real largest(int axis) const noexcept {
         return *std::max_element(size_[axis].begin(), size_[axis].end());

@@ -90,7 +90,7 @@ public:
     /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
     /// So it is where that velocity crosses more than a cell: the pressure of an impact, which lasted one
     /// step, has pushed it for another, and a speed that carries itself would grow without bound.
-    /// A trace of air makes no surface: or round-off would choose.
+    /// A trace of air makes no surface, or round-off would choose between the two.
     void carry_by(const FaceField<Dim>& stage, Real step) {
         const Real full = liquid_.full();
         const LevelTable<Dim, Real> volumes(*grid_, [&](int k) {
