@@ -200,9 +200,11 @@ public:
                          "numbers cannot tell such cells apart: put the origin near the box"},
                         low[a]);
             }
-            Real all = 1;
-            for (const int n : cells) all *= n + 2 * Layout<Dim>::ghosts + 8;
-            require(all < 2e9, {"Grid.cells", "below 2e9 in all", "", "take a larger spacing"}, all);
+            const auto all = static_cast<Real>(Layout<Dim>(cells).total);  // cells are told by an Index
+            require(
+                all < 2e9,
+                {"Grid.cells", "below 2e9 in all, ghosts and padding included", "", "take a larger spacing"},
+                all);
             if (levels.empty()) return;
             require(static_cast<int>(levels.size()) == cells[vertical] + 1,
                     {"Grid.levels.size()", "the number of cells along z and one more", "",
@@ -265,9 +267,9 @@ public:
         x[axis] = face(axis, cell[axis]);
         return x;
     }
-    /// Sizes inside the box [m].
+    /// Of all cells along an axis [m]; ghosts are as large as those beside them.
     Real smallest(int axis) const noexcept {
-        return *std::min_element(size_[axis].begin(), size_[axis].end());  // ghosts are as those beside them
+        return *std::min_element(size_[axis].begin(), size_[axis].end());
     }
     Real largest(int axis) const noexcept {
         return *std::max_element(size_[axis].begin(), size_[axis].end());

@@ -108,7 +108,8 @@ public:
     FluidStep stable_step() const {
         FluidStep step;
         if (params_.largest_step > 0) step.lower(params_.largest_step, "largest_step");
-        const Point<Dim> falls = params_.acceleration(time_);
+        Point<Dim> falls = Point<Dim>::Zero();
+        if constexpr (has_surface) falls = params_.acceleration(time_);
         Real per_h2 = 0, fall = 0, shortest = std::numeric_limits<Real>::infinity();
         for (int a = 0; a < Dim; ++a) {
             const Real size = grid_->smallest(a);
@@ -135,18 +136,15 @@ public:
         return step;
     }
 
-    /// Goes on to exactly `to_time` in steps of its own. Throws FluidError.
+    /// Goes on to exactly `to_time` [s] in steps of its own. Throws FluidError; InputError for no finite
+    /// time.
     void advance(Real to_time) {
         require_finite(to_time, "GridFluid.advance: to_time", "s");
         while (time_ < to_time) {
             const Real left = to_time - time_;
             const Real steps = std::ceil(left / stable_step().seconds - 1e-9);
-            if (steps <= 1) {
-                step(left);
-                time_ = to_time;
-            } else {
-                step(left / steps);
-            }
+            step(steps <= 1 ? left : left / steps);
+            if (steps <= 1) time_ = to_time;
         }
     }
 
@@ -250,6 +248,7 @@ private:
             sides_.leave(result);
         };
         stage(velocity_, stage_, 0);
+        if (!side_friction_.empty()) sides_.join(stage_);
         const auto taken = side_friction_.apply(stage_, dt, nu());
         sides_.fill(stage_);
         stage(stage_, saved_velocity_, 0.5);
@@ -263,7 +262,7 @@ private:
     void step_below_surface(Real dt) {
         auto& water = *water_;
         if (record_.keep(velocity_, pressure_, water, dt)) finish(velocity_);
-        sides_.join_cells(pressure_);
+        sides_.join(pressure_);
         water.move(velocity_, dt);
         // The velocity goes from half a step before the new surface to half a step behind it.
         const Point<Dim> falls = params_.acceleration(time_ + dt);
@@ -282,7 +281,7 @@ private:
             sides_.leave(result);
         };
         stage(velocity_, stage_, 0, -dt);
-        for (auto& component : stage_) sides_.join_cells(component);
+        sides_.join(stage_);  // friction of walls looks across the ends
         // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
         const auto taken = water.friction().apply(stage_, dt, nu());
         if (!params_.steady_sides) sides_.set_time(time_ + dt);

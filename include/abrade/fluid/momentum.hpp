@@ -47,7 +47,8 @@ template <class Scheme, bool Eddies, int Dim, class State>
 class MomentumRows {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner, middle = 2;
     static constexpr int vertical = Grid<Dim>::vertical;
-    /// With eddies so much is computed that what lies beyond a row's end counts; without, long loops win.
+    /// With eddies a cell costs so much that few should be computed beyond a row's end; without, long loops
+    /// are faster.
     static constexpr int lanes = Eddies ? 64 / static_cast<int>(sizeof(State)) : Layout<Dim>::lanes;
     static constexpr int pack(int i) noexcept { return i & ~(lanes - 1); }
     using Table = LevelTable<Dim, State>;

@@ -6,6 +6,8 @@
 #include <abrade/fluid/water_cells.hpp>
 
 #include <bit>
+#include <cstdint>
+#include <type_traits>
 
 namespace abrade {
 
@@ -230,7 +232,7 @@ private:
             const Real* const volume = open_volume_ ? open_volume_->data() + start : nullptr;
             const auto per_step = static_cast<State>(1 / step_);
             State sum = 0;
-            // Compared by their bits, in the same order from 0 on: clang++ puts no largest real in packs.
+            // Reals from 0 on compare as their bits do, and clang++ has packs for the largest of these only.
             auto most = std::bit_cast<Bits>(fastest);
             const auto all = [&]<bool Open, bool Surplus>() {
 #pragma omp simd reduction(+ : sum) reduction(max : most)

@@ -2,14 +2,15 @@
 // Films thinner than half a cell, on sides that something presses them on.
 
 #include <abrade/fluid/sides.hpp>
-#include <abrade/fluid/water_cells.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace abrade::detail {
 
-/// Liquid between dry cells flies on as it does, and gravity makes it faster. What lies on a closed side does
-/// not fall into it: nothing else would ever stop the face above it.
+/// Liquid between dry cells has no pressure: it flies on as it is, and gravity makes it faster. Of a film on
+/// a closed side that would be the face between its cell and the next one. It is kept from moving into the
+/// side where that next cell is empty: no pressure would ever stop it.
 template <int Dim>
 class RestingFilms {
 public:
@@ -26,7 +27,7 @@ public:
             }
     }
 
-    /// `held`: liquid of a cell, as a share of it [-].
+    /// `wet`: 1 where there is a pressure; `held`: liquid of a cell, as a share of it [-].
     void hold(FaceField<Dim>& u, const Field<std::uint8_t>& wet, const Field<Real>& held) const noexcept {
         for (const Face& f : faces_) {
             Real& speed = u[f.axis][f.face];

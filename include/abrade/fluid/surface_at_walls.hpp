@@ -82,6 +82,7 @@ public:
 
 private:
     static constexpr int vertical = Grid<Dim>::vertical;
+    static constexpr std::uint8_t of_trace = 2;  ///< no surface: asks nobody, and nobody asks it
     static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
     /// Of all cells.
@@ -201,8 +202,8 @@ private:
     const FaceField<Dim>* open_faces_ = nullptr;
     const Field<Real>* open_volumes_ = nullptr;
     Real full_ = 1;
-    static constexpr std::uint8_t of_trace = 2;  ///< no surface: asks nobody, and nobody asks it
-    std::vector<std::uint8_t> known_, found_;
+    std::vector<std::uint8_t> known_;  ///< [surface plane] 0: yet to be found; 1: stands; of_trace
+    std::vector<std::uint8_t> found_;
     std::vector<Index> open_;
 };
 

@@ -181,7 +181,8 @@ private:
                     for (int lane = 0; lane < pack_lanes; ++lane) {
                         const Index level = planes.level[static_cast<std::size_t>(item[at(lane)])];
                         const Real own = self.sizes_.edge(vertical, level);
-                        for (int k = -3; k <= 3 && axis == vertical; ++k)
+                        // Beside sides there are no levels farther than the column reaches.
+                        for (int k = -heights.reach; k <= heights.reach && axis == vertical; ++k)
                             height[at(3 + k)].set(
                                 lane, self.sizes_.edge(vertical, level + (out > 0 ? k : -k)) / own);
                         gap[0].set(lane, self.sizes_.gap(level) / own);

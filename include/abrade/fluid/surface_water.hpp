@@ -91,7 +91,7 @@ public:
     /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
     /// So it is where that velocity crosses more than a cell: the pressure of an impact, which lasted one
     /// step, has pushed it for another, and a speed that carries itself would grow without bound.
-    /// A trace of air makes no surface: or round-off would choose.
+    /// A trace of air makes no surface, or round-off would choose between the two.
     void carry_by(const FaceField<Dim>& stage, Real step) {
         const Real full = liquid_.full();
         const LevelTable<Dim, Real> volumes(*grid_, [&](int k) {
@@ -307,8 +307,9 @@ private:
                     RowRange r = wet.row(plane, row);
                     const int number = a == outer ? plane : row;
                     if (a == inner) {
-                        if (!r.empty())
-                            r = {std::max(first, r.begin), std::min(layout().row_length(), r.end + 1)};
+                        const int n = layout().row_length();
+                        const bool around = first == 0 && r.end == n;  // its upper face is the row's first
+                        if (!r.empty()) r = {around ? 0 : std::max(first, r.begin), std::min(n, r.end + 1)};
                     } else if (number < first) {
                         r = {};
                     } else {

@@ -43,7 +43,7 @@ public:
     }
 
     struct Water {
-        const Field<std::uint8_t>& wet;      ///< 1 where the pressure is known, ghosts included
+        const Field<std::uint8_t>& wet;      ///< 1 in cells that have a pressure, ghosts included
         const WetRows<Dim>& rows;            ///< to be looked at
         const Field<Real>& held;             ///< share of a cell that liquid fills [-]
         std::span<const WaterFace> still{};  ///< faces of wet cells that no pressure moves

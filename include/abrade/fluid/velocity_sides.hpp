@@ -5,9 +5,14 @@
 #include <abrade/fluid/sides.hpp>
 #include <abrade/fluid/wet_rows.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace abrade {
 
@@ -111,11 +116,15 @@ public:
                 if (kind(a, high) == wanted) body(a, high);
     }
 
-    /// Ghosts of a cell field beyond periodic sides.
+    /// Ghosts beyond periodic sides, of a cell field or of all components.
     template <class Number>
-    void join_cells(Field<Number>& x) const {
+    void join(Field<Number>& x) const {
         for (int b = 0; b < Dim; ++b)
             if (sides_.periodic(b)) copy_around(x, b);
+    }
+    template <class Number>
+    void join(FaceField<Dim, Number>& u) const {
+        for (auto& component : u) join(component);
     }
 
     /// Fills ghosts of a cell field with what is around (periodic) or beside.
@@ -212,8 +221,9 @@ private:
     void copy_around(Field<State>& x, int b) const {
         const Offset s = step(b), around = cells(b) * s;
         along_side({b, false}, [&](Offset c, std::size_t) {
-            x[c - 2 * s] = x[c - 2 * s + around];
+            // The nearer one first: in a box of one cell it is what the farther one copies.
             x[c - s] = x[c - s + around];
+            x[c - 2 * s] = x[c - 2 * s + around];
             x[c + around] = x[c];
             x[c + around + s] = x[c + s];
         });

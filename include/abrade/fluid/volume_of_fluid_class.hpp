@@ -7,7 +7,12 @@
 #include <abrade/fluid/surface_marks.hpp>
 #include <abrade/fluid/surface_normals.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <string>
+#include <vector>
 
 namespace abrade {
 
@@ -265,10 +270,6 @@ private:
     Real open_volume(Offset c, Index level) const noexcept {
         return sizes_.volume(level) * (open_volumes_ ? (*open_volumes_)[c] : 1);
     }
-    Real per_open_volume(Offset c, Index level) const noexcept {
-        const Real whole = per_volume_[index(level + Layout<Dim>::ghosts)];
-        return open_volumes_ ? whole / (*open_volumes_)[c] : whole;
-    }
     /// Volume that a lower face sweeps in a step, positive upwards [m3].
     Real swept(int axis, Offset c, Index level) const noexcept {
         const Real volume =
@@ -297,7 +298,7 @@ private:
 
     /// Share of its open volume that leaves a cell at the surface per second, at most [1/s].
     Real outflow_rate(const FaceField<Dim>& velocity) const;
-    /// The same of one cell of the band.
+    /// The same of one cell of the band, for errors.
     Real rate_of(const FaceField<Dim>& velocity, Index i) const noexcept;
 
     // The surface moves in a step by less than a cell; wisps that are moved aside, by one more.
@@ -329,7 +330,6 @@ private:
     Real stray(int axis, Offset c, int way, Real volume) const noexcept;
     void even_out_rims(int axis);
     void settle(VolumeStep& step);
-    struct Neighbours;
     Real share_out(Offset c, Index level, Real amount);
 
     [[noreturn]] void fail_fraction(const CellNumber<Dim>& cell, Real f) const {
@@ -339,13 +339,14 @@ private:
     }
     [[noreturn]] void fail_courant(const FaceField<Dim>& velocity, Real dt) const {
         Index worst = 0;
+        Real most = -1;  // or not a number, which counts as the most
         const auto count = static_cast<Index>(band_.cells().size());
-        for (Index i = 0; i < count; ++i)
-            if (!(rate_of(velocity, i) <= rate_of(velocity, worst))) worst = i;
+        for (Index i = 0; i < count && !std::isnan(most); ++i)
+            if (const Real rate = rate_of(velocity, i); !(rate <= most)) worst = i, most = rate;
         fail({"VolumeOfFluid.advance: dt",
               "small enough that no more than all of a cell at the surface leaves it; in cell " +
                   text(layout_.number(band_.cells()[static_cast<std::size_t>(worst)])) + " " +
-                  short_text(rate_of(velocity, worst)) + " of it leave per second",
+                  short_text(most) + " of it leave per second",
               "s", "take at most stable_step()"},
              to_text(dt));
     }

@@ -113,7 +113,7 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
     for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
         const PackMask in_bulk = detail::flags_at(bulk.data() + c);
         const Pack f = Pack::load(fraction_.data() + c), surplus = Pack::load(surplus_.data() + c);
-        const Pack liquid = f + surplus;
+        const Pack liquid = f + surplus;  // bounded as `set_cell` does
         const Pack bounded =
             select(liquid < Pack(wisp), Pack(0), select(liquid > Pack(1 - wisp), Pack(1), liquid));
         const Pack now = select(in_bulk, Pack(1), bounded);

@@ -253,7 +253,9 @@ void VolumeOfFluid<Dim>::sweep(int number) {
     if (!last) fill_periodic(fraction_, layout_, sides_);
 }
 
-/// Faces of the band whose donor is full or dry, or a ghost: what is swept times its fraction.
+/// Faces of the band whose donor is full or dry, or a ghost: what is swept times its fraction. Whole packs:
+/// of others those with a cut donor get theirs from `fluxes_of_planes`, the rest again what `carry_bulk`
+/// gave.
 template <int Dim>
 void VolumeOfFluid<Dim>::fluxes_of_band(int axis) {
     const Offset step = layout_.stride[index(axis)];

@@ -4,6 +4,7 @@
 #include <abrade/fluid/surface_water.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace abrade::detail {
@@ -21,8 +22,7 @@ public:
         for (int a = 0; a < Dim; ++a) {
             for (Offset c = 0; c < change_[a].size(); ++c)
                 change_[a][c] = static_cast<float>(acceleration[a][c]);
-            size_[a] = grid.size(a, 0);
-            for (int k = 1; k < grid.cells(a); ++k) size_[a] = std::min(size_[a], grid.size(a, k));
+            size_[a] = grid.smallest(a);
         }
     }
 

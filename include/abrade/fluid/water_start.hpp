@@ -11,7 +11,7 @@
 
 namespace abrade::detail {
 
-/// Velocities of the start on faces. Throws InputError where one is no number.
+/// Velocities of the start on faces [m/s]. Throws InputError where one is no number.
 template <int Dim, class State>
 void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, FaceField<Dim, State>& u) {
     if (!params.velocity) return;
