@@ -12,11 +12,11 @@ namespace abrade::detail {
 
 /// A wet cell has no divergence though it may not be full yet: what enters it leaves it through its surface.
 /// Where walls leave little of that face open, and the surface holds the pressure near 0, all of it would
-/// shoot out there, a hundred times as fast as it came. Such a face is no faster than `most_times` the
+/// shoot out there, a hundred times as fast as it came. Such a face is no faster than the
 /// fastest other one of its cell: the cell fills first. No volume is lost by that: it goes as liquid goes.
 template <int Dim>
 void limit_narrow_faces(FaceField<Dim>& u, const Walls<Dim>& walls, std::span<const OpenFace> open) {
-    constexpr Real narrow = 0.5, most_times = 2;
+    constexpr Real narrow = 0.5;  // open share of a face
     const Layout<Dim>& layout = walls.grid().layout();
     for (const OpenFace& f : open) {
         if (walls.open_area()[f.axis][f.face] >= narrow) continue;
@@ -26,7 +26,7 @@ void limit_narrow_faces(FaceField<Dim>& u, const Walls<Dim>& walls, std::span<co
                 if ((a != f.axis || face != f.face) && walls.open_area()[a][face] > 0)
                     fastest = std::max(fastest, std::abs(u[a][face]));
         Real& speed = u[f.axis][f.face];
-        speed = std::clamp(speed, -most_times * fastest, most_times * fastest);
+        speed = std::clamp(speed, -fastest, fastest);
     }
 }
 
