@@ -145,6 +145,8 @@ void measure(benchmark::State& state, int threads) {
     state.counters["s/wet_cell_step"] = by(wet);
     state.counters["cells"] = cells;
     state.counters["wet_cells"] = static_cast<double>(scene.fluid.wet_cells());
+    if constexpr (requires { scene.fluid.liquid(); })
+        state.counters["band_cells"] = static_cast<double>(scene.fluid.liquid().band().cells().size());
     state.counters["seconds/step"] = (scene.fluid.time() - began) / steps;
     state.counters["iterations"] = iterations / steps;
     state.counters["rounds"] = rounds / steps;
