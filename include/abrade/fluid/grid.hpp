@@ -256,6 +256,12 @@ public:
         for (int a = 0; a < Dim; ++a) product *= size(a, cell[a]);
         return product;
     }
+    /// Whether a cell stands inside the box; ghosts do not.
+    bool has(const CellNumber<Dim>& cell) const noexcept {
+        for (int a = 0; a < Dim; ++a)
+            if (cell[a] < 0 || cell[a] >= cells(a)) return false;
+        return true;
+    }
     Point<Dim> centre(const CellNumber<Dim>& cell) const noexcept {
         Point<Dim> x;
         for (int a = 0; a < Dim; ++a) x[a] = centre(a, cell[a]);

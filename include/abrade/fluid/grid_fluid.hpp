@@ -330,15 +330,15 @@ private:
 
     /// Back to what a step that went wrong began with.
     void restore() {
-        if (!params_.steady_sides) sides_.set_time(time_);
         if constexpr (has_surface) {
             record_.restore(velocity_, pressure_, *water_);
             water_->find(projection_, pressure_);
-            finish(velocity_);
         } else {
             std::swap(velocity_, saved_velocity_);
             std::swap(pressure_, saved_pressure_);
         }
+        if (!params_.steady_sides) sides_.set_time(time_);  // last: a function of the user may throw again
+        if constexpr (has_surface) finish(velocity_);
     }
     /// After a step that threw: a full box has not changed by then.
     void take_back() {

@@ -12,8 +12,8 @@ namespace abrade::detail {
 
 /// A wet cell has no divergence though it may not be full yet: what enters it leaves it through its surface.
 /// Where walls leave little of that face open, and the surface holds the pressure near 0, all of it would
-/// shoot out there, a hundred times as fast as it came. Such a face is no faster than the
-/// fastest other one of its cell: the cell fills first. No volume is lost by that: it goes as liquid goes.
+/// shoot out there, a hundred times as fast as it came. Such a face is no faster than the fastest
+/// other one of its cell: the cell fills first. No volume is lost by that, since liquid goes by any velocity.
 template <int Dim>
 void limit_narrow_faces(FaceField<Dim>& u, const Walls<Dim>& walls, std::span<const OpenFace> open) {
     constexpr Real narrow = 0.5;  // open share of a face

@@ -18,7 +18,7 @@ PerAxis<FaceField<Dim, float>, Dim> open_friction_of(const Walls<Dim>& walls, co
     for (const WallCell<Dim>& w : walls.wall_cells())
         for (int b = 0; b < Dim; ++b)
             middle[b][w.cell] = 0.5 * (1 - walls.open_volume()[w.cell]) * w.normal[b];
-    for (auto& component : middle) fill_periodic(component, layout, sides);
+    fill_periodic(middle, layout, sides);
     PerAxis<FaceField<Dim, float>, Dim> friction;
     for (int a = 0; a < Dim; ++a)
         for (int b = 0; b < Dim; ++b) {

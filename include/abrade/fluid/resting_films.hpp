@@ -1,7 +1,7 @@
 #pragma once
 // Films thinner than half a cell, on sides that something presses them on.
 
-#include <abrade/fluid/sides.hpp>
+#include <abrade/fluid/water_cells.hpp>
 
 #include <cstdint>
 #include <vector>
@@ -32,7 +32,7 @@ public:
         for (const Face& f : faces_) {
             Real& speed = u[f.axis][f.face];
             if (!(speed * f.into > 0) || (wet[f.face] | wet[f.face - stride_[f.axis]]) != 0) continue;
-            if (held[f.beyond] <= 1e-6) speed = 0;
+            if (held[f.beyond] <= liquid_of_a_face) speed = 0;
         }
     }
 

@@ -29,18 +29,27 @@ void copy_layer(Field<Number>& field, const Layout<Dim>& layout, int axis, int f
     }
 }
 
-/// Ghosts beyond periodic ends.
+/// Ghosts beyond both ends of a periodic axis.
+template <int Dim, class Number>
+void wrap_axis(Field<Number>& field, const Layout<Dim>& layout, int axis) noexcept {
+    const int n = layout.cells[axis];
+    for (int g = 0; g < Layout<Dim>::ghosts; ++g) {
+        // An axis of one cell is its own neighbour, twice over.
+        copy_layer(field, layout, axis, n - 1 - g % n, -1 - g);
+        copy_layer(field, layout, axis, g % n, n + g);
+    }
+}
+
+/// Ghosts beyond periodic ends, of a cell field or of all components of a velocity.
 template <int Dim, class Number>
 void fill_periodic(Field<Number>& field, const Layout<Dim>& layout, const Sides<Dim>& sides) noexcept {
-    for (int a = 0; a < Dim; ++a) {
-        if (!sides.periodic(a)) continue;
-        const int n = layout.cells[static_cast<std::size_t>(a)];
-        for (int g = 0; g < Layout<Dim>::ghosts; ++g) {
-            // An axis of one cell is its own neighbour, twice over.
-            copy_layer(field, layout, a, (n - 1 - g % n), -1 - g);
-            copy_layer(field, layout, a, g % n, n + g);
-        }
-    }
+    for (int a = 0; a < Dim; ++a)
+        if (sides.periodic(a)) wrap_axis(field, layout, a);
+}
+template <int Dim, class Number>
+void fill_periodic(FaceField<Dim, Number>& field, const Layout<Dim>& layout,
+                   const Sides<Dim>& sides) noexcept {
+    for (auto& component : field) fill_periodic(component, layout, sides);
 }
 
 /// Ghosts beyond all sides but those of an inflow, which are given: periodic, or as the cell inside. Rows get

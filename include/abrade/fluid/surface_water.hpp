@@ -85,7 +85,7 @@ public:
         rows_before_ = rows_;
         find_rows();
         hold();
-        for (auto& moved : liquid_.moved()) join(moved);
+        join(liquid_.moved());
     }
 
     /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.

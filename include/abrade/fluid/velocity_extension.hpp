@@ -2,6 +2,7 @@
 // Velocities of the air beside water: the water's, carried on outward.
 
 #include <abrade/fluid/walls.hpp>
+#include <abrade/fluid/water_cells.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -226,7 +227,7 @@ private:
         const auto wet = [&](Offset c) { return state_[c] == known; };
         for (const auto& found : found_)
             for (const Offset c : found) {
-                if (held[c] + held[c - layout_.stride[a]] < 1e-6) continue;
+                if (held[c] + held[c - layout_.stride[a]] < liquid_of_a_face) continue;
                 int count = 0;
                 for (const Offset s : layout_.stride) count += wet(c - s) + wet(c + s);
                 for (const Offset s : layout_.stride)
@@ -247,7 +248,7 @@ private:
             for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
                 if (!any_unknown(state + first)) continue;
                 for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i) {
-                    if (state[i] != unknown || !(h[i] + h[i - back] > 1e-6)) continue;
+                    if (state[i] != unknown || !(h[i] + h[i - back] > liquid_of_a_face)) continue;
                     if (!open || (open[i] == 1 && open[i - back] == 1))
                         state[i] = known;
                     else

@@ -2,8 +2,7 @@
 // Velocities at and beyond the sides of a fluid's box.
 
 #include <abrade/fluid/grid.hpp>
-#include <abrade/fluid/sides.hpp>
-#include <abrade/fluid/wet_rows.hpp>
+#include <abrade/fluid/side_ghosts.hpp>
 
 #include <algorithm>
 #include <array>
@@ -55,17 +54,17 @@ public:
                 const Side side = kind(b, high);
                 if (side != Side::wall && side != Side::inflow) continue;
                 for (int a = 0; a < Dim; ++a) {
-                    std::vector<Real>& values = table(a, b, high);
-                    values.clear();
+                    std::vector<Real> values;  // kept as they are where a given function throws
                     for_side(b, high, [&](Offset, const CellNumber<Dim>& cell) {
                         Point<Dim> x = grid_->face_centre(a, cell);
                         x[b] = high ? grid_->high(b) : grid_->low(b);
                         const bool through = a == b && side == Side::wall;
                         const Real u = given_(x, time)[a];
-                        if (!std::isfinite(u) && in_box(cell))
+                        if (!std::isfinite(u) && grid_->has(cell))
                             require_finite(u, velocity_at<Dim>("GridFluid.side_velocity", a, x, time), "m/s");
                         values.push_back(through ? 0 : u);
                     });
+                    table(a, b, high) = std::move(values);
                 }
             }
     }
@@ -77,7 +76,7 @@ public:
         for (int b = 0; b < Dim; ++b)
             for (int a = 0; a < Dim; ++a)
                 if (sides_.periodic(b))
-                    copy_around(u[a], b);
+                    wrap_axis(u[a], grid_->layout(), b);
                 else
                     for (const bool high : {false, true}) {
                         const SidePart<Dim> side{b, high, rows};
@@ -117,22 +116,14 @@ public:
     }
 
     /// Ghosts beyond periodic sides, of a cell field or of all components.
-    template <class Number>
-    void join(Field<Number>& x) const {
-        for (int b = 0; b < Dim; ++b)
-            if (sides_.periodic(b)) copy_around(x, b);
-    }
-    template <class Number>
-    void join(FaceField<Dim, Number>& u) const {
-        for (auto& component : u) join(component);
-    }
+    void join(auto& x) const { fill_periodic(x, grid_->layout(), sides_); }
 
     /// Fills ghosts of a cell field with what is around (periodic) or beside.
     template <class State>
     void fill_cells(Field<State>& x) const {
         for (int b = 0; b < Dim; ++b)
             if (sides_.periodic(b))
-                copy_around(x, b);
+                wrap_axis(x, grid_->layout(), b);
             else
                 for (const bool high : {false, true}) {
                     const Offset out = high ? step(b) : -step(b);
@@ -178,11 +169,6 @@ public:
     }
 
 private:
-    bool in_box(const CellNumber<Dim>& cell) const noexcept {
-        for (int a = 0; a < Dim; ++a)
-            if (cell[a] < 0 || cell[a] >= cells(a)) return false;
-        return true;
-    }
     Offset step(int axis) const noexcept { return grid_->layout().stride[axis]; }
     int cells(int axis) const noexcept { return grid_->cells(axis); }
     Side kind(int axis, bool high) const noexcept { return sides_[axis][high]; }
@@ -214,18 +200,6 @@ private:
             cell[p.second] = static_cast<int>(k % second) - g;
             cell[axis] = high ? cells(axis) - 1 : 0;
             body(c, cell);
-        });
-    }
-
-    template <class State>
-    void copy_around(Field<State>& x, int b) const {
-        const Offset s = step(b), around = cells(b) * s;
-        along_side({b, false}, [&](Offset c, std::size_t) {
-            // The nearer one first: in a box of one cell it is what the farther one copies.
-            x[c - s] = x[c - s + around];
-            x[c - 2 * s] = x[c - 2 * s + around];
-            x[c + around] = x[c];
-            x[c + around + s] = x[c + s];
         });
     }
 

@@ -110,7 +110,7 @@ public:
     /// Beyond periodic sides stands what stands inside. Until the next `update`.
     void repeat(const Sides<Dim>& sides) {
         fill_periodic(shares_.volume, grid_.layout(), sides);
-        for (auto& area : shares_.area) fill_periodic(area, grid_.layout(), sides);
+        fill_periodic(shares_.area, grid_.layout(), sides);
     }
 
     const Params& params() const noexcept { return params_; }

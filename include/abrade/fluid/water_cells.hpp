@@ -9,6 +9,9 @@
 
 namespace abrade {
 
+/// Less liquid than this about a face, as a share of a cell [-], gives it no velocity of its own.
+inline constexpr Real liquid_of_a_face = 1e-6;
+
 /// A face at which the pressure is known: between water and air, or where water leaves the box.
 struct OpenFace {
     Offset face = 0;  ///< of the velocity component

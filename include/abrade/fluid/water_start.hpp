@@ -46,12 +46,7 @@ void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, Vol
             },
             Layout<Dim>::ghosts);
     };
-    const auto inside = [&](const CellNumber<Dim>& cell) {
-        for (int a = 0; a < Dim; ++a)
-            if (cell[a] < 0 || cell[a] >= grid.cells(a)) return false;
-        return true;
-    };
-    shares(params.water, inside);
+    shares(params.water, [&](const CellNumber<Dim>& cell) { return grid.has(cell); });
     shares(params.inflow_water, [&](const CellNumber<Dim>& cell) {
         for (int a = 0; a < Dim; ++a)
             if ((cell[a] < 0 && params.sides[a][0] == Side::inflow) ||
