@@ -90,11 +90,11 @@ public:
             most_[static_cast<std::size_t>(plane)] = most;
         });
         largest_ = *std::max_element(most_.begin(), most_.end());
-        sides.fill_cells(field_);
+        sides.fill_cells(field_, rows);
         // No eddy reaches through a wall that is resolved: the mean of a cell and its mirror is 0.
         sides.for_sides(Side::wall, [&](int a, bool high) {
             const Offset out = high ? layout_.stride[a] : -layout_.stride[a];
-            sides.along_side({a, high}, [&](Offset c, std::size_t) { field_[c + out] = -field_[c]; });
+            sides.along_side({a, high, rows}, [&](Offset c, std::size_t) { field_[c + out] = -field_[c]; });
         });
     }
 

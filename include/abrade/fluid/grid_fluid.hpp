@@ -249,10 +249,10 @@ private:
         };
         stage(velocity_, stage_, 0);
         if (!side_friction_.empty()) sides_.join(stage_);
-        const auto taken = side_friction_.apply(stage_, dt, nu());
+        const auto taken = side_friction_.apply(stage_, nullptr, dt, nu());
         sides_.fill(stage_);
         stage(stage_, saved_velocity_, 0.5);
-        side_friction_.take(saved_velocity_, taken, 0.5);
+        side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
         std::swap(velocity_, saved_velocity_);
         if (!params_.steady_sides) sides_.fill(velocity_);
         report_ = projection_.project(velocity_, pressure_, dt, params_.tolerance);
@@ -283,13 +283,13 @@ private:
         stage(velocity_, stage_, 0, -dt);
         sides_.join(stage_);  // friction of walls looks across the ends
         // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
-        const auto taken = water.friction().apply(stage_, dt, nu());
+        const auto taken = water.friction().apply(stage_, &water.rows(), dt, nu());
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         finish(stage_);
         water.carry_by(stage_, dt);
         // The old pressure is taken back: below the new surface it pushes anew.
         stage(stage_, velocity_, 0.5, 0.5 * dt);
-        water.friction().take(velocity_, taken, 0.5);
+        water.friction().take(velocity_, &water.rows(), taken, 0.5);
         water.find(projection_, pressure_);
         water.weigh_reached(velocity_, 0.5 * dt * falls);
         water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * falls);

@@ -60,7 +60,10 @@ class MomentumRows {
 
 public:
     MomentumRows(const Grid<Dim>& grid, const MomentumStage<Dim, State>& stage)
-        : layout_(grid.layout()), s_(stage), pitch_(layout_.row_length() + 2 * Layout<Dim>::lanes) {
+        : layout_(grid.layout()), s_(stage),
+          pitch_(Layout<Dim>::pack(layout_.row_length() + 2 * Layout<Dim>::lanes)),
+          below_(room(layout_.rows_per_plane())), above_(below_.size()), along_(room(1)), low_(room(1)),
+          high_(room(1)) {
         for (int a = 0; a < Dim; ++a) {
             const int up = a == vertical;
             lower_half_[a] = Table(grid, [&](int k) { return half(grid, a, k, false); });
@@ -88,8 +91,6 @@ public:
     /// Component `a` on planes [first, last).
     void run(int a, const WetRows<Dim>& faces, int first, int last) {
         const int rows = layout_.rows_per_plane();
-        below_.resize(room(rows)), above_.resize(room(rows));
-        along_.resize(room(1)), low_.resize(room(1)), high_.resize(room(1));
         for (int row = 0; row < rows; ++row)
             flux(a, outer, first, row, faces.range(first, row), below_.data() + room(row));
         for (int plane = first; plane < last; ++plane) {
@@ -111,9 +112,7 @@ public:
     }
 
 private:
-    std::size_t room(int rows) const noexcept {
-        return static_cast<std::size_t>(pitch_) * static_cast<std::size_t>(rows);
-    }
+    Offset room(int rows) const noexcept { return Offset{pitch_} * rows; }
     /// 1 over what turns a carrier of cells at a level into a velocity.
     Real per_carrier(const Grid<Dim>& grid, int axis, int level) const noexcept {
         if (s_.carried_in == 0) return 1;
@@ -269,7 +268,7 @@ private:
     int pitch_;
     PerAxis<Table, Dim> lower_half_, upper_half_, push_;                  ///< [component]
     PerAxis<PerAxis<Table, Dim>, Dim> lower_, upper_, friction_, share_;  ///< [component][axis of the flux]
-    std::vector<State> below_, above_, along_, low_, high_;
+    Field<State> below_, above_, along_, low_, high_;  ///< fluxes; packs of fields are whole cache lines
 };
 
 }  // namespace detail
@@ -279,12 +278,11 @@ private:
 template <class Scheme, bool Eddies = false, int Dim, class State>
 void advance_momentum(const Grid<Dim>& grid, const PerAxis<WetRows<Dim>, Dim>& faces,
                       const MomentumStage<Dim, State>& stage) {
-    const int planes = grid.layout().planes();
-    const int runs = std::clamp(planes / 8, 1, thread_count());
-    parallel_tasks(runs, [&](Index run) {
+    const detail::PlaneRuns runs = faces[0].runs(8);  // each computes the fluxes below its first plane anew
+    parallel_tasks(static_cast<Index>(runs.size()) - 1, [&](Index run) {
         detail::MomentumRows<Scheme, Eddies, Dim, State> rows(grid, stage);
-        const auto cut = [&](Index r) { return static_cast<int>(std::int64_t{planes} * r / runs); };
-        for (int a = 0; a < Dim; ++a) rows.run(a, faces[a], cut(run), cut(run + 1));
+        const auto r = static_cast<std::size_t>(run);
+        for (int a = 0; a < Dim; ++a) rows.run(a, faces[a], runs[r], runs[r + 1]);
     });
 }
 

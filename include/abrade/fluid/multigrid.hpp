@@ -49,6 +49,8 @@ public:
     const Poisson<Dim>& matrix() const noexcept { return levels_[0].matrix; }
     Field<float>& right_side() noexcept { return levels_[0].b; }
     const Field<float>& solution() const noexcept { return solution_; }
+    /// Of planes of the finest level, for threads.
+    const detail::PlaneRuns& runs() const noexcept { return levels_[0].runs; }
     int level_count() const noexcept { return static_cast<int>(levels_.size()); }
     /// No cell is tied to a fixed value: e is known but for a constant.
     bool floating() const noexcept { return floating_; }
@@ -56,9 +58,9 @@ public:
     /// Coarse operators from the finest.
     void build() {
         close_periodic(levels_[0].matrix);
-        parallel_tasks(levels_[0].matrix.layout.planes(),
-                       [&](Index plane) { levels_[0].matrix.complete(plane); });
+        detail::parallel_planes(levels_[0].runs, [&](int plane) { levels_[0].matrix.complete(plane); });
         for (std::size_t l = 0; l + 1 < levels_.size(); ++l) coarsen(levels_[l], levels_[l + 1]);
+        for (Level& level : levels_) level.share_out();
         floating_ = levels_.back().matrix.dirichlet[levels_.back().matrix.layout.at({})] == 0;
     }
 
@@ -76,7 +78,7 @@ public:
         Report report;
         report.before = report.after =
             std::sqrt(sum_over_planes([&](int plane) { return squares(fine.b, plane); }));
-        parallel_planes(a.layout.planes(), [&](int plane) {
+        detail::parallel_planes(fine.runs, [&](int plane) {
             for_rows(plane, [&](Offset start, RowRange r) {
                 std::fill_n(solution_.data() + start + r.begin, r.length(), 0.0f);
             });
@@ -105,9 +107,25 @@ private:
         Poisson<Dim> matrix;
         Field<float> x, b;
         PerAxis<bool, Dim> paired{};  ///< with the next coarser level
+        detail::PlaneRuns runs;       ///< by the cells of the last build: any are right
 
         Level(const Layout<Dim>& layout, const PerAxis<bool, Dim>& periodic)
-            : matrix(layout, periodic), x(layout.total), b(layout.total) {}
+            : matrix(layout, periodic), x(layout.total), b(layout.total) {
+            share_out();
+        }
+        void share_out() {
+            const Layout<Dim>& l = matrix.layout;
+            // Small levels are not worth waking a thread, and across an odd periodic axis equal colours are
+            // neighbours.
+            const bool alone = l.total < 20000 || (matrix.periodic[outer] && l.planes() % 2 != 0);
+            const int least = alone ? l.planes() : detail::shortest_run;
+            runs = detail::plane_runs(l.planes(), least, [&](int plane) {
+                int weight = l.rows_per_plane();
+                for (int row = 0; row < l.rows_per_plane(); ++row)
+                    weight += matrix.range(plane, row).length();
+                return weight;
+            });
+        }
     };
 
     static void close_periodic(Poisson<Dim>& m) {
@@ -147,7 +165,7 @@ private:
             const int first = fine.paired[a] ? 2 * i : i;
             return RowRange{first, std::min(first + (fine.paired[a] ? 2 : 1), lf.cells[a])};
         };
-        parallel_tasks(lc.planes(), [&](Index coarse_plane) {
+        detail::parallel_planes(coarse.runs, [&](int coarse_plane) {
             const RowRange planes = children(outer, coarse_plane);
             for (int coarse_row = 0; coarse_row < lc.rows_per_plane(); ++coarse_row) {
                 const RowRange rows = Dim == 3 ? children(Dim - 1, coarse_row) : RowRange{0, 1};
@@ -167,7 +185,7 @@ private:
             }
         });
         close_periodic(c);
-        parallel_tasks(lc.planes(), [&](Index plane) { c.complete(plane); });
+        detail::parallel_planes(coarse.runs, [&](int plane) { c.complete(plane); });
     }
 
     struct RowNumber {
@@ -205,7 +223,6 @@ private:
         Level& level = levels_[l];
         const Poisson<Dim>& m = level.matrix;
         const int rows = m.layout.rows_per_plane(), planes = m.layout.planes();
-        const int runs = runs_on(m);
         const bool last = l + 1 == levels_.size();
         if (last) {
             const Offset only = m.layout.at({});
@@ -214,7 +231,7 @@ private:
         }
         Level& coarse = levels_[l + 1];
         coarse.b.fill(0);
-        detail::wavefront(planes, 5, m.periodic[outer], runs, [&](int stage, int plane) {
+        detail::wavefront(level.runs, 5, m.periodic[outer], [&](int stage, int plane) {
             if (stage == 4) return restrict_plane(level, coarse, plane);
             for (int row = 0; row < rows; ++row)
                 if (stage == 0)
@@ -224,7 +241,7 @@ private:
         });
         cycle(l + 1);
         if (l == 0) partial_.assign(static_cast<std::size_t>(planes), 0);
-        detail::wavefront(planes, l == 0 ? 6 : 5, m.periodic[outer], runs, [&](int stage, int plane) {
+        detail::wavefront(level.runs, l == 0 ? 6 : 5, m.periodic[outer], [&](int stage, int plane) {
             if (stage == 0) return prolong_plane(level, coarse, plane);
             if (stage == 5) {
                 partial_[static_cast<std::size_t>(plane)] = dot(level.b, level.x, plane);
@@ -299,7 +316,7 @@ private:
     Real search_along(const Poisson<Dim>& a, float beta) {
         const Field<float>& z = levels_[0].x;
         partial_.assign(static_cast<std::size_t>(a.layout.planes()), 0);
-        detail::wavefront(a.layout.planes(), 2, a.periodic[outer], runs_on(a), [&](int stage, int plane) {
+        detail::wavefront(levels_[0].runs, 2, a.periodic[outer], [&](int stage, int plane) {
             if (stage == 0) {
                 for_rows(plane, [&](Offset start, RowRange r) {
                     float* const __restrict p = search_.data() + start;
@@ -366,19 +383,11 @@ private:
     Real sum_over_planes(Term&& term) {
         const int planes = levels_[0].matrix.layout.planes();
         partial_.assign(static_cast<std::size_t>(planes), 0);
-        parallel_planes(planes, [&](int plane) { partial_[static_cast<std::size_t>(plane)] = term(plane); });
+        detail::parallel_planes(levels_[0].runs,
+                                [&](int plane) { partial_[static_cast<std::size_t>(plane)] = term(plane); });
         Real sum = 0;
         for (const Real p : partial_) sum += p;
         return sum;
-    }
-    static void parallel_planes(int planes, auto&& body) {
-        detail::wavefront(planes, 1, false, thread_count(), [&](int, int plane) { body(plane); });
-    }
-    /// Small levels are not worth waking a thread, and across an odd periodic axis equal colours are
-    /// neighbours.
-    static int runs_on(const Poisson<Dim>& m) noexcept {
-        const bool alone = m.layout.total < 20000 || (m.periodic[outer] && m.layout.planes() % 2 != 0);
-        return alone ? 1 : thread_count();
     }
 
     std::vector<Level> levels_;

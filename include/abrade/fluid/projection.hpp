@@ -69,7 +69,7 @@ public:
         Poisson<Dim>& m = multigrid_.matrix();
         const Layout<Dim>& l = grid_->layout();
         for (int a = 0; a < Dim; ++a) m.amid[a] = static_cast<float>(area(a, 0) / grid_->gap(a, 0));
-        parallel_tasks(l.planes(), [&](Index plane) {
+        water.rows.for_each_plane([&](int plane) {
             for (int row = 0; row < l.rows_per_plane(); ++row) conduct(water, plane, row);
         });
         for (const OpenFace& open : open_)
@@ -185,7 +185,7 @@ private:
         const Poisson<Dim>& m = multigrid_.matrix();
         const Layout<Dim>& l = grid_->layout();
         std::vector<Index> counts(static_cast<std::size_t>(l.planes()), 0);
-        parallel_tasks(l.planes(), [&](Index plane) {
+        detail::parallel_planes(multigrid_.runs(), [&](int plane) {
             for (int row = 0; row < l.rows_per_plane(); ++row) {
                 const Offset start = l.row_start(plane, row);
                 const RowRange cells = m.range(plane, row);
@@ -281,7 +281,7 @@ private:
 
     Real start(FaceField<Dim, State>& u) {
         make_room();
-        detail::wavefront(grid_->layout().planes(), 1, false, thread_count(), [&](int, int plane) {
+        detail::parallel_planes(multigrid_.runs(), [&](int plane) {
             join_upper_faces(u, plane);
             squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
         });
@@ -301,29 +301,28 @@ private:
             u[open.axis][open.face] -= static_cast<State>(open.slope) * value;
         }
         // Stage 1 reads the next plane's lower faces, which stage 0 has corrected.
-        detail::wavefront(m.layout.planes(), 2, sides_.periodic(outer), thread_count(),
-                          [&](int stage, int plane) {
-                              if (stage == 1) {
-                                  join_upper_faces(u, plane);
-                                  squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
-                                  return;
-                              }
-                              for (int row = 0; row < m.layout.rows_per_plane(); ++row) {
-                                  if (push) {
-                                      take_gradient(u, pressure, dt, plane, row);
-                                      continue;
-                                  }
-                                  take_gradient(u, e, State(1), plane, row);
-                                  const RowRange r = m.range(plane, row);
-                                  const Offset start = m.layout.row_start(plane, row);
-                                  const float* const __restrict from = e.data() + start;
-                                  State* const __restrict p = pressure.data() + start;
-                                  const float* const __restrict inverse = m.inverse_diagonal.data() + start;
+        detail::wavefront(multigrid_.runs(), 2, sides_.periodic(outer), [&](int stage, int plane) {
+            if (stage == 1) {
+                join_upper_faces(u, plane);
+                squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
+                return;
+            }
+            for (int row = 0; row < m.layout.rows_per_plane(); ++row) {
+                if (push) {
+                    take_gradient(u, pressure, dt, plane, row);
+                    continue;
+                }
+                take_gradient(u, e, State(1), plane, row);
+                const RowRange r = m.range(plane, row);
+                const Offset start = m.layout.row_start(plane, row);
+                const float* const __restrict from = e.data() + start;
+                State* const __restrict p = pressure.data() + start;
+                const float* const __restrict inverse = m.inverse_diagonal.data() + start;
 #pragma omp simd
-                                  for (int i = r.begin; i < r.end; ++i)
-                                      p[i] += inverse[i] > 0 ? rate * static_cast<State>(from[i]) : State(0);
-                              }
-                          });
+                for (int i = r.begin; i < r.end; ++i)
+                    p[i] += inverse[i] > 0 ? rate * static_cast<State>(from[i]) : State(0);
+            }
+        });
         return root_of_squares();
     }
 

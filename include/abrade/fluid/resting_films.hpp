@@ -1,8 +1,10 @@
 #pragma once
 // Films thinner than half a cell, on sides that something presses them on.
 
+#include <abrade/fluid/row_starts.hpp>
 #include <abrade/fluid/water_cells.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -25,15 +27,20 @@ public:
                     faces_.push_back({a, high ? c : c + s, high ? c - s : c + s, high ? 1.0 : -1.0});
                 });
             }
+        const auto film = [&](const Face& f) { return f.into > 0 ? f.face : f.face - stride_[f.axis]; };
+        std::ranges::stable_sort(faces_, {}, film);
+        starts_ = {grid.layout(), faces_.size(), [&](std::size_t k) { return film(faces_[k]); }};
     }
 
-    /// `wet`: 1 where there is a pressure; `held`: liquid of a cell, as a share of it [-].
-    void hold(FaceField<Dim>& u, const Field<std::uint8_t>& wet, const Field<Real>& held) const noexcept {
-        for (const Face& f : faces_) {
+    /// `wet`: 1 where there is a pressure; `held`: liquid of a cell, as a share of it [-]; `rows` hold it.
+    void hold(FaceField<Dim>& u, const WetRows<Dim>& rows, const Field<std::uint8_t>& wet,
+              const Field<Real>& held) const {
+        starts_.for_each(&rows, [&](std::size_t k) {
+            const Face& f = faces_[k];
             Real& speed = u[f.axis][f.face];
-            if (!(speed * f.into > 0) || (wet[f.face] | wet[f.face - stride_[f.axis]]) != 0) continue;
+            if (!(speed * f.into > 0) || (wet[f.face] | wet[f.face - stride_[f.axis]]) != 0) return;
             if (held[f.beyond] <= liquid_of_a_face) speed = 0;
-        }
+        });
     }
 
 private:
@@ -44,6 +51,7 @@ private:
     };
     PerAxis<Offset, Dim> stride_;
     std::vector<Face> faces_;
+    RowStarts<Dim> starts_;
 };
 
 }  // namespace abrade::detail

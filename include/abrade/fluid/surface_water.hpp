@@ -200,7 +200,7 @@ public:
     /// Velocities of the air beside the water, and of films.
     void extend(FaceField<Dim>& u) {
         extension_.extend(u, {wet_, rows_, held(), still_});
-        films_.hold(u, wet_, held());
+        films_.hold(u, rows_, wet_, held());
     }
 
     void limit_narrow_faces(FaceField<Dim>& u, const Projection<Dim, Real>& projection) const {

@@ -118,16 +118,17 @@ public:
     /// Ghosts beyond periodic sides, of a cell field or of all components.
     void join(auto& x) const { fill_periodic(x, grid_->layout(), sides_); }
 
-    /// Fills ghosts of a cell field with what is around (periodic) or beside.
+    /// Fills ghosts of a cell field with what is around (periodic) or beside; with `rows`, beside wet ones.
     template <class State>
-    void fill_cells(Field<State>& x) const {
+    void fill_cells(Field<State>& x, const WetRows<Dim>* rows = nullptr) const {
         for (int b = 0; b < Dim; ++b)
             if (sides_.periodic(b))
                 wrap_axis(x, grid_->layout(), b);
             else
                 for (const bool high : {false, true}) {
                     const Offset out = high ? step(b) : -step(b);
-                    along_side({b, high}, [&](Offset c, std::size_t) { x[c + out] = x[c + 2 * out] = x[c]; });
+                    along_side({b, high, rows},
+                               [&](Offset c, std::size_t) { x[c + out] = x[c + 2 * out] = x[c]; });
                 }
     }
 

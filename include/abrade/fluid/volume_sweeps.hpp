@@ -260,17 +260,17 @@ template <int Dim>
 void VolumeOfFluid<Dim>::fluxes_of_band(int axis) {
     const Offset step = layout_.stride[index(axis)];
     const bool is_outer = axis == Layout<Dim>::outer, is_inner = axis == inner;
-    const int planes = layout_.planes() + is_outer, rows = layout_.rows_per_plane() + !(is_outer || is_inner);
-    parallel_tasks(planes, [&](Index p) {
+    const int planes = layout_.planes(), rows = layout_.rows_per_plane() + !(is_outer || is_inner);
+    const auto fluxes_of_plane = [&](int p) {
         for (int r = 0; r < rows; ++r) {
             // Upper faces of cells as well as lower ones.
-            RowRange range = active_.range(static_cast<int>(p), r);
-            const int plane_below = static_cast<int>(p) - is_outer, row_below = r - !(is_outer || is_inner);
+            RowRange range = active_.range(p, r);
+            const int plane_below = p - is_outer, row_below = r - !(is_outer || is_inner);
             if (is_inner)
                 range.end += !range.empty();
             else if (plane_below >= 0 && row_below >= 0)
                 range = hull(range, active_.range(plane_below, row_below));
-            const Offset start = layout_.row_start(static_cast<int>(p), r);
+            const Offset start = layout_.row_start(p, r);
             for (int i = range.begin / pack_lanes * pack_lanes; i < range.end; i += pack_lanes) {
                 const Offset c = start + i;
                 const std::uint8_t* const band = band_.data() + c;
@@ -283,6 +283,10 @@ void VolumeOfFluid<Dim>::fluxes_of_band(int axis) {
                 select(f < Pack(wisp), Pack(0), flux).store(moved_[index(axis)].data() + c);
             }
         }
+    };
+    active_.for_each_plane([&](int p) {
+        fluxes_of_plane(p);
+        if (is_outer && p + 1 == planes) fluxes_of_plane(planes);
     });
 }
 

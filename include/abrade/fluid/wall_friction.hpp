@@ -1,6 +1,7 @@
 #pragma once
 // What walls do to water that flows along them.
 
+#include <abrade/fluid/row_starts.hpp>
 #include <abrade/fluid/sides.hpp>
 #include <abrade/fluid/walls.hpp>
 
@@ -53,8 +54,10 @@ public:
         if (walls)
             for (const WallCell<Dim>& w : walls->wall_cells()) add(grid, sides, *walls, w);
         if (law_.kind == WallLaw::Kind::logarithmic) add_sides(grid, sides, walls);
-        for (auto& list : held_) {
+        for (int a = 0; a < Dim; ++a) {
+            auto& list = held_[a];
             merge(list);
+            starts_[a] = {layout_, list.size(), [&](std::size_t k) { return list[k].face; }};
             for (Held& h : list)
                 h.per_speed =
                     law_.kind == WallLaw::Kind::no_slip
@@ -67,31 +70,31 @@ public:
         return std::all_of(held_.begin(), held_.end(), [](const auto& list) { return list.empty(); });
     }
 
-    /// Of each face that walls hold.
+    /// Of each face that walls hold, 0 in dry rows.
     using PerFace = PerAxis<std::vector<Real>, Dim>;
 
     /// Slows `u` down over a step [s], by the velocity that it comes to; `viscosity` is kinematic [m2/s].
-    /// Returns what it took.
+    /// Only in rows that are wet, or none given: in all. Returns what it took.
     template <class State>
-    PerFace apply(FaceField<Dim, State>& u, Real step, Real viscosity) const {
+    PerFace apply(FaceField<Dim, State>& u, const WetRows<Dim>* rows, Real step, Real viscosity) const {
         PerFace taken;  // of what they are now, all components
         for (int a = 0; a < Dim; ++a) {
             taken[a].resize(held_[a].size());
-            parallel_for(static_cast<Index>(held_[a].size()), [&](Index i) {
-                const auto k = static_cast<std::size_t>(i);
+            starts_[a].for_each(rows, [&](std::size_t k) {
                 const Held& h = held_[a][k];
                 taken[a][k] = static_cast<Real>(u[a][h.face]) * taken_share(u, a, h, step, viscosity);
             });
         }
-        take(u, taken, 1);
+        take(u, rows, taken, 1);
         return taken;
     }
     /// Takes a share of the same again.
     template <class State>
-    void take(FaceField<Dim, State>& u, const PerFace& taken, Real share) const noexcept {
+    void take(FaceField<Dim, State>& u, const WetRows<Dim>* rows, const PerFace& taken, Real share) const {
         for (int a = 0; a < Dim; ++a)
-            for (std::size_t k = 0; k < held_[a].size(); ++k)
+            starts_[a].for_each(rows, [&](std::size_t k) {
                 u[a][held_[a][k].face] -= static_cast<State>(share * taken[a][k]);
+            });
     }
 
 private:
@@ -185,6 +188,7 @@ private:
     Layout<Dim> layout_;
     WallLaw law_;
     PerAxis<std::vector<Held>, Dim> held_;
+    PerAxis<detail::RowStarts<Dim>, Dim> starts_;
 };
 
 }  // namespace abrade

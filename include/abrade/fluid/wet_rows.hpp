@@ -1,8 +1,8 @@
 #pragma once
 // Which part of each row of a grid is wet: what keeps dry cells from costing anything.
 
-#include <abrade/core/parallel.hpp>
 #include <abrade/fluid/grid.hpp>
+#include <abrade/fluid/plane_runs.hpp>
 
 #include <algorithm>
 #include <array>
@@ -119,8 +119,15 @@ public:
     }
 
     /// Calls body(plane) for each plane, in parallel.
-    void for_each_plane(auto&& body) const {
-        parallel_tasks(layout_.planes(), [&](Index plane) { body(static_cast<int>(plane)); });
+    void for_each_plane(auto&& body) const { detail::parallel_planes(runs(2), body); }
+    /// Runs of planes with about as many cells in their ranges.
+    detail::PlaneRuns runs(int least) const {
+        const int rows = layout_.rows_per_plane();
+        return detail::plane_runs(layout_.planes(), least, [&](int plane) {
+            int weight = rows;  // dry rows cost a look
+            for (int r = 0; r < rows; ++r) weight += row(plane, r).length();
+            return weight;
+        });
     }
 
 private:
