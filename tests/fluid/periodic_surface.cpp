@@ -124,3 +124,41 @@ TEST_CASE("periodic_surface: a film that runs around on a rough bed below whole 
             return GridFluid<2, FreeSurface, Limited, Real, MixingLength>(p, {.depth = 0.32});
         });
 }
+
+TEST_CASE("periodic_surface: velocity and surface are asked for across the ends") {
+    auto params = box<2>({16, 12}, 1.0 / 16);
+    params.water = [](const Point<2>& x) { return 0.4 + 0.05 * std::cos(2 * pi * x[0] - 0.4) - x[1]; };
+    params.velocity = [](const Point<2>& x) {
+        const Real k = 2 * pi;
+        return Point<2>(std::cos(k * x[0]) * std::cosh(k * x[1]), std::sin(k * x[0]) * std::sinh(k * x[1]));
+    };
+    const GridFluid<2> flow(params);
+    const auto at = [&](Real x) { return flow.sample({x, 0, 0.2}, 0); };
+    // Linear between centres: within the last half cell nothing jumps, and beyond the end it begins anew.
+    const Real cell = 1.0 / 16;
+    for (const Real x : {0.0, 0.3 * cell, 0.5}) {
+        CHECK(at(x + 1).velocity.isApprox(at(x).velocity, 1e-12));
+        CHECK(flow.surface_at({x - 2, 0}) == doctest::Approx(flow.surface_at({x, 0})).epsilon(1e-12));
+    }
+    const auto mean = [](Real a, Real b) { return doctest::Approx(0.5 * (a + b)).epsilon(1e-12); };
+    CHECK(at(0).velocity.z() == mean(at(-0.5 * cell).velocity.z(), at(0.5 * cell).velocity.z()));
+    CHECK(flow.surface_at({0.0, 0}) ==
+          mean(flow.surface_at({0.5 * cell, 0}), flow.surface_at({1 - 0.5 * cell, 0})));
+    CHECK(flow.surface_at({0.25 * cell, 0}) < flow.surface_at({0.5 * cell, 0}) - 1e-4);
+}
+
+TEST_CASE("periodic_surface: a wall that does not repeat itself is refused") {
+    auto params = box<2>({16, 12}, 1.0 / 16);
+    params.water = [](const Point<2>& x) { return 0.5 - x[1]; };
+    params.wall = [](const Point<2>& x) { return x[1] - 0.1 - 0.02 * x[0]; };
+    std::string said;
+    try {
+        const GridFluid<2> flow(params);
+    } catch (const InputError& error) {
+        said = error.what();
+    }
+    MESSAGE(said);
+    CHECK(said.starts_with("GridFluid.wall at x = 0 m, z = 0.09375 m must be as far away as at the other"));
+    params.wall = [](const Point<2>& x) { return x[1] - 0.1 - 0.02 * std::sin(2 * pi * x[0]); };
+    CHECK_NOTHROW(GridFluid<2>{params});
+}

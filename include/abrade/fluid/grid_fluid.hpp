@@ -81,7 +81,7 @@ public:
         find_eddies();
         if constexpr (has_surface) {
             record_ = detail::WaterRecord<Dim>(*grid_, velocity_, stage_, *water_);
-            heights_ = detail::SurfaceHeights<Dim>(*grid_, water_->walls());
+            heights_ = detail::SurfaceHeights<Dim>(*grid_, params_.sides.periodic_axes(), water_->walls());
             heights_.find(*grid_, water_->rows(), water_->held());
         } else {
             saved_velocity_ = velocity_;
@@ -170,17 +170,18 @@ public:
         if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
     }
 
-    /// Water at a point; in two dimensions at its x and z. Beyond the box as at its edge. t is not asked:
-    /// what is known is the present.
+    /// Water at a point; in two dimensions at its x and z. Beyond the box as at its edge or, where sides are
+    /// periodic, where it comes in again. t is not asked: what is known is the present.
     FluidSample sample(const Vec3& x, Real /*t*/) const noexcept {
         Point<Dim> at;
         at[0] = x[0];
         if constexpr (Dim == 3) at[1] = x[1];
         at[Dim - 1] = x[2];
+        const PerAxis<bool, Dim> periodic = params_.sides.periodic_axes();
         FluidSample sample{Vec3::Zero(), std::numeric_limits<Real>::infinity(), params_.density,
                            params_.viscosity};
         for (int a = 0; a < Dim; ++a)
-            sample.velocity[a == Dim - 1 ? 2 : a] = face_value(*grid_, velocity_[a], a, at);
+            sample.velocity[a == Dim - 1 ? 2 : a] = face_value(*grid_, periodic, velocity_[a], a, at);
         if constexpr (has_surface) sample.depth = surface_at(at) - x[2];
         return sample;
     }

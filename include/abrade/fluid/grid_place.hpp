@@ -4,10 +4,12 @@
 #include <abrade/fluid/grid.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace abrade {
 
-/// Between which two numbers along an axis a place lies, and how near to the upper one [-].
+/// Between which two numbers along an axis a place lies, and how near to the upper one [-]. Along a periodic
+/// axis they may be those of ghosts.
 struct GridPlace {
     int low = 0;
     Real weight = 0;
@@ -15,13 +17,13 @@ struct GridPlace {
 
 namespace detail {
 
-/// `at(i)`: coordinate of number i, rising, 0 <= i <= last. Places beyond are taken to the end.
-GridPlace place_between(Real x, int last, Real first_gap, bool even, auto&& at) noexcept {
-    if (last == 0) return {};
-    int low = 0;
+/// `at(i)`: coordinate of number i, rising, first <= i <= last. Places beyond are taken to the end.
+GridPlace place_between(Real x, int first, int last, Real gap, bool even, auto&& at) noexcept {
+    if (last == first) return {first};
+    int low = first;
     if (even) {
-        const Real number = (x - at(0)) / first_gap;
-        low = number > 0 ? static_cast<int>(std::min(number, static_cast<Real>(last - 1))) : 0;  // NaN: 0
+        const Real number = (x - at(first)) / gap;  // NaN: the first
+        low += number > 0 ? static_cast<int>(std::min(number, static_cast<Real>(last - first - 1))) : 0;
     } else {
         for (int end = last; end - low > 1;) {
             const int middle = (low + end) / 2;
@@ -31,29 +33,40 @@ GridPlace place_between(Real x, int last, Real first_gap, bool even, auto&& at) 
     return {low, std::clamp((x - at(low)) / (at(low + 1) - at(low)), Real(0), Real(1))};
 }
 
+/// Where a place beyond a periodic box stands inside.
+template <int Dim>
+Real wrapped(const Grid<Dim>& grid, int axis, Real x) noexcept {
+    const Real length = grid.high(axis) - grid.low(axis);
+    return x - length * std::floor((x - grid.low(axis)) / length);
+}
+
 }  // namespace detail
 
+/// A place beyond the box is taken to its end, along a periodic axis to where it stands inside.
 template <int Dim>
-GridPlace place_among_centres(const Grid<Dim>& grid, int axis, Real x) noexcept {
-    return detail::place_between(x, grid.cells(axis) - 1, grid.size(axis, 0),
+GridPlace place_among_centres(const Grid<Dim>& grid, int axis, Real x, bool periodic) noexcept {
+    return detail::place_between(periodic ? detail::wrapped(grid, axis, x) : x, periodic ? -1 : 0,
+                                 grid.cells(axis) - 1 + periodic, grid.size(axis, 0),
                                  axis != Grid<Dim>::vertical || grid.uniform(),
                                  [&](int i) { return grid.centre(axis, i); });
 }
 template <int Dim>
-GridPlace place_among_faces(const Grid<Dim>& grid, int axis, Real x) noexcept {
-    return detail::place_between(x, grid.cells(axis), grid.size(axis, 0),
-                                 axis != Grid<Dim>::vertical || grid.uniform(),
+GridPlace place_among_faces(const Grid<Dim>& grid, int axis, Real x, bool periodic) noexcept {
+    return detail::place_between(periodic ? detail::wrapped(grid, axis, x) : x, 0, grid.cells(axis),
+                                 grid.size(axis, 0), axis != Grid<Dim>::vertical || grid.uniform(),
                                  [&](int i) { return grid.face(axis, i); });
 }
 
 /// Component a of a staggered field at a point: it stands on lower faces along a, in the middle of cells
-/// along the others.
+/// along the others. Ghosts beyond periodic ends are to be filled.
 template <int Dim, class Number>
-Real face_value(const Grid<Dim>& grid, const Field<Number>& component, int a, const Point<Dim>& x) noexcept {
+Real face_value(const Grid<Dim>& grid, const PerAxis<bool, Dim>& periodic, const Field<Number>& component,
+                int a, const Point<Dim>& x) noexcept {
     CellNumber<Dim> low{};
     PerAxis<Real, Dim> weight{};
     for (int b = 0; b < Dim; ++b) {
-        const GridPlace at = b == a ? place_among_faces(grid, b, x[b]) : place_among_centres(grid, b, x[b]);
+        const GridPlace at = b == a ? place_among_faces(grid, b, x[b], periodic[b])
+                                    : place_among_centres(grid, b, x[b], periodic[b]);
         low[b] = at.low, weight[b] = at.weight;
     }
     const Offset from = grid.layout().at(low);

@@ -25,7 +25,7 @@ class Projection {
 public:
     /// A box full of water.
     Projection(const Grid<Dim>& grid, const Sides<Dim>& sides)
-        : grid_(&grid), sides_(sides), multigrid_(grid.layout(), mean_size(grid), periodic_axes(sides)) {
+        : grid_(&grid), sides_(sides), multigrid_(grid.layout(), mean_size(grid), sides.periodic_axes()) {
         for (int b = 0; b < Dim; ++b) {
             const auto level_along = [b](int k) { return b == vertical ? k : 0; };
             area_[b] = Table(grid, [&](int k) { return area(b, k); });
@@ -120,11 +120,6 @@ public:
     }
 
 private:
-    static PerAxis<bool, Dim> periodic_axes(const Sides<Dim>& sides) {
-        PerAxis<bool, Dim> repeats;
-        for (int a = 0; a < Dim; ++a) repeats[a] = sides.periodic(a);
-        return repeats;
-    }
     static Point<Dim> mean_size(const Grid<Dim>& grid) {
         Point<Dim> mean;
         for (int a = 0; a < Dim; ++a) mean[a] = (grid.high(a) - grid.low(a)) / grid.cells(a);

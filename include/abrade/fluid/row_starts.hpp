@@ -27,6 +27,7 @@ public:
 
     /// Calls body(k) for the items in rows that are not dry (none given: for all), in parallel.
     void for_each(const WetRows<Dim>* rows, auto&& body) const {
+        if (first_.back() == 0) return;
         if (!rows) return parallel_for(first_.back(), [&](Index k) { body(static_cast<std::size_t>(k)); });
         rows->for_each_row([&](int plane, int row, const RowRange&) {
             const std::size_t r = row_of(plane, row);
@@ -40,7 +41,7 @@ private:
     }
 
     int rows_per_plane_ = 0;
-    std::vector<std::uint32_t> first_;
+    std::vector<std::uint32_t> first_{0};
 };
 
 }  // namespace abrade::detail

@@ -40,6 +40,11 @@ struct Sides {
     const PerAxis<Side, 2>& operator[](int axis) const noexcept { return kind[axis]; }
     PerAxis<Side, 2>& operator[](int axis) noexcept { return kind[axis]; }
     bool periodic(int axis) const noexcept { return (*this)[axis][0] == Side::periodic; }
+    PerAxis<bool, Dim> periodic_axes() const noexcept {
+        PerAxis<bool, Dim> axes{};
+        for (int a = 0; a < Dim; ++a) axes[a] = periodic(a);
+        return axes;
+    }
 
     /// Throws InputError where one end of an axis is periodic and the other is not.
     void validate() const {

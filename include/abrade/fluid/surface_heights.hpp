@@ -16,8 +16,9 @@ class SurfaceHeights {
 public:
     SurfaceHeights() = default;
     /// `walls` may be none.
-    SurfaceHeights(const Grid<Dim>& grid, const Walls<Dim>* walls)
-        : across_(Dim == 3 ? grid.cells(1) : 1), dry_(column(grid.cells(0), 0), grid.low(vertical)) {
+    SurfaceHeights(const Grid<Dim>& grid, const PerAxis<bool, Dim>& periodic, const Walls<Dim>* walls)
+        : periodic_(periodic), across_(Dim == 3 ? grid.cells(1) : 1),
+          dry_(column(grid.cells(0), 0), grid.low(vertical)) {
         if (walls)
             grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
                 dry_[column(cell[0], Dim == 3 ? cell[1] : 0)] +=
@@ -45,9 +46,10 @@ public:
         PerAxis<int, 2> low{}, high{};
         PerAxis<Real, 2> weight{};
         for (int a = 0; a < Dim - 1; ++a) {
-            const GridPlace place = place_among_centres(grid, a, x[a]);
-            low[a] = place.low, weight[a] = place.weight;
-            high[a] = std::min(low[a] + 1, grid.cells(a) - 1);
+            const GridPlace place = place_among_centres(grid, a, x[a], periodic_[a]);
+            const int n = grid.cells(a);
+            low[a] = (place.low + n) % n, weight[a] = place.weight;
+            high[a] = periodic_[a] ? (low[a] + 1) % n : std::min(low[a] + 1, n - 1);
         }
         const auto along = [&](int j) {
             return (1 - weight[0]) * heights_[column(low[0], j)] + weight[0] * heights_[column(high[0], j)];
@@ -62,6 +64,7 @@ private:
                static_cast<std::size_t>(across);
     }
 
+    PerAxis<bool, Dim> periodic_{};
     int across_ = 1;
     std::vector<Real> dry_, heights_;  ///< of walls alone; of all [m]
 };

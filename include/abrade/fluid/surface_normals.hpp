@@ -31,7 +31,7 @@ public:
             block.sort(first, last);
             for (int way = 0; way < 2 * Dim; ++way)
                 for (const bool deep : {false, true}) block.heights(way, deep);
-            block.fit(exact ? 10 : 0);
+            block.fit(exact);
             block.place();
         });
     }
@@ -213,9 +213,7 @@ private:
         void place() noexcept {
             for (int i = 0; i < kept.count; i += pack_lanes) {
                 const auto item = items(kept, i);
-                std::array<Pack, Dim> normal;
-                for (std::size_t a = 0; a < Dim; ++a)
-                    normal[a] = detail::values_at(planes.normal[a].data(), item);
+                const std::array<Pack, Dim> normal = normal_of(item);
                 const Pack distance = plane_distance<Dim>(normal, detail::values_at(fraction, cells(item)));
                 for (int lane = 0; lane < std::min(pack_lanes, kept.count - i); ++lane) {
                     const auto k = static_cast<std::size_t>(item[at(lane)]);
@@ -223,15 +221,39 @@ private:
                 }
             }
         }
+        std::array<Pack, Dim> normal_of(const std::array<Index, pack_lanes>& item) const noexcept {
+            std::array<Pack, Dim> normal;
+            for (std::size_t a = 0; a < Dim; ++a)
+                normal[a] = detail::values_at(planes.normal[a].data(), item);
+            return normal;
+        }
 
-        void fit(int attempts) noexcept {
-            for (int i = 0; i < rest.count; i += pack_lanes) {
-                const auto item = items(rest, i);
+        void fit(bool exact) noexcept {
+            if (!exact) return fit(rest, {.attempts = 0});
+            // Most are found soon; those that are not go on in packs of their own.
+            List unsettled;
+            fit(rest, {.attempts = 3, .unsettled = &unsettled});
+            fit(unsettled, {.attempts = 7, .goes_on = true});
+        }
+        struct Round {
+            int attempts;
+            bool goes_on = false;       ///< from the normals that there are
+            List* unsettled = nullptr;  ///< gets cells whose attempts did not do
+        };
+        void fit(const List& list, const Round& round) noexcept {
+            for (int i = 0; i < list.count; i += pack_lanes) {
+                const auto item = items(list, i);
                 const PackCells cell = cells(item);
-                const auto normal =
-                    self.fit_.normals(attempts, fraction, marks, cell_mark::whole, cell, levels(item));
-                keep(item, std::min(pack_lanes, rest.count - i), normal,
-                     plane_distance<Dim>(normal, detail::values_at(fraction, cell)));
+                const auto from = normal_of(item);
+                const auto found = self.fit_.find(round.attempts, fraction, marks, cell_mark::whole, cell,
+                                                  levels(item), round.goes_on ? &from : nullptr);
+                const int lanes = std::min(pack_lanes, list.count - i);
+                keep(item, lanes, found.normal,
+                     plane_distance<Dim>(found.normal, detail::values_at(fraction, cell)));
+                if (!round.unsettled) continue;
+                const unsigned left = lanes_of(found.unsettled);
+                for (int lane = 0; lane < lanes; ++lane)
+                    if (left >> lane & 1) round.unsettled->add(item[at(lane)]);
             }
         }
     };

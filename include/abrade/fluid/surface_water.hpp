@@ -43,7 +43,7 @@ public:
         liquid_.set_gravity(params.gravity);
         if (params.wall) {
             const auto walls = std::make_shared<Walls<Dim>>(grid, params.wall);
-            walls->repeat(sides_);
+            walls->repeat(sides_, params.wall);
             walls_ = walls;
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
             extension_.set_walls(*walls_);
@@ -296,10 +296,8 @@ private:
 
     /// Rows that hold water and what is near, and faces that carry momentum.
     void find_rows() {
-        PerAxis<bool, Dim> wraps;
-        for (int a = 0; a < Dim; ++a) wraps[a] = sides_.periodic(a);
         const WetRows<Dim>& wet = liquid_.wet();
-        rows_ = wet.dilated(VelocityExtension<Dim>::layers, wraps);
+        rows_ = wet.dilated(VelocityExtension<Dim>::layers, sides_.periodic_axes());
         for (int a = 0; a < Dim; ++a) {
             const int first = sides_.periodic(a) ? 0 : 1;  // a face at a side is the side's
             faces_[a].for_each_plane([&](int plane) {

@@ -72,16 +72,20 @@ public:
     /// `rows`: where water is and what it may reach; none: everywhere.
     template <class State>
     void fill(FaceField<Dim, State>& u, const WetRows<Dim>* rows = nullptr) const {
-        // Axis by axis, ghosts of the former ones included: so corners get theirs.
-        for (int b = 0; b < Dim; ++b)
-            for (int a = 0; a < Dim; ++a)
-                if (sides_.periodic(b))
+        parallel_tasks(Dim, [&](Index component) {
+            const int a = static_cast<int>(component);
+            // Axis by axis, ghosts of the former ones included: so corners get theirs.
+            for (int b = 0; b < Dim; ++b) {
+                if (sides_.periodic(b)) {
                     wrap_axis(u[a], grid_->layout(), b);
-                else
-                    for (const bool high : {false, true}) {
-                        const SidePart<Dim> side{b, high, rows};
-                        a == b ? normal(u[a], side) : tangential(u[a], a, side);
-                    }
+                    continue;
+                }
+                for (const bool high : {false, true}) {
+                    const SidePart<Dim> side{b, high, rows};
+                    a == b ? normal(u[a], side) : tangential(u[a], a, side);
+                }
+            }
+        });
     }
 
     /// Faces through which water leaves go on as the ones before them.

@@ -18,12 +18,18 @@ public:
     VolumeFit() = default;
     VolumeFit(const Layout<Dim>& layout, const CellSizes<Dim>& sizes) : stencil_(layout), sizes_(sizes) {}
 
-    /// Normals (of any length) for a pack of cells. Without any attempts: against the gradient of the
-    /// fractions, which is of first order.
-    std::array<Pack, Dim> normals(int attempts, const Real* fraction, const std::uint8_t* marks,
-                                  std::uint8_t asked, const detail::PackCells& cells,
-                                  const detail::PackCells& levels) const noexcept {
-        return solve(problem_of(fraction, marks, asked, cells, levels), attempts);
+    struct Found {
+        std::array<Pack, Dim> normal;            ///< of any length
+        PackMask unsettled = Pack(0) < Pack(0);  ///< further attempts may do better
+    };
+    /// Normals for a pack of cells, from a given one on or, where there is none, from the gradient of the
+    /// fractions, which without any attempts is the answer, of first order.
+    Found find(int attempts, const Real* fraction, const std::uint8_t* marks, std::uint8_t asked,
+               const detail::PackCells& cells, const detail::PackCells& levels,
+               const std::array<Pack, Dim>* from = nullptr) const noexcept {
+        const Problem problem = problem_of(fraction, marks, asked, cells, levels);
+        const Normal start = from ? *from : against_gradient(problem);
+        return attempts == 0 ? Found{start} : improve(problem, start, attempts);
     }
 
     /// How firmly the cells around hold a normal that has been found: the least eigenvalue of the squares'
@@ -63,6 +69,7 @@ private:
 
     struct Problem {
         std::array<Pack, size> fraction, weight;
+        std::array<bool, size> used;  ///< by any of the pack
         bool stretched;
         std::array<Pack, 3> ratio, shift;  ///< of the levels below, at and above: edge, centre; in own edges
     };
@@ -80,7 +87,9 @@ private:
             problem.fraction[i] = detail::values_at(fraction, cells, stencil_.step[i]);
             for (int lane = 0; lane < pack_lanes; ++lane) {
                 const auto l = static_cast<std::size_t>(lane);
-                problem.weight[i].set(lane, marks[cells[l] + stencil_.step[i]] & asked ? 1 : 0);
+                const bool known = (marks[cells[l] + stencil_.step[i]] & asked) != 0;
+                problem.weight[i].set(lane, known ? 1 : 0);
+                problem.used[i] = problem.used[i] || (known && k != own);  // its own fraction is held
             }
         }
         for (int v = 0; v < 3; ++v) {
@@ -134,6 +143,11 @@ private:
             if (v == 0 || problem.stretched) m = detail::sorted<Dim>(scaled);
             for (int k = 0; k < size; ++k) {
                 if (detail::Stencil<Dim>::along(vertical, k) != v - 1) continue;
+                const auto n = static_cast<std::size_t>(k);
+                if (!problem.used[n]) {
+                    result.each[n] = Pack(0);
+                    continue;
+                }
                 Pack d = distance - normal[vertical] * problem.shift[i];
                 for (int a = 0; a < Dim; ++a)
                     if (a != vertical)
@@ -142,7 +156,6 @@ private:
                 const Pack low = Pack(0.5) + d * m.scale, high = Pack(0.5) - d * m.scale;
                 const Pack less = detail::lower_fraction<Dim>(m, detail::positive(min(low, high)));
                 const Pack below = select(low < high, less, Pack(1) - less);
-                const auto n = static_cast<std::size_t>(k);
                 result.each[n] = problem.weight[n] * (below - problem.fraction[n]);
                 result.squares += result.each[n] * result.each[n];
             }
@@ -150,11 +163,28 @@ private:
         return result;
     }
 
-    static Normal solve(const Problem& problem, int attempts) noexcept {
-        const Normal g = gradient(problem);
+    static Pack largest(const Normal& n) noexcept {
+        Pack most = detail::magnitude(n[0]);
+        for (std::size_t a = 1; a < Dim; ++a) most = max(most, detail::magnitude(n[a]));
+        return most;
+    }
+    static Normal against_gradient(const Problem& problem) noexcept {
+        Normal normal = gradient(problem);
+        const Pack steepest = largest(normal);
+        const PackMask none = !(steepest > Pack(0));  // a drop, all alone: level
+        for (std::size_t a = 0; a < Dim; ++a)
+            normal[a] = select(none, Pack(Real(a == vertical)), -normal[a] / max(steepest, Pack(1e-30)));
+        return normal;
+    }
+
+    static Found improve(const Problem& problem, Normal normal, int attempts) noexcept {
         // The largest component is held at +-1, the others are the unknowns.
+        const Pack one = largest(normal);
         std::array<Pack, Dim> size_of;
-        for (std::size_t a = 0; a < Dim; ++a) size_of[a] = detail::magnitude(g[a]);
+        for (std::size_t a = 0; a < Dim; ++a) {
+            normal[a] /= one;
+            size_of[a] = detail::magnitude(normal[a]);
+        }
         std::array<PackMask, Dim> held;
         if constexpr (Dim == 2) {
             held[0] = size_of[0] > size_of[1];
@@ -164,15 +194,6 @@ private:
             held[1] = (!held[0]) & (size_of[1] > size_of[2]);
             held[2] = !(held[0] | held[1]);
         }
-        Pack largest_one = size_of[0];
-        for (std::size_t a = 1; a < Dim; ++a) largest_one = max(largest_one, size_of[a]);
-        const PackMask none = !(largest_one > Pack(0));  // a drop, all alone: level
-        Normal normal;
-        for (std::size_t a = 0; a < Dim; ++a)
-            normal[a] = select(none, Pack(Real(a == vertical)), -g[a] / max(largest_one, Pack(1e-30)));
-
-        if (attempts == 0) return normal;
-
         const auto moved = [&](const Normal& from, const std::array<Pack, unknowns>& by) {
             Normal to = from;
             if constexpr (Dim == 2) {
@@ -222,12 +243,23 @@ private:
                 by[0] = (bb * right[0] - ab * right[1]) / det;
                 by[1] = (aa * right[1] - ab * right[0]) / det;
             }
+            // By how much the squares would fall, were the fractions linear in the unknowns.
+            Pack promised = by[0] * right[0];
+            for (std::size_t u = 1; u < unknowns; ++u) promised += by[u] * right[u];
             Pack longest = Pack(0);
             for (Pack& b : by) {
                 b = min(max(b * trust, Pack(-0.5)), Pack(0.5));
                 longest = max(longest, detail::magnitude(b));
             }
             const Normal next = moved(normal, by);
+            // 1e-8 of a cell's volume is round-off, if squares are large; a short step that brings little
+            // needs no proof.
+            active = active & (promised > Pack(1e-16));
+            const PackMask little = promised < max(Pack(1e-2) * now.squares, Pack(1e-12));
+            const PackMask last_step = active & little & (longest < Pack(1e-3));
+            for (std::size_t a = 0; a < Dim; ++a) normal[a] = select(last_step, next[a], normal[a]);
+            active = active & !last_step;
+            if (!any(active)) break;
             const Misfit then = misfit(problem, next);
             const PackMask better = active & (then.squares < now.squares);
             for (std::size_t a = 0; a < Dim; ++a) normal[a] = select(better, next[a], normal[a]);
@@ -237,7 +269,7 @@ private:
             trust = select(better, min(Pack(1), trust * Pack(4)), trust * Pack(0.25));
             active = active & !settled & (now.squares > Pack(1e-26)) & (longest > Pack(1e-9));
         }
-        return normal;
+        return {normal, active};
     }
 
     detail::Stencil<Dim> stencil_{};

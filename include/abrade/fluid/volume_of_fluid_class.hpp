@@ -74,7 +74,6 @@ public:
           surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
           band_(layout_, params_.smallest_void), wet_(layout_), active_(layout_), touched_(layout_),
           filled_(layout_.total) {
-        for (int a = 0; a < Dim; ++a) wraps_[index(a)] = sides_.periodic(a);
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
                 areas_[index(a)].push_back(sizes_.face(a, k));
@@ -304,7 +303,7 @@ private:
     // The surface moves in a step by less than a cell; wisps that are moved aside, by one more.
     void locate() {
         touched_ = active_;
-        active_ = wet_.dilated(2, wraps_);
+        active_ = wet_.dilated(2, sides_.periodic_axes());
         include_inflows();
         touched_.include(active_);
         fill_ghosts(fraction_, touched_, sides_);
@@ -359,7 +358,6 @@ private:
     Params params_;
     Grid<Dim> grid_;
     Sides<Dim> sides_;
-    PerAxis<bool, Dim> wraps_{};
     Layout<Dim> layout_;
     CellSizes<Dim> sizes_;
     std::array<std::vector<Real>, Dim> areas_;  ///< of faces, by level from the first ghost [m2]

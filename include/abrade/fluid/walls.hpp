@@ -107,8 +107,26 @@ public:
         renew(wall, from, to);
     }
 
-    /// Beyond periodic sides stands what stands inside. Until the next `update`.
-    void repeat(const Sides<Dim>& sides) {
+    /// Beyond periodic sides stands what stands inside. Until the next `update`. Throws InputError where the
+    /// wall is not the same at both ends.
+    template <WallShape<Dim> Shape>
+    void repeat(const Sides<Dim>& sides, const Shape& wall) {
+        for (int a = 0; a < Dim; ++a) {
+            if (!sides.periodic(a)) continue;
+            const Real cell_size = grid_.size(a, 0);
+            grid_.for_each_beside(a, false, [&](const Cell& cell, Offset) {
+                const Point<Dim> low = grid_.face_centre(a, cell);
+                Point<Dim> high = low;
+                high[a] = grid_.high(a);
+                const Real here = wall(low), there = wall(high);
+                const bool far = std::min(std::abs(here), std::abs(there)) > cell_size && here * there > 0;
+                if (far || std::abs(here - there) < 0.05 * cell_size) return;
+                fail({"GridFluid.wall at " + place_text<Dim>(low),
+                      "as far away as at the other, periodic end (" + short_text(there) + " m)", "m",
+                      "give a wall that repeats itself, tilt gravity instead of a bed, or open the ends"},
+                     short_text(here));
+            });
+        }
         fill_periodic(shares_.volume, grid_.layout(), sides);
         fill_periodic(shares_.area, grid_.layout(), sides);
     }
