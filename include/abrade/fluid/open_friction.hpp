@@ -26,7 +26,8 @@ PerAxis<FaceField<Dim, float>, Dim> open_friction_of(const Walls<Dim>& walls, co
             const Field<Real>& area = walls.open_area()[b];
             const Field<Real>& m = middle[b];
             const Offset back = layout.stride[a], across = layout.stride[b];
-            const auto at_side = [&](const CellNumber<Dim>&, Offset c) {
+            const auto at_side = [&](const CellNumber<Dim>& cell, Offset c) {
+                if (std::ranges::any_of(cell, [](int i) { return i < 0; })) return;  // no side of the box
                 const Real gap = 1 + 0.5 * (m[c] + m[c - back] - m[c - across] - m[c - back - across]);
                 friction[a][b][c] =
                     static_cast<float>(0.5 * (area[c] + area[c - back]) / std::max(gap, 0.25));
