@@ -278,7 +278,8 @@ private:
 template <class Scheme, bool Eddies = false, int Dim, class State>
 void advance_momentum(const Grid<Dim>& grid, const PerAxis<WetRows<Dim>, Dim>& faces,
                       const MomentumStage<Dim, State>& stage) {
-    const detail::PlaneRuns runs = faces[0].runs(8);  // each computes the fluxes below its first plane anew
+    // Each run computes the fluxes below its first plane anew.
+    const detail::PlaneRuns& runs = faces[0].runs();
     parallel_tasks(static_cast<Index>(runs.size()) - 1, [&](Index run) {
         detail::MomentumRows<Scheme, Eddies, Dim, State> rows(grid, stage);
         const auto r = static_cast<std::size_t>(run);

@@ -29,7 +29,7 @@ public:
         : grid_(&grid), sides_(params.sides), films_(grid, params.sides, params.pressed_axes()),
           liquid_(grid, params.sides, {.smallest_void = std::clamp(params.tolerance, 1e-6, 1e-4)}),
           friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
-          burden_(grid.layout().total), wet_(grid.layout().total), rows_(grid.layout()),
+          burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total), rows_(grid.layout()),
           extension_(grid.layout(), sides_), open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         // The projection begins with a full box.
@@ -84,7 +84,7 @@ public:
         liquid_.advance(velocity, step);
         rows_before_ = rows_;
         find_rows();
-        hold();
+        find_held();
         join(liquid_.moved());
     }
 
@@ -211,13 +211,15 @@ public:
     /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
     /// back.
     void share_shear(FaceField<Dim>& result, const FaceField<Dim>& by, Real viscous) {
-        for (int a = 0; a < Dim; ++a) {
+        parallel_tasks(Dim, [&](Index component) {
+            const int a = static_cast<int>(component);
+            Field<Real>& burden = burden_[a];
             const Offset back = layout().stride[a];
             const auto mass = [&](Offset c) { return 0.5 * (held()[c] + held()[c - back]); };
             const auto& riders = extension_.riders(a);
-            for (const auto& r : riders) burden_[r.carrier] += r.share * mass(r.face);
+            for (const auto& r : riders) burden[r.carrier] += r.share * mass(r.face);
             for (const auto& r : riders) {
-                const Real own = mass(r.carrier), more = std::exchange(burden_[r.carrier], 0);
+                const Real own = mass(r.carrier), more = std::exchange(burden[r.carrier], 0);
                 // Little liquid has bounds of its own in momentum; beside walls shear acts on open shares
                 // only.
                 if (more == 0 || own < 0.5 || (walls_ && is_cut(r.carrier, back))) continue;
@@ -234,7 +236,7 @@ public:
                 }
                 result[a][r.carrier] -= viscous * shear * (1 / own - 1 / (own + more));
             }
-        }
+        });
     }
 
     /// After `find`, in a step's second stage: faces that the water has just reached. What they had of the
@@ -278,9 +280,9 @@ private:
         liquid_.prepare();
         rows_before_ = rows_;
         find_rows();
-        hold();
+        find_held();
     }
-    void hold() {
+    void find_held() {
         if (!walls_) return;
         WetRows<Dim> rows = rows_;
         rows.include(rows_before_);
@@ -317,6 +319,7 @@ private:
                     faces_[a].row(plane, row) = r;
                 }
             });
+            faces_[a].share_out();
         }
     }
 
@@ -382,7 +385,7 @@ private:
     WallFriction<Dim> friction_;
     PerAxis<FaceField<Dim, float>, Dim> open_friction_;  ///< of sides of momentum's control volumes
     Field<Real> held_, before_;
-    Field<Real> burden_;  ///< of a face: liquid of others that moves with it [cell], 0 between uses
+    FaceField<Dim> burden_;  ///< of a face: liquid of others that moves with it [cell], 0 between uses
     Field<std::uint8_t> wet_;
     WetRows<Dim> rows_, rows_before_;
     PerAxis<WetRows<Dim>, Dim> faces_;

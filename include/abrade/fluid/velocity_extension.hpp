@@ -31,7 +31,7 @@ public:
 
     VelocityExtension(const Layout<Dim>& layout, const Sides<Dim>& sides)
         : layout_(layout), sides_(sides), state_(layout.total, unknown), before_(layout),
-          found_(static_cast<std::size_t>(layout.planes())), waiting_(found_) {}
+          found_(static_cast<std::size_t>(layout.planes())), waiting_(found_), riders_in_(found_.size()) {}
 
     /// Walls that close faces; they must outlive this.
     void set_walls(const Walls<Dim>& walls) {
@@ -66,7 +66,7 @@ public:
             for (int layer = 0; layer < layers; ++layer) {
                 join(u[a]);
                 take_means(u[a], rows);
-                if (layer == 0) find_riders(a, held);
+                if (layer == 0) find_riders(a, held, rows);
                 know_found(rows);
                 if (layer == 0) know_liquid(a, held, rows);
             }
@@ -223,17 +223,22 @@ private:
     }
 
     /// While faces of the first layer are found, but not yet known.
-    void find_riders(int a, const Field<Real>& held) {
+    void find_riders(int a, const Field<Real>& held, const WetRows<Dim>& rows) {
         const auto wet = [&](Offset c) { return state_[c] == known; };
-        for (const auto& found : found_)
-            for (const Offset c : found) {
+        rows.for_each_plane([&](int plane) {
+            std::vector<Rider>& riders = riders_in_[static_cast<std::size_t>(plane)];
+            riders.clear();
+            for (const Offset c : found_[static_cast<std::size_t>(plane)]) {
                 if (held[c] + held[c - layout_.stride[a]] < liquid_of_a_face) continue;
                 int count = 0;
                 for (const Offset s : layout_.stride) count += wet(c - s) + wet(c + s);
                 for (const Offset s : layout_.stride)
                     for (const Offset n : {c - s, c + s})
-                        if (wet(n)) riders_[a].push_back({c, inside(n), 1.0 / count});
+                        if (wet(n)) riders.push_back({c, inside(n), 1.0 / count});
             }
+        });
+        for (const auto& riders : riders_in_)
+            riders_[a].insert(riders_[a].end(), riders.begin(), riders.end());
     }
 
     /// Drops and sheets thinner than a cell. Not beside cells that walls cut: where a surface meets a wall
@@ -266,8 +271,9 @@ private:
     Field<std::uint8_t> state_;
     WetRows<Dim> before_;  ///< looked at the last time
     PerAxis<std::vector<Rider>, Dim> riders_;
-    std::vector<std::vector<Offset>> found_;    ///< [plane] faces of a layer
-    std::vector<std::vector<Offset>> waiting_;  ///< [plane] faces of water on walls
+    std::vector<std::vector<Offset>> found_;     ///< [plane] faces of a layer
+    std::vector<std::vector<Offset>> waiting_;   ///< [plane] faces of water on walls
+    std::vector<std::vector<Rider>> riders_in_;  ///< [plane]
 };
 
 }  // namespace abrade

@@ -36,7 +36,9 @@ public:
     WetRows() = default;
     explicit WetRows(const Layout<Dim>& layout)
         : layout_(layout), rows_(static_cast<std::size_t>(layout.planes()) *
-                                 static_cast<std::size_t>(layout.rows_per_plane())) {}
+                                 static_cast<std::size_t>(layout.rows_per_plane())) {
+        share_out();
+    }
 
     const Layout<Dim>& layout() const noexcept { return layout_; }
     const RowRange& row(int plane, int row) const noexcept { return rows_[index(plane, row)]; }
@@ -52,6 +54,7 @@ public:
             for (int r = 0; r < layout_.rows_per_plane(); ++r)
                 row(plane, r) = wet_part(fraction, plane, r, {0, layout_.row_length()}, dry);
         });
+        share_out();
     }
 
     /// The same, where nothing outside of `within` can be wet: only the ends of ranges are looked at.
@@ -60,6 +63,7 @@ public:
             for (int r = 0; r < layout_.rows_per_plane(); ++r)
                 row(plane, r) = wet_part(fraction, plane, r, within.row(plane, r), dry);
         });
+        share_out();
     }
 
     /// Grown by `cells` along every axis, diagonals included; across those ends where the box is periodic.
@@ -82,6 +86,7 @@ public:
         WetRows grown(layout_);
         for (std::size_t i = 0; i < rows_.size(); ++i)
             if (begin[i] < end[i]) grown.rows_[i] = {std::max(0, begin[i]), std::min(n, end[i])};
+        grown.share_out();
         return grown;
     }
 
@@ -119,16 +124,18 @@ public:
     }
 
     /// Calls body(plane) for each plane, in parallel.
-    void for_each_plane(auto&& body) const { detail::parallel_planes(runs(2), body); }
-    /// Runs of planes with about as many cells in their ranges.
-    detail::PlaneRuns runs(int least) const {
+    void for_each_plane(auto&& body) const { detail::parallel_planes(runs_, body); }
+    /// Gives each thread a run of planes with about as many cells in their ranges. Until then, or when ranges
+    /// have changed, some have more: nothing else depends on it.
+    void share_out() {
         const int rows = layout_.rows_per_plane();
-        return detail::plane_runs(layout_.planes(), least, [&](int plane) {
+        runs_ = detail::plane_runs(layout_.planes(), 8, [&](int plane) {
             int weight = rows;  // dry rows cost a look
             for (int r = 0; r < rows; ++r) weight += row(plane, r).length();
             return weight;
         });
     }
+    const detail::PlaneRuns& runs() const noexcept { return runs_; }
 
 private:
     std::size_t index(int plane, int row) const noexcept {
@@ -162,6 +169,7 @@ private:
 
     Layout<Dim> layout_{};
     std::vector<RowRange> rows_;
+    detail::PlaneRuns runs_{0};  ///< for threads
 };
 
 /// Calls body(i) for those cells i of a row's range whose mark is 0 beside one that is odd, along an axis.
