@@ -252,9 +252,8 @@ private:
                 longest = max(longest, detail::magnitude(b));
             }
             const Normal next = moved(normal, by);
-            // 1e-8 of a cell's volume is round-off, if squares are large; a short step that brings little
-            // needs no proof.
-            active = active & (promised > Pack(1e-16));
+            // Differences know slopes to 1e-10. A short step that brings little needs no proof.
+            active = active & (promised > Pack(1e-18) * now.squares);
             const PackMask little = promised < max(Pack(1e-2) * now.squares, Pack(1e-12));
             const PackMask last_step = active & little & (longest < Pack(1e-3));
             for (std::size_t a = 0; a < Dim; ++a) normal[a] = select(last_step, next[a], normal[a]);
