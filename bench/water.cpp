@@ -99,6 +99,11 @@ struct InvertReach {
     }
 };
 
+/// The same after 2 s: the flow has settled.
+struct SettledReach : InvertReach {
+    explicit SettledReach(int n) : InvertReach(n) { fluid.advance(2); }
+};
+
 /// The dam break of bench/peers, `times` finer.
 struct DamBreak {
     GridFluid<3> fluid;
@@ -216,6 +221,11 @@ BENCHMARK(water_threads<DamBreak>)
 
 BENCHMARK(water_threads<InvertReach>)
     ->Name("water_threads_invert")
+    ->ArgsProduct({{225}, {1, 2}})
+    ->Iterations(20)
+    ->Apply(pairs);
+BENCHMARK(water_threads<SettledReach>)
+    ->Name("water_settled_invert")
     ->ArgsProduct({{225}, {1, 2}})
     ->Iterations(20)
     ->Apply(pairs);

@@ -119,12 +119,7 @@ private:
             // neighbours.
             const bool alone = l.total < 20000 || (matrix.periodic[outer] && l.planes() % 2 != 0);
             const int least = alone ? l.planes() : detail::shortest_run;
-            runs = detail::plane_runs(l.planes(), least, [&](int plane) {
-                int weight = l.rows_per_plane();
-                for (int row = 0; row < l.rows_per_plane(); ++row)
-                    weight += matrix.range(plane, row).length();
-                return weight;
-            });
+            runs = detail::plane_runs(l, least, [&](int plane, int row) { return matrix.range(plane, row); });
         }
     };
 

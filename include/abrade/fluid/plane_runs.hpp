@@ -2,6 +2,7 @@
 // Planes of a grid shared out to threads.
 
 #include <abrade/core/parallel.hpp>
+#include <abrade/fluid/grid.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -12,15 +13,20 @@ namespace abrade::detail {
 /// Where runs of neighbouring planes begin, one run a thread, and behind them the number of planes.
 using PlaneRuns = std::vector<int>;
 
-/// Runs of about the same weight, each of at least `least` planes (even), where there are so many. They begin
-/// at even planes: a pair, which is one plane of a coarser grid, has one thread.
-template <class Weight>
-PlaneRuns plane_runs(int planes, int least, Weight&& weight) {
+/// Runs with about as many cells in `range(plane, row)`, each of at least `least` planes (even), where there
+/// are so many. They begin at even planes: a pair, which is one plane of a coarser grid, has one thread.
+template <int Dim, class Range>
+PlaneRuns plane_runs(const Layout<Dim>& layout, int least, Range&& range) {
+    const int planes = layout.planes(), rows = layout.rows_per_plane();
     const int count = std::clamp(planes / least, 1, thread_count());
     PlaneRuns runs{0};
     if (count > 1) {
-        std::vector<std::int64_t> before{0};  // weight below each plane
-        for (int plane = 0; plane < planes; ++plane) before.push_back(before.back() + weight(plane));
+        std::vector<std::int64_t> before{0};  // cells below each plane
+        for (int plane = 0; plane < planes; ++plane) {
+            std::int64_t cells = before.back() + rows;  // a dry row costs a look
+            for (int row = 0; row < rows; ++row) cells += range(plane, row).length();
+            before.push_back(cells);
+        }
         for (int run = 1; run < count; ++run) {
             const std::int64_t share = before.back() * run / count;
             const int at = static_cast<int>(std::ranges::lower_bound(before, share) - before.begin());

@@ -72,7 +72,7 @@ public:
           layout_(grid.layout()), sizes_(grid), normals_(layout_, sizes_),
           at_walls_(layout_, sizes_, params_.smallest_void), fraction_(layout_.total, 0),
           surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
-          band_(layout_, 10 * params_.smallest_void), wet_(layout_), active_(layout_), touched_(layout_),
+          band_(layout_, void_amid_water()), wet_(layout_), active_(layout_), touched_(layout_),
           filled_(layout_.total) {
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
@@ -114,7 +114,7 @@ public:
             const Real f = fraction_[c];
             if (!(f >= 0 && f <= 1)) fail_fraction(cell, f);
             set_cell(c, marks_[c] & cell_mark::open ? f : 0);
-            if (f >= filled() && f < 1) settled_.push_back(static_cast<Index>(c));
+            if (f >= 1 - void_amid_water() && f < 1) settled_.push_back(static_cast<Index>(c));
         });
         wet_.find(fraction_);
         locate();
@@ -238,7 +238,7 @@ public:
 
 private:
     /// Amid other water a cell that lacks no more than this is full: residues of some steps come together.
-    Real filled() const noexcept { return 1 - 10 * params_.smallest_void; }
+    Real void_amid_water() const noexcept { return 10 * params_.smallest_void; }
     static constexpr Real little = 1e-5;  ///< less liquid of a cell than this has no momentum to speak of [-]
     /// Without a pressure of its own a cell that holds more than this takes in more than it has room for [-].
     static constexpr Real nearly_full = 0.9;
@@ -313,7 +313,7 @@ private:
         band_.find(fraction_, marks_, active_, sides_);
         // What has left the band with less air than makes a surface is full from now on; the rest is surplus.
         for (const Index c : settled_)
-            if (fraction_[c] >= filled() && !band_.holds(c)) {
+            if (fraction_[c] >= 1 - void_amid_water() && !band_.holds(c)) {
                 surplus_[c] += fraction_[c] - 1;
                 fraction_[c] = 1;
             }

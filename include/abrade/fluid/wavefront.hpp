@@ -12,7 +12,7 @@ inline constexpr int most_stages = 6, shortest_run = 2 * most_stages;
 /// planes plane - 1, plane and plane + 1 after stage s - 1 and before stage s + 1. A plane follows its stage
 /// as a wave: it is loaded once for all of them.
 ///
-/// Threads get a run of planes each, at least 2 stages long. Near the ends of a run stages wait for the
+/// Threads get a run of planes each, of `shortest_run` at least. Near the ends of a run stages wait for the
 /// neighbour's planes; those that are left over, a wedge of planes at each end, follow when all runs are
 /// done. The order in which a plane is worked on, and so every bit, is the same for any number of threads.
 /// `joined`: the last plane and the first are neighbours.

@@ -1,7 +1,6 @@
 #pragma once
 // Which part of each row of a grid is wet: what keeps dry cells from costing anything.
 
-#include <abrade/fluid/grid.hpp>
 #include <abrade/fluid/plane_runs.hpp>
 
 #include <algorithm>
@@ -128,12 +127,7 @@ public:
     /// Gives each thread a run of planes with about as many cells in their ranges. Until then, or when ranges
     /// have changed, some have more: nothing else depends on it.
     void share_out() {
-        const int rows = layout_.rows_per_plane();
-        runs_ = detail::plane_runs(layout_.planes(), 8, [&](int plane) {
-            int weight = rows;  // dry rows cost a look
-            for (int r = 0; r < rows; ++r) weight += row(plane, r).length();
-            return weight;
-        });
+        runs_ = detail::plane_runs(layout_, 8, [&](int plane, int r) { return row(plane, r); });
     }
     const detail::PlaneRuns& runs() const noexcept { return runs_; }
 
