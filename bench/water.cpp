@@ -1,9 +1,7 @@
 // What a step of water on a grid costs by cell, from 1e5 to 1e7 of them, in full boxes and half-full ones;
 // how many iterations the pressure takes, up to 2e7 cells; what a second thread gives.
 
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
-#include <abrade/fluid/uniform_flow.hpp>
+#include "../tests/verification/channel_water.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -60,43 +58,14 @@ struct Reach {
     Real step_length() const { return fluid.stable_step().seconds; }
 };
 
-/// The validation's channel in n cells of 0.02 m along it, full of uniform flow, which goes on.
+/// The validation's channel in n cells along it, full of uniform flow, which goes on.
 struct InvertReach {
-    using Fluid = GridFluid<3, FreeSurface, Limited, Real, MixingLength>;
-    Fluid fluid;
+    channel_water::Channel<> fluid;
 
-    explicit InvertReach(int n) : fluid(channel(n)) {}
+    explicit InvertReach(int n)
+        : fluid(channel_water::channel(n * channel_water::spacing, true),
+                {.depth = channel_water::wanted().depth}) {}
     Real step_length() const { return fluid.stable_step().seconds; }
-
-    static Fluid channel(int n) {
-        constexpr Real spacing = 0.02;
-        Invert invert;
-        invert.length = n * spacing;
-        const UniformFlow uniform{{.section = invert, .discharge = 0.5, .manning = 0.015}};
-        const Real depth = uniform.depth(), half = 0.5 * invert.width, rough = std::pow(26 * 0.015, 6);
-        const int across = static_cast<int>(std::lround(invert.width / spacing));
-        GridFluidParams<3> params{
-            .grid = {.cells = {n, across, 19}, .low = {0, -half, 0}, .spacing = Vec3::Constant(spacing)},
-            .sides = Sides<3>::all(Side::slip),
-            .wall = InvertWall(invert),
-            .wall_law = {WallLaw::Kind::logarithmic, rough},
-            .water = [depth](const Vec3& x) { return depth - x.z(); },
-            .velocity =
-                [uniform, depth](const Vec3& x) {
-                    const Real z = std::min(x.z(), depth);
-                    return Vec3(uniform.sample({0, x.y(), z}, 0).velocity.x(), 0, 0);
-                },
-            .gravity = invert.gravity(),
-            .tolerance = 1e-5};
-        params.sides[0][1] = Side::outflow;
-        Inflow<3>({.discharge = 0.5,
-                   .depth = depth,
-                   .section = invert,
-                   .profile = InflowProfile::logarithmic,
-                   .roughness = rough})
-            .give_to(params);
-        return Fluid(params, {.depth = depth});
-    }
 };
 
 /// The same after 2 s: the flow has settled.

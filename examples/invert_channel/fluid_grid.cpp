@@ -105,7 +105,7 @@ void look_at_the_end(const Flow& flow, ChannelWater& water) {
         water.surface_x.push_back(grid.centre(0, i));
         water.surface_z.push_back(flow.surface_at({grid.centre(0, i), 0, 0}));
     }
-    water.figures = {{"water_settled_s", -flow.params().start_time},
+    water.figures = {{"water_settled_s", std::min(flow.time(), 0.0) - flow.params().start_time},
                      {"water_steps", static_cast<Real>(flow.steps())},
                      {"water_cells", static_cast<Real>(grid.layout().cell_count())},
                      {"water_cells_wet", static_cast<Real>(flow.wet_cells())},

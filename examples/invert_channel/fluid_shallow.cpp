@@ -58,7 +58,7 @@ void look_at_the_end(const ShallowWater<2>& flow, ChannelWater& water) {
         water.surface_x.push_back(flow.grid().centre(0, i));
         water.surface_z.push_back(flow.sample({water.surface_x.back(), 0, 0}, 0).depth);
     }
-    water.figures = {{"water_settled_s", -flow.params().start_time},
+    water.figures = {{"water_settled_s", std::min(flow.time(), 0.0) - flow.params().start_time},
                      {"water_steps", static_cast<Real>(flow.steps())},
                      {"water_cells", static_cast<Real>(flow.grid().cells())},
                      {"water_volume_m3", flow.volume()},

@@ -39,7 +39,11 @@ ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path&
         Recorder recorder(stem);
         Progress progress("invert channel", config.end_time);
         const auto stop = [&] {
-            progress.update(sim.time(), std::to_string(sim.feed()->supplied_stones()) + " stones fed");
+            std::string note = std::to_string(sim.feed()->supplied_stones()) + " stones fed";
+            if constexpr (AdvancingFluid<Fluid>)
+                if (sim.fluid_model().time() < 0)
+                    note = "water settles for " + short_text(-sim.fluid_model().time()) + " s";
+            progress.update(sim.time(), note);
             return interrupt.requested();
         };
         const auto watch = [&](const auto& now) {

@@ -70,6 +70,13 @@ sleep 2
 kill -INT $pid
 wait $pid || fail "Ctrl-C: exit code $?"
 [ "$(value stopped/summary.json stopped_early)" = true ] || fail "a stopped run does not say so"
+"$program" --fluid grid --set fluid.settle=1000 --out unsettled > unsettled.log 2>&1 &
+pid=$!
+sleep 2
+kill -INT $pid
+wait $pid || fail "Ctrl-C while water settles: exit code $?"
+[ "$(value unsettled/summary.json stopped_early)" = true ] || fail "a run stopped while water settles does not say so"
+holds "only what has settled is told" "$(value unsettled/summary.json water_settled_s) < 999"
 
 # --- a run that goes wrong: exit 3, nothing under the final name, the last good state saved
 status=0

@@ -90,12 +90,26 @@ TEST_CASE("a fluid of short steps is brought to each step of the solids") {
 TEST_CASE("a fluid that begins earlier has settled before the solids begin, one that is ahead waits") {
     auto early = stone_in({.step = 1e-3, .start = -30});
     early.run({.end_time = 0}, [](const auto& now) {
-        REQUIRE(now.fluid_model().reached.size() == 1);
-        CHECK(now.fluid_model().reached[0] == 0);
+        REQUIRE(!now.fluid_model().reached.empty());
+        CHECK(now.fluid_model().reached.back() == 0);
     });
     auto late = stone_in({.step = 1e-3, .start = 0.5});
     late.run({.end_time = 0.01, .time_step = 1e-4});
     CHECK(late.fluid_model().reached.empty());
+}
+
+TEST_CASE("a user can stop a fluid that settles, and go on") {
+    auto sim = stone_in({.step = 1e-3, .start = -30});
+    sim.run({.end_time = 0.01, .time_step = 1e-4, .stop = [&] { return sim.fluid_model().time() > -20; }});
+    CHECK(sim.stopped());
+    CHECK(sim.steps() == 0);
+    CHECK(sim.fluid_model().time() == doctest::Approx(-20).epsilon(0.01));
+    sim.run({.end_time = 0.01, .time_step = 1e-4});
+    CHECK_FALSE(sim.stopped());
+    CHECK(sim.steps() == 100);
+    auto whole = stone_in({.step = 1e-3, .start = -30});
+    whole.run({.end_time = 0.01, .time_step = 1e-4});
+    CHECK(sim.particles().velocity[0] == whole.particles().velocity[0]);
 }
 
 TEST_CASE("looking on changes nothing, and the ledger closes while the fluid changes") {

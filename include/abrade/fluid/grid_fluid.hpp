@@ -68,7 +68,7 @@ public:
         sides_.fill(velocity_);
         if (params_.velocity) {
             Field<State> potential(layout().total);
-            report_ = projection_.project(velocity_, potential, 1, 1e-12);
+            report_ = projection_.project(velocity_, potential, {1, 1e-12});
             fastest_ = report_.courant;
         }
         finish(velocity_);
@@ -151,6 +151,7 @@ public:
     /// One step of dt [s]. Throws FluidError where it goes wrong, and leaves the flow as it was.
     void step(Real dt) {
         require_positive(dt, "GridFluid.step: dt", "s");
+        sides_.keep();
         try {
             if constexpr (has_surface)
                 step_below_surface(dt);
@@ -162,7 +163,7 @@ public:
         }
         check(dt);
         find_eddies();
-        time_ += dt;
+        time_ += dt, pace_ = std::max(dt, pace_ - dt);
         ++steps_;
         if constexpr (has_surface) record_.took(dt);
         if (!params_.steady_sides) enters_ = sides_.rate_of_inflow(velocity_);
@@ -194,11 +195,9 @@ public:
     Real kinetic_energy() const {  ///< [J]; in two dimensions per width
         Real sum = 0;
         grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            Real u2 = 0;
-            for (int a = 0; a < Dim; ++a)
-                u2 += 0.5 * (square(velocity_[a][c]) + square(velocity_[a][c + layout().stride[a]]));
-            if constexpr (has_surface) u2 *= water_->held()[c];
-            sum += 0.5 * u2 * grid_->volume(cell);
+            Real energy = detail::kinetic_energy_at(velocity_, layout(), c);
+            if constexpr (has_surface) energy *= water_->held()[c];
+            sum += energy * grid_->volume(cell);
         });
         return params_.density * sum;
     }
@@ -233,7 +232,7 @@ private:
         }
         water_->clear_walls(stage_);
         outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1]});
-        projection_.project(stage_, pressure_, 1, 1e-12);
+        projection_.project(stage_, pressure_, {1, 1e-12});
         water_->clear_air(stage_);
         finish(stage_);
     }
@@ -256,13 +255,16 @@ private:
         side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
         std::swap(velocity_, saved_velocity_);
         if (!params_.steady_sides) sides_.fill(velocity_);
-        report_ = projection_.project(velocity_, pressure_, dt, params_.tolerance);
+        report_ = projection_.project(velocity_, pressure_,
+                                      {.step = dt, .tolerance = params_.tolerance, .pace = pace_});
         finish(velocity_);
     }
 
     void step_below_surface(Real dt) {
         auto& water = *water_;
         if (record_.keep(velocity_, pressure_, water, dt)) finish(velocity_);
+        // What pushes within a short step is no pressure to take for a long one.
+        if (dt > 4 * record_.last_step() && steps_ > 0) pressure_.fill(0), find_pressure_of_weight();
         sides_.join(pressure_);
         water.move(velocity_, dt);
         // The velocity goes from half a step before the new surface to half a step behind it.
@@ -299,8 +301,8 @@ private:
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // Whole sides: where they change there may not have been water before.
         if (!params_.steady_sides) sides_.fill(velocity_);
-        report_ =
-            projection_.project(velocity_, pressure_, dt, params_.tolerance, true, &water.liquid().surplus());
+        report_ = projection_.project(velocity_, pressure_,
+                                      {dt, params_.tolerance, true, &water.liquid().surplus(), pace_});
         water.limit_narrow_faces(velocity_, projection_);
         finish(velocity_);
     }
@@ -335,19 +337,13 @@ private:
             record_.restore(velocity_, pressure_, *water_);
             water_->find(projection_, pressure_);
         } else {
-            std::swap(velocity_, saved_velocity_);
-            std::swap(pressure_, saved_pressure_);
+            std::swap(velocity_, saved_velocity_), std::swap(pressure_, saved_pressure_);
         }
-        if (!params_.steady_sides) sides_.set_time(time_);  // last: a function of the user may throw again
+        sides_.back();
         if constexpr (has_surface) finish(velocity_);
     }
     /// After a step that threw: a full box has not changed by then.
-    void take_back() {
-        if constexpr (has_surface)
-            restore();
-        else if (!params_.steady_sides)
-            sides_.set_time(time_);
-    }
+    void take_back() { has_surface ? restore() : sides_.back(); }
     void check(Real dt) {
         Real size = 0;
         for (int a = 0; a < Dim; ++a) size = std::max(size, grid_->largest(a));
@@ -365,7 +361,8 @@ private:
         else if (brimful)
             cause = "more flows in than out, and no surface is left to rise; make a side an outflow";
         else if (report_.after > 1)
-            cause = "no pressure was found, cells gain " + short_text(report_.after) + " of their volume";
+            cause = "no pressure was found, cells gain " + short_text(report_.after) + " of their volume" +
+                    (enters_ > 0 ? " (can what flows in reach a surface or an outflow?)" : "");
         if (!brimful)
             cause += "; " + detail::FastFace<Dim>(*grid_, velocity_).text() +
                      "; take a smaller courant, or a finer grid there";
@@ -392,6 +389,7 @@ private:
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Real first_step_ = 0;                       ///< in which what first moves it does not cross a cell [s]
+    Real pace_ = 0;  ///< the longest step, less the time that has gone by since [s]
     Index steps_ = 0;
 };
 

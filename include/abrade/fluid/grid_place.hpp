@@ -40,6 +40,14 @@ Real wrapped(const Grid<Dim>& grid, int axis, Real x) noexcept {
     return x - length * std::floor((x - grid.low(axis)) / length);
 }
 
+/// Half the mean square of the speed at the faces about a cell [m2/s2].
+template <int Dim, class Number>
+Real kinetic_energy_at(const FaceField<Dim, Number>& velocity, const Layout<Dim>& layout, Offset c) noexcept {
+    Real sum = 0;
+    for (int a = 0; a < Dim; ++a) sum += square(velocity[a][c]) + square(velocity[a][c + layout.stride[a]]);
+    return 0.25 * sum;
+}
+
 }  // namespace detail
 
 /// A place beyond the box is taken to its end, along a periodic axis to where it stands inside.

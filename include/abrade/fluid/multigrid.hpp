@@ -107,7 +107,8 @@ private:
         Poisson<Dim> matrix;
         Field<float> x, b;
         PerAxis<bool, Dim> paired{};  ///< with the next coarser level
-        detail::PlaneRuns runs;       ///< by the cells of the last build: any are right
+        /// By the cells of the last build: any are right. For what does not smooth; for what does.
+        detail::PlaneRuns runs, colour_runs;
 
         Level(const Layout<Dim>& layout, const PerAxis<bool, Dim>& periodic)
             : matrix(layout, periodic), x(layout.total), b(layout.total) {
@@ -115,11 +116,12 @@ private:
         }
         void share_out() {
             const Layout<Dim>& l = matrix.layout;
-            // Small levels are not worth waking a thread, and across an odd periodic axis equal colours are
-            // neighbours.
-            const bool alone = l.total < 20000 || (matrix.periodic[outer] && l.planes() % 2 != 0);
-            const int least = alone ? l.planes() : detail::shortest_run;
+            // Small levels are not worth waking a thread.
+            const int least = l.total < 20000 ? l.planes() : detail::shortest_run;
             runs = detail::plane_runs(l, least, [&](int plane, int row) { return matrix.range(plane, row); });
+            // Across an odd periodic axis equal colours are neighbours.
+            const bool odd = matrix.periodic[outer] && l.planes() % 2 != 0;
+            colour_runs = odd ? detail::PlaneRuns{0, l.planes()} : runs;
         }
     };
 
@@ -226,7 +228,7 @@ private:
         }
         Level& coarse = levels_[l + 1];
         coarse.b.fill(0);
-        detail::wavefront(level.runs, 5, m.periodic[outer], [&](int stage, int plane) {
+        detail::wavefront(level.colour_runs, 5, m.periodic[outer], [&](int stage, int plane) {
             if (stage == 4) return restrict_plane(level, coarse, plane);
             for (int row = 0; row < rows; ++row)
                 if (stage == 0)
@@ -236,7 +238,7 @@ private:
         });
         cycle(l + 1);
         if (l == 0) partial_.assign(static_cast<std::size_t>(planes), 0);
-        detail::wavefront(level.runs, l == 0 ? 6 : 5, m.periodic[outer], [&](int stage, int plane) {
+        detail::wavefront(level.colour_runs, l == 0 ? 6 : 5, m.periodic[outer], [&](int stage, int plane) {
             if (stage == 0) return prolong_plane(level, coarse, plane);
             if (stage == 5) {
                 partial_[static_cast<std::size_t>(plane)] = dot(level.b, level.x, plane);

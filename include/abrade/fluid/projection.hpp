@@ -86,22 +86,32 @@ public:
 
     struct Report {
         int iterations = 0, rounds = 0;
-        Real before = 0,
-             after = 0;    ///< share of a cell's volume gained or lost in a step, root mean square [-]
+        /// Share of a cell's volume gained or lost in a step (or `pace`), root mean square [-].
+        Real before = 0, after = 0;
         Real courant = 0;  ///< largest dt sum |u_a| / h_a over the wet cells [-]
     };
 
+    struct Demand {
+        Real step;       ///< dt [s]
+        Real tolerance;  ///< of `Report::after` [-]
+        bool push = false;
+        /// Liquid that a cell holds beyond its volume, in shares of it [-], to be driven out; may be none.
+        const Field<Real>* surplus = nullptr;
+        /// A shorter step drives it out in this time [s], or a step that is next to nothing would shoot it
+        /// out.
+        Real pace = 0;
+    };
+
     /// `u`: normal components at the sides set, ghosts not needed. `pressure` over density [m2/s2], 0 in dry
-    /// cells, grows by phi / dt; with `push` its gradient is taken from u first. `surplus`: liquid that a
-    /// cell holds beyond its volume, in shares of it [-], to be driven out in this step; may be none.
-    Report project(FaceField<Dim, State>& u, Field<State>& pressure, Real time_step, Real tolerance,
-                   bool push = false, const Field<Real>* surplus = nullptr) {
-        surplus_ = surplus;
-        step_ = time_step;
+    /// cells, grows by phi / dt; with `push` its gradient is taken from u first.
+    Report project(FaceField<Dim, State>& u, Field<State>& pressure, const Demand& asked) {
+        surplus_ = asked.surplus;
+        step_ = asked.step, pace_ = std::max(asked.step, asked.pace);
+        const Real tolerance = asked.tolerance;
         Report report;
-        Real norm = push ? correct(u, pressure, true) : start(u);
+        Real norm = asked.push ? correct(u, pressure, true) : start(u);
         const Real unit =
-            wet_cells_ > 0 ? time_step / (mean_volume() * std::sqrt(static_cast<Real>(wet_cells_))) : 0;
+            wet_cells_ > 0 ? pace_ / (mean_volume() * std::sqrt(static_cast<Real>(wet_cells_))) : 0;
         report.before = report.after = norm * unit;
         constexpr int most_rounds = 6, most_iterations = 60;
         while (report.after > tolerance && report.rounds < most_rounds) {
@@ -115,7 +125,7 @@ public:
             report.after = norm * unit;
             if (!(norm < last)) break;
         }
-        for (const Real rate : rates_) report.courant = std::max(report.courant, rate * time_step);
+        for (const Real rate : rates_) report.courant = std::max(report.courant, rate * step_);
         return report;
     }
 
@@ -225,7 +235,7 @@ private:
             // Without walls shares are never read, nor are volumes and surplus where there is none.
             const Real* const surplus = surplus_ ? surplus_->data() + start : nullptr;
             const Real* const volume = open_volume_ ? open_volume_->data() + start : nullptr;
-            const auto per_step = static_cast<State>(1 / step_);
+            const auto per_step = static_cast<State>(1 / pace_);
             State sum = 0;
             // Reals from 0 on compare as their bits do, and clang++ has packs for the largest of these only.
             auto most = std::bit_cast<Bits>(fastest);
@@ -382,7 +392,7 @@ private:
     const FaceField<Dim>* open_area_ = nullptr;
     const Field<Real>* open_volume_ = nullptr;
     const Field<Real>* surplus_ = nullptr;
-    Real step_ = 1;
+    Real step_ = 1, pace_ = 1;  ///< [s]
     std::vector<Real> squares_, rates_;
     Index wet_cells_ = 0;
 };

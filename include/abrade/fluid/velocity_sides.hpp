@@ -46,15 +46,17 @@ public:
     }
 
     /// Asks for the given velocities as they are at a time [s]. Throws InputError where one within the
-    /// box is no number.
+    /// box is no number; what a given function throws comes through. Nothing has changed then.
     void set_time(Real time) {
         if (!given_) return;
+        auto tables = tables_;
         for (int b = 0; b < Dim; ++b)
             for (const bool high : {false, true}) {
                 const Side side = kind(b, high);
                 if (side != Side::wall && side != Side::inflow) continue;
                 for (int a = 0; a < Dim; ++a) {
-                    std::vector<Real> values;  // kept as they are where a given function throws
+                    std::vector<Real>& values = tables[number(a, b, high)];
+                    values.clear();
                     for_side(b, high, [&](Offset, const CellNumber<Dim>& cell) {
                         Point<Dim> x = grid_->face_centre(a, cell);
                         x[b] = high ? grid_->high(b) : grid_->low(b);
@@ -64,9 +66,15 @@ public:
                             require_finite(u, velocity_at<Dim>("GridFluid.side_velocity", a, x, time), "m/s");
                         values.push_back(through ? 0 : u);
                     });
-                    table(a, b, high) = std::move(values);
                 }
             }
+        kept_ = std::exchange(tables_, std::move(tables));
+        changed_ = true;
+    }
+    /// What `back` leads to, if a time is set since. Neither asks the given function.
+    void keep() noexcept { changed_ = false; }
+    void back() noexcept {
+        if (std::exchange(changed_, false)) std::swap(tables_, kept_);
     }
 
     /// `rows`: where water is and what it may reach; none: everywhere.
@@ -177,11 +185,11 @@ private:
     Offset step(int axis) const noexcept { return grid_->layout().stride[axis]; }
     int cells(int axis) const noexcept { return grid_->cells(axis); }
     Side kind(int axis, bool high) const noexcept { return sides_[axis][high]; }
-    std::vector<Real>& table(int a, int b, bool high) noexcept {
-        return tables_[static_cast<std::size_t>((a * Dim + b) * 2 + high)];
+    static std::size_t number(int a, int b, bool high) noexcept {
+        return static_cast<std::size_t>((a * Dim + b) * 2 + high);
     }
     const std::vector<Real>& table(int a, int b, bool high) const noexcept {
-        return tables_[static_cast<std::size_t>((a * Dim + b) * 2 + high)];
+        return tables_[number(a, b, high)];
     }
 
     /// Axes along a side: first, then the one nearer in memory; in 2-D the first is the side's own, once.
@@ -255,7 +263,8 @@ private:
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
     SideVelocity<Dim> given_;
-    std::array<std::vector<Real>, static_cast<std::size_t>(2 * Dim * Dim)> tables_;
+    std::array<std::vector<Real>, static_cast<std::size_t>(2 * Dim * Dim)> tables_, kept_;
+    bool changed_ = false;
 };
 
 }  // namespace abrade

@@ -252,10 +252,11 @@ private:
                 longest = max(longest, detail::magnitude(b));
             }
             const Normal next = moved(normal, by);
-            // Differences know slopes to 1e-10. A short step that brings little needs no proof.
+            // Round-off of differences: 1e-10 of a slope. A short step that brings little needs no proof,
+            // unless one like it was found worse.
             active = active & (promised > Pack(1e-18) * now.squares);
             const PackMask little = promised < max(Pack(1e-2) * now.squares, Pack(1e-12));
-            const PackMask last_step = active & little & (longest < Pack(1e-3));
+            const PackMask last_step = active & little & (longest < Pack(1e-3)) & (trust > Pack(0.99));
             for (std::size_t a = 0; a < Dim; ++a) normal[a] = select(last_step, next[a], normal[a]);
             active = active & !last_step;
             if (!any(active)) break;

@@ -113,18 +113,19 @@ public:
     void repeat(const Sides<Dim>& sides, const Shape& wall) {
         for (int a = 0; a < Dim; ++a) {
             if (!sides.periodic(a)) continue;
-            const Real cell_size = grid_.size(a, 0);
-            grid_.for_each_beside(a, false, [&](const Cell& cell, Offset) {
+            const Offset around = grid_.cells(a) * grid_.layout().stride[a];
+            grid_.for_each_beside(a, false, [&](const Cell& cell, Offset face) {
+                // Shares, not distances: what stands beyond no face of an end need not be given twice.
+                constexpr Real round_off = 0.05;
+                const Real* const open = shares_.area[a].data() + face;
+                if (std::abs(open[0] - open[around]) < round_off) return;
                 const Point<Dim> low = grid_.face_centre(a, cell);
                 Point<Dim> high = low;
                 high[a] = grid_.high(a);
-                const Real here = wall(low), there = wall(high);
-                const bool far = std::min(std::abs(here), std::abs(there)) > cell_size && here * there > 0;
-                if (far || std::abs(here - there) < 0.05 * cell_size) return;
                 fail({"GridFluid.wall at " + place_text<Dim>(low),
-                      "as far away as at the other, periodic end (" + short_text(there) + " m)", "m",
+                      "as far away as at the other, periodic end (" + short_text(wall(high)) + " m)", "m",
                       "give a wall that repeats itself, tilt gravity instead of a bed, or open the ends"},
-                     short_text(here));
+                     short_text(wall(low)));
             });
         }
         fill_periodic(shares_.volume, grid_.layout(), sides);

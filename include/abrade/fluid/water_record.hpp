@@ -87,6 +87,7 @@ public:
     const FaceField<Dim>& velocity() const noexcept { return velocity_; }
     const Field<std::uint8_t>& wet() const noexcept { return wet_; }
     void took(Real dt) noexcept { last_step_ = dt; }
+    Real last_step() const noexcept { return last_step_; }  ///< [s]; 0: none yet
 
     /// Puts all of it back.
     void restore(FaceField<Dim>& velocity, Field<Real>& pressure, SurfaceWater<Dim>& water) {

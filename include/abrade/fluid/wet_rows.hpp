@@ -127,7 +127,7 @@ public:
     /// Gives each thread a run of planes with about as many cells in their ranges. Until then, or when ranges
     /// have changed, some have more: nothing else depends on it.
     void share_out() {
-        runs_ = detail::plane_runs(layout_, 8, [&](int plane, int r) { return row(plane, r); });
+        runs_ = detail::plane_runs(layout_, 2, [&](int plane, int r) { return row(plane, r); });
     }
     const detail::PlaneRuns& runs() const noexcept { return runs_; }
 

@@ -42,8 +42,9 @@ struct RunOptions {
     /// to a hundredth of a bond's strength is a good choice (docs/dormant_concrete.md). Its own weight counts
     /// as held until it wakes. 0: all is awake.
     Real wake_force = 0;
-    Index wake_radius = 2;         ///< [bonds]
-    std::function<bool()> stop{};  ///< asked now and then; true ends the run cleanly
+    Index wake_radius = 2;  ///< [bonds]
+    /// Asked now and then, while a fluid settles too; true ends the run cleanly.
+    std::function<bool()> stop{};
 };
 
 }  // namespace abrade

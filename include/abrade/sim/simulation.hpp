@@ -257,8 +257,9 @@ private:
         world_->set_free_flight(options.free_flight);
         world_->set_sleep(options.sleep_speed, options.sleep_after);
         world_->set_wake(options.wake_force, options.wake_radius);
-        if (!opened_) open();
         stopped_ = false;
+        settle_fluid(options);
+        if (!opened_) open();
         if (options.time_step > 0) {
             if (stable_now(options.time_step).seconds < options.time_step) {
                 const StableStep now = stable_step_now();
@@ -294,11 +295,21 @@ private:
             all.radius.empty() ? 0.01 : *std::min_element(all.radius.begin(), all.radius.end());
     }
 
+    /// One that begins earlier than the solids comes up to them, unless it is stopped on its way.
+    void settle_fluid(const RunOptions& options) {
+        if constexpr (goes_on<F>) {
+            const auto start = Clock::now();
+            while (!stopped_ && fluid_model().time() < time_) {
+                const Real some = steps_between_checks * fluid_model().stable_step().seconds;
+                advance_fluid(std::min(time_, fluid_model().time() + some));
+                stopped_ = options.stop && options.stop();
+            }
+            wall_seconds_ += seconds_since(start);
+        }
+    }
+
     /// Finds the forces at the start, and what is wrong with it.
     void open() {
-        const auto start = Clock::now();
-        advance_fluid(time_);  // one that begins earlier settles
-        wall_seconds_ += seconds_since(start);
         world_->open(time_);
         if (const Trouble trouble = world_->take_trouble(); trouble.cause == Trouble::Cause::overlap) {
             const TroubleText say(*world_, time_step_);
