@@ -68,7 +68,7 @@ TEST_CASE("what enters the grid is the discharge") {
         // The front has not come to the other end: all that came in is there.
         const Real error = flow.liquid().volume() / (0.02 * 0.5) - 1;
         MESSAGE("discharge off by " << 100 * error << " %");
-        CHECK(std::abs(error) < (profile == uniform ? 2e-3 : 0.01));
+        CHECK(std::abs(error) < 1e-3);
     }
 }
 

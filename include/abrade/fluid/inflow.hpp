@@ -4,6 +4,8 @@
 #include <abrade/fluid/grid_fluid_params.hpp>
 #include <abrade/geometry/invert.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace abrade {
@@ -90,8 +92,11 @@ public:
         const Real inside = g.low[0] + 0.5 * g.spacing[0];
         const Inflow stream = *this;
         water.sides[0][0] = Side::inflow;
-        water.side_velocity = [stream, inside](const Point<Dim>& x, Real) {
-            return x[0] < inside ? stream.velocity(x) : Point<Dim>::Zero().eval();
+        // The mean over what is wet of a face, not the speed in its middle: so the discharge enters.
+        water.side_velocity = [stream, inside, g](const Point<Dim>& x, Real) {
+            Point<Dim> u = Point<Dim>::Zero();
+            if (x[0] < inside) u[0] = stream.mean_over(stream.face_about(g, x), x);
+            return u;
         };
         water.inflow_water = [stream](const Point<Dim>& x) { return stream.depth_at(x); };
     }
@@ -109,17 +114,47 @@ private:
         if (params_.depth >= s.bed_height(0.5 * s.width)) return s.width;
         return 2 * std::sqrt(square(s.arc_radius) - square(s.arc_radius - params_.depth));
     }
+    /// Integral of the profile from the bed upwards.
+    Real carried_below(Real h) const noexcept {
+        const Real z0 = roughness_length();
+        return params_.profile == InflowProfile::uniform ? h : (h + z0) * std::log1p(h / z0) - h;
+    }
     /// Integral over the wetted area of the profile: in closed form along each vertical, midpoints across.
     Real carried_at_unit_scale() const noexcept {
         if (params_.profile == InflowProfile::uniform) return area();
         const int strips = Dim == 3 ? 2000 : 1;
-        const Real dy = width() / strips, z0 = roughness_length();
+        const Real dy = width() / strips;
         Real sum = 0;
         for (int i = 0; i < strips; ++i) {
             const Real h = params_.depth - bed_height((i + 0.5) * dy - 0.5 * width());
-            if (h > 0) sum += dy * ((h + z0) * std::log1p(h / z0) - h);
+            if (h > 0) sum += dy * carried_below(h);
         }
         return sum;
+    }
+
+    struct Face {
+        Real side = 0, width = 0;  ///< lower y, size across [m]
+        Real low = 0, high = 0;    ///< heights [m]
+    };
+    Face face_about(const typename Grid<Dim>::Params& g, const Point<Dim>& x) const {
+        Face f{.low = x[vertical] - 0.5 * g.spacing[vertical],
+               .high = x[vertical] + 0.5 * g.spacing[vertical]};
+        if constexpr (Dim == 3) f.side = x[1] - 0.5 * g.spacing[1], f.width = g.spacing[1];
+        const auto above = std::upper_bound(g.levels.begin(), g.levels.end(), x[vertical]);
+        if (above != g.levels.begin() && above != g.levels.end()) f.low = above[-1], f.high = above[0];
+        return f;
+    }
+    /// Of the speed, over what is wet of a face; the speed at x where nothing is.
+    Real mean_over(const Face& face, const Point<Dim>& x) const {
+        constexpr int strips = Dim == 3 ? 16 : 1;
+        Real sum = 0, wet = 0;
+        for (int i = 0; i < strips; ++i) {
+            const Real bed = params_.bed + bed_height(face.side + (i + 0.5) * face.width / strips);
+            const Real from = std::max(face.low, bed) - bed;
+            const Real to = std::min(face.high, params_.bed + params_.depth) - bed;
+            if (to > from) sum += carried_below(to) - carried_below(from), wet += to - from;
+        }
+        return wet > 0 ? scale_ * sum / wet : velocity(x)[0];
     }
 
     Params params_;
