@@ -31,4 +31,19 @@ struct FastFace {
     }
 };
 
+/// What is wrong with a velocity that came out of a step, where it is, and what helps. `after`: what cells
+/// gain of their volume [-].
+template <int Dim, class State>
+std::string wrong_flow(const Grid<Dim>& grid, const FaceField<Dim, State>& velocity, Real after,
+                       bool enters) {
+    std::string cause = "beyond GridFluid.fastest";
+    if (!std::isfinite(after))
+        cause = "the velocity is not a number";
+    else if (after > 1)
+        cause = "no pressure was found, cells gain " + short_text(after) + " of their volume" +
+                (enters ? " (can what flows in reach a surface or an outflow?)" : "");
+    return cause + "; " + FastFace<Dim>(grid, velocity).text() +
+           "; take a smaller courant or step, or a finer grid there";
+}
+
 }  // namespace abrade::detail

@@ -73,14 +73,14 @@ public:
         }
         finish(velocity_);
         if constexpr (has_surface) {
-            find_pressure_of_weight();
+            find_pressure_of_weight(1e-12);
             first_step_ = std::sqrt(2 * water_->liquid().stable_step(stage_));
         }
         enters_ = sides_.rate_of_inflow(velocity_);
         fastest_ = std::max(fastest_, enters_);
         find_eddies();
         if constexpr (has_surface) {
-            record_ = detail::WaterRecord<Dim>(*grid_, velocity_, stage_, *water_);
+            record_ = {*grid_, velocity_, stage_, *water_, stable_step().seconds};
             heights_ = detail::SurfaceHeights<Dim>(*grid_, params_.sides.periodic_axes(), water_->walls());
             heights_.find(*grid_, water_->rows(), water_->held());
         } else {
@@ -160,10 +160,13 @@ public:
         } catch (const std::exception& wrong) {  // more than a cell would leave it, a given function fails
             take_back();
             throw FluidError(place_in_time(dt) + wrong.what());
+        } catch (...) {
+            take_back();
+            throw;
         }
         check(dt);
         find_eddies();
-        time_ += dt, pace_ = std::max(dt, pace_ - dt);
+        time_ += dt, last_step_ = dt;
         ++steps_;
         if constexpr (has_surface) record_.took(dt);
         if (!params_.steady_sides) enters_ = sides_.rate_of_inflow(velocity_);
@@ -216,31 +219,36 @@ private:
 
     /// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage_`
     /// how water at rest is accelerated [m/s2].
-    void find_pressure_of_weight() {
+    void find_pressure_of_weight(Real tolerance) {
+        pressure_.fill(0);
         for (auto& component : stage_) component.fill(0);
         const Point<Dim> falls = params_.acceleration(time_);
         if (falls.isZero()) return;
         for (int a = 0; a < Dim; ++a) {
             stage_[a].fill(falls[a]);
-            for (const bool high : {false, true}) {
-                const Side side = params_.sides[a][high];
-                if (side == Side::periodic || side == Side::outflow) continue;
-                sides_.along_side({a, high}, [&](Offset c, std::size_t) {
-                    stage_[a][high ? c + layout().stride[a] : c] = 0;
-                });
-            }
+            sides_.close(stage_[a], a);
         }
         water_->clear_walls(stage_);
         outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1]});
-        projection_.project(stage_, pressure_, {1, 1e-12});
+        projection_.project(stage_, pressure_, {1, tolerance});
         water_->clear_air(stage_);
         finish(stage_);
+    }
+
+    /// What pushes within a step would push too much in a longer one: but for the water's weight, only as
+    /// large an impulse is taken on.
+    bool grows(Real dt) const noexcept {
+        Real by = 1.1;
+        if constexpr (has_surface) by = record_.brief(dt) ? 1 : by;
+        return steps_ > 0 && dt > by * last_step_;
     }
 
     void step_full(Real dt) {
         const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         saved_pressure_ = pressure_;  // the velocity is kept by the second stage
+        if (grows(dt))
+            for (Offset c = 0; c < layout().total; ++c) pressure_[c] *= static_cast<State>(last_step_ / dt);
         sides_.fill_cells(pressure_);
         const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
             Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
@@ -255,16 +263,17 @@ private:
         side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
         std::swap(velocity_, saved_velocity_);
         if (!params_.steady_sides) sides_.fill(velocity_);
-        report_ = projection_.project(velocity_, pressure_,
-                                      {.step = dt, .tolerance = params_.tolerance, .pace = pace_});
+        report_ = projection_.project(velocity_, pressure_, {dt, params_.tolerance});
         finish(velocity_);
     }
 
     void step_below_surface(Real dt) {
         auto& water = *water_;
         if (record_.keep(velocity_, pressure_, water, dt)) finish(velocity_);
-        // What pushes within a short step is no pressure to take for a long one.
-        if (dt > 4 * record_.last_step() && steps_ > 0) pressure_.fill(0), find_pressure_of_weight();
+        if (grows(dt)) {
+            find_pressure_of_weight(1e-3);
+            record_.add_excess(pressure_, last_step_ / dt);
+        }
         sides_.join(pressure_);
         water.move(velocity_, dt);
         // The velocity goes from half a step before the new surface to half a step behind it.
@@ -301,8 +310,8 @@ private:
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // Whole sides: where they change there may not have been water before.
         if (!params_.steady_sides) sides_.fill(velocity_);
-        report_ = projection_.project(velocity_, pressure_,
-                                      {dt, params_.tolerance, true, &water.liquid().surplus(), pace_});
+        report_ = projection_.project(
+            velocity_, pressure_, {dt, params_.tolerance, true, &water.liquid().surplus(), record_.pace(dt)});
         water.limit_narrow_faces(velocity_, projection_);
         finish(velocity_);
     }
@@ -355,17 +364,9 @@ private:
         if (found && (report_.courant / dt * size <= params_.fastest ||
                       detail::FastFace<Dim>(*grid_, velocity_).speed <= params_.fastest))
             return;
-        std::string cause = "beyond GridFluid.fastest";
-        if (!std::isfinite(report_.after))
-            cause = "the velocity is not a number";
-        else if (brimful)
-            cause = "more flows in than out, and no surface is left to rise; make a side an outflow";
-        else if (report_.after > 1)
-            cause = "no pressure was found, cells gain " + short_text(report_.after) + " of their volume" +
-                    (enters_ > 0 ? " (can what flows in reach a surface or an outflow?)" : "");
-        if (!brimful)
-            cause += "; " + detail::FastFace<Dim>(*grid_, velocity_).text() +
-                     "; take a smaller courant, or a finer grid there";
+        const std::string cause =
+            brimful ? "more flows in than out, and no surface is left to rise; make a side an outflow"
+                    : detail::wrong_flow(*grid_, velocity_, report_.after, enters_ > 0);
         restore();
         throw FluidError(place_in_time(dt) + cause);
     }
@@ -389,7 +390,7 @@ private:
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Real first_step_ = 0;                       ///< in which what first moves it does not cross a cell [s]
-    Real pace_ = 0;  ///< the longest step, less the time that has gone by since [s]
+    Real last_step_ = 0;                        ///< [s]
     Index steps_ = 0;
 };
 

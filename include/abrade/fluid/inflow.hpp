@@ -144,7 +144,7 @@ private:
         if (above != g.levels.begin() && above != g.levels.end()) f.low = above[-1], f.high = above[0];
         return f;
     }
-    /// Of the speed, over what is wet of a face; the speed at x where nothing is.
+    /// Of the speed, over what is wet of a face; as at the surface above it, 0 in the bed.
     Real mean_over(const Face& face, const Point<Dim>& x) const {
         constexpr int strips = Dim == 3 ? 16 : 1;
         Real sum = 0, wet = 0;
@@ -154,7 +154,8 @@ private:
             const Real to = std::min(face.high, params_.bed + params_.depth) - bed;
             if (to > from) sum += carried_below(to) - carried_below(from), wet += to - from;
         }
-        return wet > 0 ? scale_ * sum / wet : velocity(x)[0];
+        if (wet > 0) return scale_ * sum / wet;
+        return x[vertical] > params_.bed + params_.depth ? velocity(x)[0] : 0;
     }
 
     Params params_;

@@ -77,6 +77,16 @@ public:
         if (std::exchange(changed_, false)) std::swap(tables_, kept_);
     }
 
+    /// Lets nothing through the sides along an axis, but for outflows and what goes around.
+    template <class State>
+    void close(Field<State>& u, int axis) const {
+        for (const bool high : {false, true}) {
+            const Side side = kind(axis, high);
+            if (side == Side::periodic || side == Side::outflow) continue;
+            along_side({axis, high}, [&](Offset c, std::size_t) { u[high ? c + step(axis) : c] = 0; });
+        }
+    }
+
     /// `rows`: where water is and what it may reach; none: everywhere.
     template <class State>
     void fill(FaceField<Dim, State>& u, const WetRows<Dim>* rows = nullptr) const {

@@ -4,6 +4,7 @@
 #include <abrade/fluid/surface_water.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -13,12 +14,13 @@ template <int Dim>
 class WaterRecord {
 public:
     WaterRecord() = default;
-    /// At the start; `acceleration`: of the water as it stands [m/s2].
+    /// At the start; `acceleration`: of the water as it stands [m/s2]; `span`: a step that is common here
+    /// [s].
     WaterRecord(const Grid<Dim>& grid, const FaceField<Dim>& velocity, const FaceField<Dim>& acceleration,
-                const SurfaceWater<Dim>& water)
-        : rows_(water.rows()), velocity_(velocity), change_(face_field<Dim, float>(grid.layout())),
-          pressure_(water.wet().size()), wet_(water.wet()), fraction_(water.liquid().fraction()),
-          surplus_(water.liquid().surplus()) {
+                const SurfaceWater<Dim>& water, Real span)
+        : span_(std::isfinite(span) ? span : 0), rows_(water.rows()), velocity_(velocity),
+          change_(face_field<Dim, float>(grid.layout())), pressure_(water.wet().size()), wet_(water.wet()),
+          fraction_(water.liquid().fraction()), surplus_(water.liquid().surplus()) {
         for (int a = 0; a < Dim; ++a) {
             for (Offset c = 0; c < change_[a].size(); ++c)
                 change_[a][c] = static_cast<float>(acceleration[a][c]);
@@ -29,20 +31,19 @@ public:
     /// Keeps what there is before a step of dt [s], and leads: returns whether the velocity has changed.
     ///
     /// Liquid and velocity leap over each other, so the velocity stands half a step ahead. At the start it is
-    /// moved there; where the length of the step changes so does that, and water is moved on by its change in
-    /// the last step. Or waves would gain energy by steps that follow their speed. No further than a
-    /// quarter of a cell then: an impact's change does not go on.
+    /// moved there; where the length of the step changes so does that, and water is moved on with its
+    /// acceleration in the last step. Or waves would gain energy by steps that follow their speed. No further
+    /// than a quarter of a cell: an impact's acceleration does not go on. In a step that is brief beside late
+    /// ones the velocity stays where it stands, half of those ahead.
     bool keep(FaceField<Dim>& velocity, const Field<Real>& pressure, const SurfaceWater<Dim>& water,
               Real dt) {
         const WetRows<Dim> before = std::exchange(rows_, water.rows());
         const auto bounded = [](Real x, Real most) { return x > most ? most : x < -most ? -most : x; };
-        // Of the change at the start, which is that of one second, half a step; then of the last step's.
-        const bool knows = last_step_ == 0 || (restored_ && known_);
-        const Real led = std::exchange(
-            lead_, last_step_ == 0 ? 0.5 * dt : std::clamp(0.5 * (dt / last_step_ - 1), -0.5, 0.5));
-        const Real led_far =
-            std::exchange(far_, last_step_ == 0 ? std::numeric_limits<Real>::infinity() : 0.25);
-        known_ = lead_ != 0 || led != 0;
+        const bool begins = last_step_ == 0, is_brief = brief(dt);
+        const bool knows = begins || was_brief_ || (restored_ && known_);
+        const Real led = std::exchange(lead_, is_brief ? 0 : 0.5 * dt - ahead_);
+        const Real led_far = std::exchange(far_, begins ? std::numeric_limits<Real>::infinity() : 0.25);
+        known_ = lead_ != 0 || led != 0 || is_brief;
         if (!known_) rows_.copy(velocity, velocity_);  // equal steps
         for (int a = 0; a < Dim && known_; ++a) {
             const Real most = far_ * size_[a] / dt, led_most = led_far * size_[a] / last_step_;
@@ -67,7 +68,8 @@ public:
                         const bool stays = of_water != 0 && i >= begin && i < end;
                         const Real last = static_cast<Real>(changes[i]);
                         const Real began = kept[i] + bounded(led * last, led_most);
-                        const auto change = static_cast<float>(stays ? (knows ? last : now[i] - began) : 0);
+                        const Real rate = (now[i] - began) / last_step_;
+                        const auto change = static_cast<float>(stays ? (knows ? last : rate) : 0);
                         kept[i] = now[i];
                         changes[i] = change;
                         now[i] += bounded(lead_ * static_cast<Real>(change), most);
@@ -86,8 +88,24 @@ public:
     /// Before the last step, and before it was moved on.
     const FaceField<Dim>& velocity() const noexcept { return velocity_; }
     const Field<std::uint8_t>& wet() const noexcept { return wet_; }
-    void took(Real dt) noexcept { last_step_ = dt; }
-    Real last_step() const noexcept { return last_step_; }  ///< [s]; 0: none yet
+    /// To another pressure, a share of what was more than that before the last step.
+    void add_excess(Field<Real>& pressure, Real share) const {
+        rows_.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = rows_.layout().row_start(plane, row);
+            for (Offset c = start + r.begin; c < start + r.end; ++c)
+                pressure[c] += share * (pressure_[c] - pressure[c]);
+        });
+    }
+    void took(Real dt) noexcept {
+        was_brief_ = brief(dt);
+        ahead_ += lead_;
+        last_step_ = dt;
+        span_ = std::max(dt, span_ - dt);
+    }
+    /// Beside late steps.
+    bool brief(Real dt) const noexcept { return dt < 0.2 * span_; }
+    /// In which a step drives out what cells hold too much: what a long one left, no short one [s].
+    Real pace(Real dt) const noexcept { return dt < 0.5 * span_ ? span_ : dt; }
 
     /// Puts all of it back.
     void restore(FaceField<Dim>& velocity, Field<Real>& pressure, SurfaceWater<Dim>& water) {
@@ -98,18 +116,21 @@ public:
     }
 
 private:
+    Real span_ = 0;                 ///< the longest step, less the time that has gone by since [s]
     Point<Dim> size_;               ///< of the smallest cells [m]
     WetRows<Dim> rows_;             ///< where it is kept
     FaceField<Dim> velocity_;       ///< before it was moved on
-    FaceField<Dim, float> change_;  ///< in the step before; at the start the acceleration
+    FaceField<Dim, float> change_;  ///< acceleration in late steps [m/s2]
     Field<Real> pressure_;
     Field<std::uint8_t> wet_;
     Field<Real> fraction_, surplus_;
-    Real last_step_ = 0;     ///< [s]
-    Real lead_ = 0;          ///< of that change, by which the velocity was moved on [-]; [s] at the start
-    Real far_ = 0;           ///< no further than this [cell]
-    bool known_ = false;     ///< the change was found in the last step
-    bool restored_ = false;  ///< and it is that of the present velocity
+    Real last_step_ = 0;      ///< [s]
+    Real ahead_ = 0;          ///< by which the velocity stands ahead of the water [s]
+    Real lead_ = 0;           ///< by which the velocity was moved on with it [s]
+    Real far_ = 0;            ///< no further than this [cell]
+    bool was_brief_ = false;  ///< too short to tell how the flow goes on
+    bool known_ = false;      ///< the change was found in the last step
+    bool restored_ = false;   ///< and it is that of the present velocity
 };
 
 }  // namespace abrade::detail
