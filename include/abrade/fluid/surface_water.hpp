@@ -255,8 +255,10 @@ public:
         }
     }
 
-    /// Puts back fractions and surplus as they were saved, in the rows of then.
-    void restore(const Field<Real>& fraction, const Field<Real>& surplus, const WetRows<Dim>& rows) {
+    /// Puts back fractions and surplus as they were saved, in the rows of then, after so many steps.
+    void restore(const Field<Real>& fraction, const Field<Real>& surplus, const WetRows<Dim>& rows,
+                 Index steps) {
+        liquid_.set_steps(steps);
         const auto clear = [&](int plane, int row, const RowRange& r) {
             std::fill_n(liquid_.fraction().data() + layout().row_start(plane, row) + r.begin, r.length(),
                         0.0);

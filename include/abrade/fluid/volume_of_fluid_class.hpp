@@ -146,6 +146,10 @@ public:
         return rate > 0 ? courant_limit / rate : std::numeric_limits<Real>::infinity();
     }
 
+    /// Steps taken: they say in which order the axes are swept. Set to go back.
+    Index steps() const noexcept { return steps_; }
+    void set_steps(Index steps) noexcept { steps_ = steps; }
+
     /// Volume of liquid that went through each lower face in the last step [m3].
     const FaceField<Dim>& moved() const noexcept { return moved_; }
     FaceField<Dim>& moved() noexcept { return moved_; }  ///< until the next step nobody asks for it here
@@ -380,7 +384,7 @@ private:
     WetRows<Dim> wet_, active_, touched_;  ///< touched: active now or in the step before
     Field<std::uint8_t> filled_;           ///< 1: c of Weymouth and Yue; of cells of the band
     std::vector<Index> settled_;  ///< cells of the last band, and those that took what was moved aside
-    long steps_ = 0;
+    Index steps_ = 0;
     Point<Dim> gravity_ = Point<Dim>::Zero();
 
     const FaceField<Dim>* velocity_ = nullptr;  ///< of the step at work

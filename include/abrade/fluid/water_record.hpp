@@ -81,6 +81,7 @@ public:
         rows_.copy(pressure, pressure_);
         rows_.copy(water.liquid().fraction(), fraction_);
         rows_.copy(water.liquid().surplus(), surplus_);
+        steps_ = water.liquid().steps();
         restored_ = false;
         return lead_ != 0;
     }
@@ -111,7 +112,7 @@ public:
     void restore(FaceField<Dim>& velocity, Field<Real>& pressure, SurfaceWater<Dim>& water) {
         rows_.copy(velocity_, velocity);
         rows_.copy(pressure_, pressure);
-        water.restore(fraction_, surplus_, rows_);
+        water.restore(fraction_, surplus_, rows_, steps_);
         restored_ = true;
     }
 
@@ -124,6 +125,7 @@ private:
     Field<Real> pressure_;
     Field<std::uint8_t> wet_;
     Field<Real> fraction_, surplus_;
+    Index steps_ = 0;
     Real last_step_ = 0;      ///< [s]
     Real ahead_ = 0;          ///< by which the velocity stands ahead of the water [s]
     Real lead_ = 0;           ///< by which the velocity was moved on with it [s]
