@@ -80,7 +80,8 @@ public:
         fastest_ = std::max(fastest_, enters_);
         find_eddies();
         if constexpr (has_surface) {
-            record_ = {*grid_, velocity_, stage_, *water_, stable_step().seconds};
+            record_ = {*grid_, velocity_, stage_, *water_};
+            late_.expect(stable_step().seconds);
             heights_ = detail::SurfaceHeights<Dim>(*grid_, params_.sides.periodic_axes(), water_->walls());
             heights_.find(*grid_, water_->rows(), water_->held());
         } else {
@@ -166,9 +167,9 @@ public:
         }
         check(dt);
         find_eddies();
-        time_ += dt, last_step_ = dt;
+        time_ += dt, late_.took(dt);
         ++steps_;
-        if constexpr (has_surface) record_.took(dt);
+        if constexpr (has_surface) record_.took();
         if (!params_.steady_sides) enters_ = sides_.rate_of_inflow(velocity_);
         fastest_ = std::max(report_.courant / dt, enters_);
         if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
@@ -236,11 +237,11 @@ private:
     }
 
     /// What pushes within a step would push too much in a longer one: but for the water's weight, only as
-    /// large an impulse is taken on.
+    /// large an impulse is taken on. Without a surface pressures are smooth: that is for brief steps alone.
     bool grows(Real dt) const noexcept {
-        Real by = 1.1;
-        if constexpr (has_surface) by = record_.brief(dt) ? 1 : by;
-        return steps_ > 0 && dt > by * last_step_;
+        const bool after_brief = has_surface ? late_.brief(dt) : late_.brief(0.5 * late_.last);
+        const Real by = after_brief ? 1 : has_surface ? 1.1 : 4;
+        return steps_ > 0 && dt > by * late_.last;
     }
 
     void step_full(Real dt) {
@@ -248,7 +249,7 @@ private:
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         saved_pressure_ = pressure_;  // the velocity is kept by the second stage
         if (grows(dt))
-            for (Offset c = 0; c < layout().total; ++c) pressure_[c] *= static_cast<State>(last_step_ / dt);
+            for (Offset c = 0; c < layout().total; ++c) pressure_[c] *= static_cast<State>(late_.last / dt);
         sides_.fill_cells(pressure_);
         const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
             Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
@@ -269,10 +270,10 @@ private:
 
     void step_below_surface(Real dt) {
         auto& water = *water_;
-        if (record_.keep(velocity_, pressure_, water, dt)) finish(velocity_);
+        if (record_.keep(velocity_, pressure_, water, late_, dt)) finish(velocity_);
         if (grows(dt)) {
             find_pressure_of_weight(1e-3);
-            record_.add_excess(pressure_, last_step_ / dt);
+            record_.add_excess(pressure_, late_.last / dt);
         }
         sides_.join(pressure_);
         water.move(velocity_, dt);
@@ -311,7 +312,7 @@ private:
         // Whole sides: where they change there may not have been water before.
         if (!params_.steady_sides) sides_.fill(velocity_);
         report_ = projection_.project(
-            velocity_, pressure_, {dt, params_.tolerance, true, &water.liquid().surplus(), record_.pace(dt)});
+            velocity_, pressure_, {dt, params_.tolerance, true, &water.liquid().surplus(), late_.pace(dt)});
         water.limit_narrow_faces(velocity_, projection_);
         finish(velocity_);
     }
@@ -390,7 +391,7 @@ private:
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Real first_step_ = 0;                       ///< in which what first moves it does not cross a cell [s]
-    Real last_step_ = 0;                        ///< [s]
+    detail::LateSteps late_;                    ///< when steps grow is told from them
     Index steps_ = 0;
 };
 

@@ -10,17 +10,29 @@
 
 namespace abrade::detail {
 
+/// How long the last step was, and the longest, less the time that has gone by since [s].
+struct LateSteps {
+    Real last = 0, longest = 0;
+
+    /// Before the first: what it may be; infinite where nothing moves.
+    void expect(Real dt) noexcept { longest = std::isfinite(dt) ? dt : 0; }
+    void took(Real dt) noexcept { last = dt, longest = std::max(dt, longest - dt); }
+    /// Too short beside them to tell how the flow goes on.
+    bool brief(Real dt) const noexcept { return dt < 0.2 * longest; }
+    /// In which a step drives out what cells hold too much: what a long one left, no short one [s].
+    Real pace(Real dt) const noexcept { return dt < 0.5 * longest ? longest : dt; }
+};
+
 template <int Dim>
 class WaterRecord {
 public:
     WaterRecord() = default;
-    /// At the start; `acceleration`: of the water as it stands [m/s2]; `span`: a step that is common here
-    /// [s].
+    /// At the start; `acceleration`: of the water as it stands [m/s2].
     WaterRecord(const Grid<Dim>& grid, const FaceField<Dim>& velocity, const FaceField<Dim>& acceleration,
-                const SurfaceWater<Dim>& water, Real span)
-        : span_(std::isfinite(span) ? span : 0), rows_(water.rows()), velocity_(velocity),
-          change_(face_field<Dim, float>(grid.layout())), pressure_(water.wet().size()), wet_(water.wet()),
-          fraction_(water.liquid().fraction()), surplus_(water.liquid().surplus()) {
+                const SurfaceWater<Dim>& water)
+        : rows_(water.rows()), velocity_(velocity), change_(face_field<Dim, float>(grid.layout())),
+          pressure_(water.wet().size()), wet_(water.wet()), fraction_(water.liquid().fraction()),
+          surplus_(water.liquid().surplus()) {
         for (int a = 0; a < Dim; ++a) {
             for (Offset c = 0; c < change_[a].size(); ++c)
                 change_[a][c] = static_cast<float>(acceleration[a][c]);
@@ -36,17 +48,18 @@ public:
     /// than a quarter of a cell: an impact's acceleration does not go on. In a step that is brief beside late
     /// ones the velocity stays where it stands, half of those ahead.
     bool keep(FaceField<Dim>& velocity, const Field<Real>& pressure, const SurfaceWater<Dim>& water,
-              Real dt) {
+              const LateSteps& late, Real dt) {
         const WetRows<Dim> before = std::exchange(rows_, water.rows());
         const auto bounded = [](Real x, Real most) { return x > most ? most : x < -most ? -most : x; };
-        const bool begins = last_step_ == 0, is_brief = brief(dt);
+        const bool begins = late.last == 0;
+        brief_ = late.brief(dt);
         const bool knows = begins || was_brief_ || (restored_ && known_);
-        const Real led = std::exchange(lead_, is_brief ? 0 : 0.5 * dt - ahead_);
+        const Real led = std::exchange(lead_, brief_ ? 0 : 0.5 * dt - ahead_);
         const Real led_far = std::exchange(far_, begins ? std::numeric_limits<Real>::infinity() : 0.25);
-        known_ = lead_ != 0 || led != 0 || is_brief;
+        known_ = lead_ != 0 || led != 0 || brief_;
         if (!known_) rows_.copy(velocity, velocity_);  // equal steps
         for (int a = 0; a < Dim && known_; ++a) {
-            const Real most = far_ * size_[a] / dt, led_most = led_far * size_[a] / last_step_;
+            const Real most = far_ * size_[a] / dt, led_most = led_far * size_[a] / late.last;
             const Offset back = rows_.layout().stride[a];
             rows_.for_each_row([&](int plane, int row, const RowRange& r) {
                 const Offset start = rows_.layout().row_start(plane, row);
@@ -68,7 +81,7 @@ public:
                         const bool stays = of_water != 0 && i >= begin && i < end;
                         const Real last = static_cast<Real>(changes[i]);
                         const Real began = kept[i] + bounded(led * last, led_most);
-                        const Real rate = (now[i] - began) / last_step_;
+                        const Real rate = (now[i] - began) / late.last;
                         const auto change = static_cast<float>(stays ? (knows ? last : rate) : 0);
                         kept[i] = now[i];
                         changes[i] = change;
@@ -97,16 +110,7 @@ public:
                 pressure[c] += share * (pressure_[c] - pressure[c]);
         });
     }
-    void took(Real dt) noexcept {
-        was_brief_ = brief(dt);
-        ahead_ += lead_;
-        last_step_ = dt;
-        span_ = std::max(dt, span_ - dt);
-    }
-    /// Beside late steps.
-    bool brief(Real dt) const noexcept { return dt < 0.2 * span_; }
-    /// In which a step drives out what cells hold too much: what a long one left, no short one [s].
-    Real pace(Real dt) const noexcept { return dt < 0.5 * span_ ? span_ : dt; }
+    void took() noexcept { ahead_ += lead_, was_brief_ = brief_; }
 
     /// Puts all of it back.
     void restore(FaceField<Dim>& velocity, Field<Real>& pressure, SurfaceWater<Dim>& water) {
@@ -117,7 +121,6 @@ public:
     }
 
 private:
-    Real span_ = 0;                 ///< the longest step, less the time that has gone by since [s]
     Point<Dim> size_;               ///< of the smallest cells [m]
     WetRows<Dim> rows_;             ///< where it is kept
     FaceField<Dim> velocity_;       ///< before it was moved on
@@ -126,13 +129,12 @@ private:
     Field<std::uint8_t> wet_;
     Field<Real> fraction_, surplus_;
     Index steps_ = 0;
-    Real last_step_ = 0;      ///< [s]
-    Real ahead_ = 0;          ///< by which the velocity stands ahead of the water [s]
-    Real lead_ = 0;           ///< by which the velocity was moved on with it [s]
-    Real far_ = 0;            ///< no further than this [cell]
-    bool was_brief_ = false;  ///< too short to tell how the flow goes on
-    bool known_ = false;      ///< the change was found in the last step
-    bool restored_ = false;   ///< and it is that of the present velocity
+    Real ahead_ = 0;                          ///< by which the velocity stands ahead of the water [s]
+    Real lead_ = 0;                           ///< by which the velocity was moved on with it [s]
+    Real far_ = 0;                            ///< no further than this [cell]
+    bool brief_ = false, was_brief_ = false;  ///< the step, the one before
+    bool known_ = false;                      ///< the change was found in the last step
+    bool restored_ = false;                   ///< and it is that of the present velocity
 };
 
 }  // namespace abrade::detail

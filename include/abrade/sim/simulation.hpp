@@ -297,7 +297,7 @@ private:
 
     /// One that begins earlier than the solids comes up to them, unless it is stopped on its way.
     void settle_fluid(const RunOptions& options) {
-        if constexpr (goes_on<F>) {
+        if constexpr (AdvancingFluid<F>) {
             const auto start = Clock::now();
             while (!stopped_ && fluid_model().time() < time_) {
                 const Real some = steps_between_checks * fluid_model().stable_step().seconds;
