@@ -237,19 +237,13 @@ private:
     }
 
     /// What pushes within a step would push too much in a longer one: but for the water's weight, only as
-    /// large an impulse is taken on. Without a surface pressures are smooth: that is for brief steps alone.
-    bool grows(Real dt) const noexcept {
-        const bool after_brief = has_surface ? late_.brief(dt) : late_.brief(0.5 * late_.last);
-        const Real by = after_brief ? 1 : has_surface ? 1.1 : 4;
-        return steps_ > 0 && dt > by * late_.last;
-    }
+    /// large an impulse is taken on.
+    bool grows(Real dt) const noexcept { return steps_ > 0 && dt > (late_.brief(dt) ? 1 : 1.1) * late_.last; }
 
     void step_full(Real dt) {
         const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         saved_pressure_ = pressure_;  // the velocity is kept by the second stage
-        if (grows(dt))
-            for (Offset c = 0; c < layout().total; ++c) pressure_[c] *= static_cast<State>(late_.last / dt);
         sides_.fill_cells(pressure_);
         const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
             Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
@@ -264,7 +258,9 @@ private:
         side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
         std::swap(velocity_, saved_velocity_);
         if (!params_.steady_sides) sides_.fill(velocity_);
-        report_ = projection_.project(velocity_, pressure_, {dt, params_.tolerance});
+        report_ = projection_.project(velocity_, pressure_,
+                                      {dt, params_.tolerance, false, nullptr, late_.pace(dt)});
+        if (late_.brief(dt)) pressure_ = saved_pressure_;  // what pushes so briefly is none to go on with
         finish(velocity_);
     }
 
