@@ -33,8 +33,7 @@ int main(int argc, char** argv) {
         Channel<> flow(channel(length), {.depth = uniform.depth});
         std::cout << "cells " << flow.grid().layout().cell_count() << ", begun after " << wall()
                   << " s\ntime [s], wall time [s], steps, wet cells, water [m3], "
-                     "discharge at the"
-                     " outlet [m3/s]\n";
+                     "discharge at the outlet [m3/s]\n";
         const int parts = 25, drawn = 5;
         for (int part = 1; part <= parts; ++part) {
             const Real until = end * part / parts;

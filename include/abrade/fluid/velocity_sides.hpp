@@ -49,13 +49,13 @@ public:
     /// box is no number; what a given function throws comes through. Nothing has changed then.
     void set_time(Real time) {
         if (!given_) return;
-        auto tables = tables_;
+        changed_ = false;  // what is kept is written over, and takes its turn when it is whole
         for (int b = 0; b < Dim; ++b)
             for (const bool high : {false, true}) {
                 const Side side = kind(b, high);
                 if (side != Side::wall && side != Side::inflow) continue;
                 for (int a = 0; a < Dim; ++a) {
-                    std::vector<Real>& values = tables[number(a, b, high)];
+                    std::vector<Real>& values = kept_[number(a, b, high)];
                     values.clear();
                     for_side(b, high, [&](Offset, const CellNumber<Dim>& cell) {
                         Point<Dim> x = grid_->face_centre(a, cell);
@@ -68,7 +68,7 @@ public:
                     });
                 }
             }
-        kept_ = std::exchange(tables_, std::move(tables));
+        std::swap(tables_, kept_);
         changed_ = true;
     }
     /// What `back` leads to, if a time is set since. Neither asks the given function.

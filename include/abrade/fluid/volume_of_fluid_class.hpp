@@ -156,9 +156,8 @@ public:
     /// Liquid beyond `fraction()`, in shares of the open volume [-].
     const Field<Real>& surplus() const noexcept { return surplus_; }
     Field<Real>& surplus() noexcept { return surplus_; }
-    Real full() const noexcept {
-        return 1 - params_.smallest_void;
-    }  ///< beside air there is a surface below this
+    /// Beside air there is a surface below this [-].
+    Real full() const noexcept { return 1 - params_.smallest_void; }
     const WetRows<Dim>& wet() const noexcept { return wet_; }
     const SurfaceBand<Dim>& band() const noexcept { return band_; }
     const SurfacePlanes<Dim>& planes() const noexcept { return planes_; }
