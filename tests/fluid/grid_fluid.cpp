@@ -229,6 +229,18 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     params.velocity = [](const Point<2>& x) { return Point<2>(0, x[0] > 0.9 && x[1] > 0.8 ? nan : 0); };
     CHECK(says(params).starts_with("GridFluid.velocity.z at x = 0.9375 m, z = 0.875 m, t = 0 s must"));
     params = good;
+    params = good;
+    params.water = [](const Point<2>& x) { return std::sqrt(0.6 - x[1]); };
+    CHECK(says(params).starts_with("GridFluid.water at x = "));
+    params = good;
+    params.wall = [](const Point<2>& x) { return std::sqrt(x[1] - 0.1); };
+    CHECK(says(params).starts_with("GridFluid.wall at x = "));
+    params.wall = [](const Point<2>& x) -> Real {
+        if (x[1] < 0.1) throw std::domain_error("below the map");
+        return x[1] - 0.1;
+    };
+    CHECK_THROWS_WITH_AS(GridFluid<2>{params}, "below the map", std::domain_error);
+    params = good;
     params.inflow_water = good.water;
     CHECK(says(params).starts_with("GridFluid.inflow_water must be left out where no side is an inflow"));
     params.sides[0] = {Side::inflow, Side::outflow};

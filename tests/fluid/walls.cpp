@@ -9,6 +9,8 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "../message_of.hpp"
@@ -344,6 +346,48 @@ TEST_CASE("cells far from a wall need no look inside: the same bits with and wit
         }
 }
 
+TEST_CASE_TEMPLATE("functions steeper than a distance are found out: all cells are looked at", D, Two,
+                   Three) {
+    constexpr int Dim = D::value;
+    using P = Point<Dim>;
+    const auto off_centre = [](const P& x, Real z) {
+        P y = x - P::Constant(0.5);
+        y[Dim - 1] = x[Dim - 1] - z;
+        return y;
+    };
+    const auto ellipse = [&](const P& x) {  // half axes 0.4 and, upwards, 0.13
+        P y = off_centre(x, 0.5) / 0.4;
+        y[Dim - 1] *= 0.4 / 0.13;
+        return y.squaredNorm() - 1;
+    };
+    std::vector<Shape<Dim>> shapes{ellipse, [&](const P& x) { return 1e4 * ellipse(x); }};
+    for (const Real slope : {1.1, 1.5, 3.0, 100.0})
+        for (int k = 0; k < 8; ++k)  // where blocks of four cells begin, end, and between
+            for (int a = 0; a < Dim; ++a)
+                shapes.push_back([=](const P& x) { return slope * (x[a] - 0.45 - k / 46.0); });
+    auto params = all_of_it<Dim>(1);
+    for (const Shape<Dim>& shape : shapes) {
+        const Grid<Dim> grid = unit_box<Dim>(23);
+        params.bounded_slope = true;
+        const Walls<Dim> found(grid, shape, params);
+        params.bounded_slope = false;
+        CHECK(same(found, Walls<Dim>(grid, shape, params)));
+        CHECK_FALSE(found.params().bounded_slope);
+    }
+    const Grid<Dim> grid = unit_box<Dim>(40);
+    const Shape<Dim> floor = PlaneWall<Dim>(P::Constant(0.1), P::Unit(Dim - 1));
+    Walls<Dim> walls(grid, floor);
+    CHECK(walls.params().bounded_slope);
+    const Shape<Dim> steeper = [&](const P& x) {  // the same floor
+        return floor(x) * (1 + 50 * std::max(0.0, 0.15 - off_centre(x, 0.1).norm()));
+    };
+    P low = P::Constant(0.3);
+    low[Dim - 1] = -0.1;
+    walls.update(steeper, low, P::Constant(0.7));
+    CHECK(same(walls, Walls<Dim>(grid, steeper)));
+    CHECK_FALSE(walls.params().bounded_slope);
+}
+
 TEST_CASE_TEMPLATE("an update is what building anew gives, bit by bit, and takes no new memory", D, Two,
                    Three) {
     constexpr int Dim = D::value;
@@ -437,6 +481,17 @@ TEST_CASE("what cannot be used is named") {
     const Grid<3> grid = unit_box<3>(10);
     const Shape<3> root = [](const Point<3>& x) { return std::sqrt(x[0] - 0.35); };
     CHECK(message_of([&] { Walls<3>(grid, root); }).starts_with("Walls: distance at x = "));
+    const Shape<3> seldom = [](const Point<3>& x) {
+        return std::abs(x[0] - 0.325) < 0.01 ? std::numeric_limits<Real>::quiet_NaN() : 1.0;
+    };
+    CHECK(message_of([&] {  // where only halves of halves of cells are asked, of what is near
+              Walls<3>(grid, WallUnion(SpherePacking(heap(30, 6)), seldom), {.levels = 2});
+          })
+              .starts_with("Walls: distance at x = 0.325 m"));
+    const Shape<3> throws = [](const Point<3>& x) -> Real {
+        throw std::domain_error("no map at x = " + std::to_string(x[0]));
+    };
+    CHECK(message_of<std::domain_error>([&] { Walls<3>(grid, throws); }).starts_with("no map at x = "));
     const Shape<3> solid = [](const Point<3>&) { return -1.0; };
     CHECK(message_of([&] { Walls<3>(grid, solid); }) ==
           "Walls: open cells of the grid must be at least 1, got 0; is the distance above 0 in the water, "

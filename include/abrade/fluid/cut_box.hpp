@@ -6,6 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <exception>
+#include <limits>
+#include <optional>
 #include <type_traits>
 
 namespace abrade::detail {
@@ -105,7 +108,28 @@ FaceShares<Dim> shares_of_faces(const Corners<Dim>& d) noexcept {
     return shares;
 }
 
-/// A wall, asked for its distance; remembers where the answer was no number.
+/// What a shape answered at a place [m].
+template <int Dim>
+struct Answer {
+    Point<Dim> where;
+    Real distance = 0;
+};
+
+/// Whether it changes from one place to another by more than the way, as no distance does.
+template <int Dim>
+bool is_steep(const Answer<Dim>& a, const Answer<Dim>& b) noexcept {
+    constexpr Real round_off = 1e-6;
+    return square(a.distance - b.distance) > (1 + round_off) * (a.where - b.where).squaredNorm();
+}
+
+/// Where a shape answered what is no number [m], or threw.
+template <int Dim>
+struct ShapeFailure {
+    Point<Dim> where;
+    std::exception_ptr thrown;  ///< none: it answered NaN
+};
+
+/// A wall, asked for its distance; remembers where it first failed to answer.
 template <int Dim, class Wall>
 class Probe {
 public:
@@ -113,19 +137,30 @@ public:
     /// Never infinite, so that distances can be interpolated.
     Real operator()(const Point<Dim>& x) noexcept {
         constexpr Real far = 1e30;
-        const Real d = wall_(x);
+        const Real d = ask(x);
         if (d > -far && d < far) return d;
-        if (std::isnan(d) && !failed_) failed_ = true, where_ = x;
+        if (std::isnan(d) && !failure_) failure_ = {x, nullptr};
         return d > 0 ? far : -far;
     }
     const Wall& shape() const noexcept { return wall_; }
-    bool failed() const noexcept { return failed_; }
-    const Point<Dim>& where() const noexcept { return where_; }
+    const std::optional<ShapeFailure<Dim>>& failure() const noexcept { return failure_; }
+    /// Takes over what another found of the same wall.
+    void join(const std::optional<ShapeFailure<Dim>>& other) noexcept {
+        if (!failure_) failure_ = other;
+    }
 
 private:
+    Real ask(const Point<Dim>& x) noexcept {
+        try {
+            return wall_(x);
+        } catch (...) {  // out of a thread's loop it would end the program
+            if (!failure_) failure_ = {x, std::current_exception()};
+            return std::numeric_limits<Real>::quiet_NaN();
+        }
+    }
+
     const Wall& wall_;
-    bool failed_ = false;
-    Point<Dim> where_ = Point<Dim>::Zero();
+    std::optional<ShapeFailure<Dim>> failure_;
 };
 
 /// A box of `Size` dimensions in space: a cell, or one of its faces.
@@ -252,7 +287,9 @@ Opening<Size> halved_nearby(const Piece<Dim, Size>& piece, Probe<Dim, Wall>& wal
     if constexpr (requires(const Wall& w, const Point<Dim>& x) { w.nearby(x, Real{}); }) {
         const auto few = wall.shape().nearby(piece.at(Point<Size>::Constant(0.5)), piece.half_diagonal());
         Probe<Dim, std::remove_const_t<decltype(few)>> probe(few);
-        return halved(piece, probe, rule);
+        const Opening<Size> open = halved(piece, probe, rule);
+        wall.join(probe.failure());
+        return open;
     } else {
         return halved(piece, wall, rule);
     }

@@ -281,9 +281,12 @@ private:
             s.open_area = water.open_area(), s.open_friction = water.open_friction();
             advance(water.faces(), s);
             // At the surface the pressure falls to 0 within another distance than that of the centres.
-            for (const OpenFace& open : projection_.open_faces())
+            const auto open_faces = projection_.open_faces();
+            parallel_for(static_cast<Index>(open_faces.size()), [&](Index n) {
+                const OpenFace& open = open_faces[static_cast<std::size_t>(n)];
                 if (open.plain != 0)
                     result[open.axis][open.face] += push * (open.slope - open.plain) * pressure_[open.cell];
+            });
             for (const WaterFace& f : water.still())
                 result[f.axis][f.face] = record_.velocity()[f.axis][f.face] + kept * 2 * dt * falls[f.axis];
             water.share_shear(result, by, (1 - kept) * dt * nu());

@@ -23,9 +23,8 @@ struct GridFluidParams {
     Sides<Dim> sides{};                 ///< walls unless told otherwise
     SideVelocity<Dim> side_velocity{};  ///< of walls and of what flows in; none: at rest
     bool steady_sides = true;           ///< side_velocity does not depend on time
-    /// Distance from walls inside the box, > 0 in the water (WallShape); none: no walls. Its slope is 1 at
-    /// most: of steeper functions parts are not found. Called from many threads, as `water` is: must not
-    /// throw.
+    /// Distance from walls inside the box, > 0 in the water (WallShape); none: no walls. Called from many
+    /// threads, as `water` is.
     PlaceFunction<Dim> wall{};
     WallLaw wall_law{};  ///< friction of walls inside, and of sides that are walls
     /// > 0 where there is water at the start, such as the depth below a surface; none: dry. Linear functions

@@ -278,12 +278,11 @@ private:
 template <class Scheme, bool Eddies = false, int Dim, class State>
 void advance_momentum(const Grid<Dim>& grid, const PerAxis<WetRows<Dim>, Dim>& faces,
                       const MomentumStage<Dim, State>& stage) {
-    // Each run computes the fluxes below its first plane anew.
-    const detail::PlaneRuns& runs = faces[0].runs();
-    parallel_tasks(static_cast<Index>(runs.size()) - 1, [&](Index run) {
+    // Each part computes the fluxes below its first plane anew.
+    constexpr int least = 32;
+    detail::parallel_parts(faces[0].runs(), least, [&](int first, int last) {
         detail::MomentumRows<Scheme, Eddies, Dim, State> rows(grid, stage);
-        const auto r = static_cast<std::size_t>(run);
-        for (int a = 0; a < Dim; ++a) rows.run(a, faces[a], runs[r], runs[r + 1]);
+        for (int a = 0; a < Dim; ++a) rows.run(a, faces[a], first, last);
     });
 }
 

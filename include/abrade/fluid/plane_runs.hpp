@@ -5,6 +5,8 @@
 #include <abrade/fluid/grid.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,12 +39,33 @@ PlaneRuns plane_runs(const Layout<Dim>& layout, int least, Range&& range) {
     return runs;
 }
 
-/// Calls body(plane) for all planes, a run to each thread.
+/// Calls body(first, last) for parts [first, last) of all runs, of `least` planes (even) but for the last of
+/// a run. A thread has a run of its own, part by part; when it is done it helps with the others': cells do
+/// not all cost the same, and cores have other work.
+template <class Body>
+void parallel_parts(const PlaneRuns& runs, int least, Body&& body) {
+    const std::size_t count = runs.size() - 1;
+    if (count == 1) return body(0, runs.back());
+    struct alignas(64) Front {
+        std::atomic<int> plane;
+    };
+    std::vector<Front> fronts(count);
+    for (std::size_t run = 0; run < count; ++run) fronts[run].plane = runs[run];
+    parallel_tasks(static_cast<Index>(count), [&](Index task) {
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t run = (static_cast<std::size_t>(task) + k) % count;
+            const int end = runs[run + 1], part = std::max(least, (end - runs[run]) / 32 * 2);
+            const auto next = [&] { return fronts[run].plane.fetch_add(part, std::memory_order_relaxed); };
+            for (int first = next(); first < end; first = next()) body(first, std::min(first + part, end));
+        }
+    });
+}
+
+/// Calls body(plane) for all planes, in parallel.
 template <class Body>
 void parallel_planes(const PlaneRuns& runs, Body&& body) {
-    parallel_tasks(static_cast<Index>(runs.size()) - 1, [&](Index run) {
-        const auto r = static_cast<std::size_t>(run);
-        for (int plane = runs[r]; plane < runs[r + 1]; ++plane) body(plane);
+    parallel_parts(runs, 2, [&](int first, int last) {
+        for (int plane = first; plane < last; ++plane) body(plane);
     });
 }
 

@@ -29,14 +29,17 @@ void copy_layer(Field<Number>& field, const Layout<Dim>& layout, int axis, int f
     }
 }
 
+/// The cell along a periodic axis of n that ghost g beyond an end is a copy of: an axis of one cell is its
+/// own neighbour, twice over.
+constexpr int wrapped(int n, bool high, int g) noexcept { return high ? g % n : n - 1 - g % n; }
+
 /// Ghosts beyond both ends of a periodic axis.
 template <int Dim, class Number>
 void wrap_axis(Field<Number>& field, const Layout<Dim>& layout, int axis) noexcept {
     const int n = layout.cells[axis];
     for (int g = 0; g < Layout<Dim>::ghosts; ++g) {
-        // An axis of one cell is its own neighbour, twice over.
-        copy_layer(field, layout, axis, n - 1 - g % n, -1 - g);
-        copy_layer(field, layout, axis, g % n, n + g);
+        copy_layer(field, layout, axis, wrapped(n, false, g), -1 - g);
+        copy_layer(field, layout, axis, wrapped(n, true, g), n + g);
     }
 }
 
@@ -58,16 +61,15 @@ template <int Dim, class Number>
 void fill_ghosts(Field<Number>& field, const WetRows<Dim>& rows, const Sides<Dim>& sides) noexcept {
     const Layout<Dim>& layout = rows.layout();
     constexpr int inner = Layout<Dim>::inner, ghosts = Layout<Dim>::ghosts;
-    const auto source = [&](int axis, int end, int g) {
+    const auto source = [&](int axis, bool high, int g) {
         const int n = layout.cells[static_cast<std::size_t>(axis)];
-        if (sides.periodic(axis)) return end == 0 ? n - 1 - g % n : g % n;
-        return end == 0 ? 0 : n - 1;
+        return sides.periodic(axis) ? wrapped(n, high, g) : high ? n - 1 : 0;
     };
     rows.for_each_row([&](int plane, int r, const RowRange&) {
         Number* row = field.data() + layout.row_start(plane, r);
         for (int g = 0; g < ghosts; ++g) {
-            if (sides[inner][0] != Side::inflow) row[-1 - g] = row[source(inner, 0, g)];
-            if (sides[inner][1] != Side::inflow) row[layout.row_length() + g] = row[source(inner, 1, g)];
+            if (sides[inner][0] != Side::inflow) row[-1 - g] = row[source(inner, false, g)];
+            if (sides[inner][1] != Side::inflow) row[layout.row_length() + g] = row[source(inner, true, g)];
         }
     });
     // The other axes copy whole rows, ends included.
@@ -75,8 +77,8 @@ void fill_ghosts(Field<Number>& field, const WetRows<Dim>& rows, const Sides<Dim
         if (a == inner) continue;
         const int n = layout.cells[static_cast<std::size_t>(a)];
         for (int g = 0; g < ghosts; ++g) {
-            if (sides[a][0] != Side::inflow) copy_layer(field, layout, a, source(a, 0, g), -1 - g);
-            if (sides[a][1] != Side::inflow) copy_layer(field, layout, a, source(a, 1, g), n + g);
+            if (sides[a][0] != Side::inflow) copy_layer(field, layout, a, source(a, false, g), -1 - g);
+            if (sides[a][1] != Side::inflow) copy_layer(field, layout, a, source(a, true, g), n + g);
         }
     }
 }

@@ -28,9 +28,10 @@ public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides), films_(grid, params.sides, params.pressed_axes()),
           liquid_(grid, params.sides, {.smallest_void = std::clamp(params.tolerance, 1e-6, 1e-4)}),
-          friction_(grid, params.sides, params.wall_law, nullptr), before_(grid.layout().total),
-          burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total), rows_(grid.layout()),
-          extension_(grid.layout(), sides_), open_in_(static_cast<std::size_t>(grid.layout().planes())) {
+          walls_(walls_inside(grid, params)), friction_(grid, params.sides, params.wall_law, walls_.get()),
+          before_(grid.layout().total), burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
+          rows_(grid.layout()), extension_(grid.layout(), sides_),
+          open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         // The projection begins with a full box.
         for (int plane = 0; plane < layout().planes(); ++plane)
@@ -41,13 +42,9 @@ public:
                   "close the floor, or take a FullBox"},
                  "periodic");
         liquid_.set_gravity(params.gravity);
-        if (params.wall) {
-            const auto walls = std::make_shared<Walls<Dim>>(grid, params.wall);
-            walls->repeat(sides_, params.wall);
-            walls_ = walls;
+        if (walls_) {
             liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
             extension_.set_walls(*walls_);
-            friction_ = WallFriction<Dim>(grid, params.sides, params.wall_law, walls_.get());
             held_ = Field<Real>(layout().total);
             open_friction_ = open_friction_of(*walls_, sides_);
         }
@@ -150,10 +147,11 @@ public:
             }
         });
         if (walls_)
-            for (const Index c : liquid_.planes().cell) {
+            parallel_for(liquid_.planes().count(), [&](Index i) {
+                const Index c = liquid_.planes().cell[static_cast<std::size_t>(i)];
                 wet_[c] = liquid_.is_liquid(c) && is_open(c);
                 if (!wet_[c]) pressure[c] = 0;
-            }
+            });
         join(wet_);
         find_open_faces(projection);
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});

@@ -314,14 +314,16 @@ private:
         include_inflows();
         touched_.include(active_);
         fill_ghosts(fraction_, touched_, sides_);
-        settled_.insert(settled_.end(), band_.cells().begin(), band_.cells().end());
+        const std::vector<Index> band_before(band_.cells().begin(), band_.cells().end());
         band_.find(fraction_, marks_, active_, sides_);
         // What has left the band with less air than makes a surface is full from now on; the rest is surplus.
-        for (const Index c : settled_)
-            if (fraction_[c] >= 1 - void_amid_water() && !band_.holds(c)) {
-                surplus_[c] += fraction_[c] - 1;
-                fraction_[c] = 1;
-            }
+        const auto close = [&](Index c) {
+            if (fraction_[c] < 1 - void_amid_water() || band_.holds(c)) return;
+            surplus_[c] += fraction_[c] - 1;
+            fraction_[c] = 1;
+        };
+        parallel_for(static_cast<Index>(band_before.size()), [&](Index i) { close(band_before[index(i)]); });
+        for (const Index c : settled_) close(c);
         settled_.clear();
         reconstruct(false);
     }
@@ -382,7 +384,7 @@ private:
     SurfaceBand<Dim> band_;
     WetRows<Dim> wet_, active_, touched_;  ///< touched: active now or in the step before
     Field<std::uint8_t> filled_;           ///< 1: c of Weymouth and Yue; of cells of the band
-    std::vector<Index> settled_;  ///< cells of the last band, and those that took what was moved aside
+    std::vector<Index> settled_;           ///< cells that took what was moved aside
     Index steps_ = 0;
     Point<Dim> gravity_ = Point<Dim>::Zero();
 

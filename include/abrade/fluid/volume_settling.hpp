@@ -66,24 +66,23 @@ template <int Dim>
 void VolumeOfFluid<Dim>::even_out_rims(int axis) {
     const Offset s = layout_.stride[index(axis)];
     const auto& moved = moved_[index(axis)];
-    for (Index i = 0; i < planes_.count(); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const Offset c = planes_.cell[k];
-        if (band_.airy(c)) continue;  // all its neighbours are in the band
-        for (const int side : {-1, 1}) {
+    for (const int side : {-1, 1})  // a cell is the neighbour of one: threads do not meet
+        parallel_for(planes_.count(), [&](Index i) {
+            const auto k = static_cast<std::size_t>(i);
+            const Offset c = planes_.cell[k];
+            if (band_.airy(c)) return;  // all its neighbours are in the band
             const Offset face = side > 0 ? c + s : c;
             const Index face_level = planes_.level[k] + (axis == vertical && side > 0 ? 1 : 0);
             Offset n = c + side * s;
             Index level = planes_.level[k] + (axis == vertical ? side : 0);
             if ((marks_[n] & cell_mark::inside) == 0) {
-                if (!sides_.periodic(axis)) continue;
+                if (!sides_.periodic(axis)) return;
                 n -= side * layout_.cells[index(axis)] * s;
                 if (axis == vertical) level -= side * layout_.cells[vertical];
             }
-            if (band_.holds(n) || fraction_[n] != 1) continue;
+            if (band_.holds(n) || fraction_[n] != 1) return;
             surplus_[n] += side * (moved[face] - swept(axis, face, face_level)) / open_volume(n, level);
-        }
-    }
+        });
 }
 
 /// Brings the fractions of the band within their bounds.

@@ -51,7 +51,8 @@ public:
           far_(rule.bounded_slope ? cell_diagonal : std::numeric_limits<Real>::infinity()) {
         if (rule.bounded_slope) {
             const Point<Dim> low = corner(cells.low), high = corner(cells.high);
-            const Real distance = wall(0.5 * (low + high));
+            centre_.where = 0.5 * (low + high);
+            const Real distance = centre_.distance = wall(centre_.where);
             content_ = distance > 0 ? Content::open : Content::closed;
             // A little further: a neighbouring cell that is closed for being small closes faces of this
             // block.
@@ -66,6 +67,10 @@ public:
 
     /// Closed or open as a whole, or to be looked at cell by cell.
     Content content() const noexcept { return content_; }
+    /// Of the block, where slopes are bounded.
+    const Answer<Dim>& centre() const noexcept { return centre_; }
+    /// Whether distances at corners of one cell change by more than the way.
+    bool steep() const noexcept { return steep_; }
     Real volume(const CellNumber<Dim>& cell) const noexcept { return volume_[at(cell)]; }
     Real area(int axis, const CellNumber<Dim>& cell) const noexcept { return face(axis, cell).share; }
     bool is_cut(const CellNumber<Dim>& cell) const noexcept { return is_cut_[at(cell)]; }
@@ -143,6 +148,8 @@ private:
         std::array<int, Dim> axes{};
         for (int a = 0; a < Dim; ++a) axes[static_cast<std::size_t>(a)] = a;
         const Corners<Dim> d = distances<Dim>(cell, axes);
+        const auto box = piece<Dim>(cell, axes);
+        steep_ = steep_ || is_steep_within(box, d);
         FaceShares<Dim> faces;
         bool rough = false;
         for (std::size_t a = 0; a < Dim; ++a) {
@@ -152,7 +159,6 @@ private:
             faces[a] = {lower.share, upper.share};
             rough = rough || lower.halved || upper.halved;
         }
-        const auto box = piece<Dim>(cell, axes);
         const auto in_box = [&](const Point<Dim>& unit) {
             return Point<Dim>(box.low + unit.cwiseProduct(box.size));
         };
@@ -174,10 +180,25 @@ private:
         }
     }
 
+    /// Along its edges and all its diagonals.
+    static bool is_steep_within(const Piece<Dim, Dim>& box, const Corners<Dim>& d) noexcept {
+        const auto answer = [&](std::size_t corner) {
+            Point<Dim> unit;
+            for (int a = 0; a < Dim; ++a) unit[a] = static_cast<Real>((corner >> a) & 1);
+            return Answer<Dim>{box.at(unit), d[corner]};
+        };
+        for (std::size_t i = 0; i < d.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                if (is_steep(answer(i), answer(j))) return true;
+        return false;
+    }
+
     const Grid<Dim>& grid_;
     CellRange<Dim> cells_;
     Real far_;  ///< from a corner at that distance a wall cannot reach into the cell [m]
     Content content_ = Content::cut;
+    Answer<Dim> centre_;
+    bool steep_ = false;
     // Where nothing is cut they are never read, so they are not cleared.
     std::array<Real, corners> distance_;  ///< at lower corners [m]
     PerAxis<std::array<Face, corners>, Dim> face_;

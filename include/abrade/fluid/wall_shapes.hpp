@@ -25,7 +25,7 @@ namespace abrade {
 /// A wall: w(x) is the distance of x from its surface [m], above 0 in the water, below 0 in the solid. Any
 /// function that is 0 at the surface will do; where it never changes by more than the way between two
 /// points, as distances do, cells far from the wall cost nothing (Walls::Params::bounded_slope).
-/// Called from many threads; must not throw.
+/// Called from many threads.
 // clang-format off
 template <class W, int Dim>
 concept WallShape = requires(const W& wall, const Point<Dim>& x) {

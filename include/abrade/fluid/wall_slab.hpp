@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace abrade {
@@ -43,8 +46,9 @@ struct WallSlab {
     std::vector<Seed> seeds;           ///< in the order in which their cells are visited
     std::vector<WallCell<Dim>> wall_cells;
     Index opened = 0;  ///< cells, less those closed
-    bool failed = false;
-    Point<Dim> where;  ///< [m]
+    std::optional<ShapeFailure<Dim>> failure;
+    std::vector<Answer<Dim>> centres;  ///< of blocks, in the order in which they are visited
+    bool steep = false;                ///< distances grow faster than the way, within a cell
 };
 
 /// Cells of a block, ghosts of the grid included.
@@ -57,6 +61,12 @@ CellRange<Dim> cells_of_block(const Grid<Dim>& grid, const CellNumber<Dim>& bloc
         range.high[a] = std::min(range.low[a] + side, grid.cells(a) + ghosts);
     }
     return range;
+}
+
+/// Whether distances at places of one order change faster than the way from each to its neighbour.
+template <int Dim>
+bool is_steep(std::span<const Answer<Dim>> from, std::span<const Answer<Dim>> to) noexcept {
+    return !std::ranges::equal(from, to, [](const auto& a, const auto& b) { return !is_steep(a, b); });
 }
 
 /// Renews the shares of a range of blocks.
@@ -73,19 +83,23 @@ struct WallRenewal {
     Real closed_below;  ///< [-]
     Subdivision rule;
     Real cell_diagonal;  ///< of the largest cell [m]
+    std::string_view called;
 
     /// Cells of blocks `from` to `to`: shares as the wall cuts them, then faces that are closed, then cells,
     /// then what wall is left. Each step reads what its neighbours left in the one before.
-    /// Returns by how many more cells of the box are open. Throws InputError where the distance is NaN.
+    /// Returns by how many more cells of the box are open; none, with nothing but rubbish left, where
+    /// distances turn out to grow faster than the way and the rule counts on it that they do not. Throws
+    /// InputError where the distance is NaN, and what the shape throws.
     template <class Shape>
-    Index run(const Shape& wall, const Cell& from, const Cell& to, std::span<Slab> slabs) const {
+    std::optional<Index> run(const Shape& wall, const Cell& from, const Cell& to,
+                             std::span<Slab> slabs) const {
         const auto each_slab = [&](auto&& work) {
             parallel_tasks(static_cast<Index>(slabs.size()),
                            [&](Index n) { work(slabs[static_cast<std::size_t>(n)], from[outer] + n); });
         };
         each_slab([&](Slab& slab, int number) {
-            slab.near.clear(), slab.seeds.clear(), slab.wall_cells.clear();
-            slab.opened = 0, slab.failed = false;
+            slab.near.clear(), slab.seeds.clear(), slab.wall_cells.clear(), slab.centres.clear();
+            slab.opened = 0, slab.failure.reset(), slab.steep = false;
             Range blocks{from, to};
             blocks.low[outer] = blocks.high[outer] = number;
             for (int& end : blocks.high) ++end;
@@ -93,7 +107,9 @@ struct WallRenewal {
                            [&](const Cell& block) { cut(slab, cells_of_block<Dim>(grid, block), wall); });
         });
         for (const Slab& slab : slabs)
-            if (slab.failed) fail_at(slab.where);
+            if (slab.failure) raise(*slab.failure);
+        if (rule.bounded_slope && any_steep(slabs, to[Layout<Dim>::inner] - from[Layout<Dim>::inner] + 1))
+            return std::nullopt;
         each_slab([&](Slab& slab, int) {
             for (const Range& cells : slab.near) close_faces(cells);
         });
@@ -113,10 +129,26 @@ private:
         return true;
     }
 
-    [[noreturn]] static void fail_at(const Point<Dim>& x) {
-        fail({"Walls: distance at " + place_text<Dim>(x), "a number", "m",
+    [[noreturn]] void raise(const ShapeFailure<Dim>& failure) const {
+        if (failure.thrown) std::rethrow_exception(failure.thrown);
+        fail({std::string(called) + " at " + place_text<Dim>(failure.where), "a number", "m",
               "look for a division by 0 or the root of a negative number in the shape"},
              "nan");
+    }
+
+    /// Blocks that are passed over for being far are compared by their centres, along each axis.
+    static bool any_steep(std::span<const Slab> slabs, int row_length) {
+        const auto row = static_cast<std::size_t>(row_length);
+        std::span<const Answer<Dim>> before;
+        for (const Slab& slab : slabs) {
+            const std::span<const Answer<Dim>> here = slab.centres;
+            if (slab.steep || is_steep<Dim>(here.first(here.size() - 1), here.subspan(1)) ||
+                is_steep<Dim>(here.first(here.size() - row), here.subspan(row)) ||
+                (!before.empty() && is_steep<Dim>(before, here)))
+                return true;
+            before = here;
+        }
+        return false;
     }
 
     template <class Shape>
@@ -145,7 +177,8 @@ private:
                 if (open && inside(c)) ++slab.opened;
             });
         }
-        if (distance.failed() && !slab.failed) slab.failed = true, slab.where = distance.where();
+        if (!slab.failure) slab.failure = distance.failure();
+        if (rule.bounded_slope) slab.centres.push_back(block.centre()), slab.steep |= block.steep();
     }
 
     void close_faces(const Range& cells) const noexcept {

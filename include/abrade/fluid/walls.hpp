@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -39,7 +41,10 @@ public:
         int levels = 1;            ///< how often cells and faces are halved where the wall is not flat
         Real flatness = 0.02;      ///< not flat: the distance at the centre is off by that share of the size
         bool may_close_all = false;  ///< that no cell is open is no error
-        bool bounded_slope = true;  ///< |w(x) - w(y)| <= |x - y|: cells far from the wall need no look inside
+        /// |w(x) - w(y)| <= |x - y|: cells far from the wall need no look inside. Where that turns out not to
+        /// hold, all are looked at, and `params()` says false.
+        bool bounded_slope = true;
+        std::string_view called = "Walls: distance";  ///< in messages
 
         void validate() const {
             require(closed_below >= 0 && closed_below <= 0.1,
@@ -64,7 +69,7 @@ public:
         open_cells_ = grid_.layout().cell_count();
     }
 
-    /// Throws InputError where the distance is NaN, and when no cell is open.
+    /// Throws InputError where the distance is NaN, and when no cell is open; and what the shape throws.
     template <WallShape<Dim> Shape>
     Walls(const Grid<Dim>& grid, const Shape& wall) : Walls(grid, wall, Params()) {}
     template <WallShape<Dim> Shape>
@@ -72,17 +77,15 @@ public:
         : params_((params.validate(), params)),
           grid_(grid), shares_{Field<Real>(grid.layout().total), face_field<Dim>(grid.layout()),
                                Field<std::uint8_t>(grid.layout().total, 1)} {
-        CellNumber<Dim> last;
         for (int a = 0; a < Dim; ++a) {
-            last[at(a)] = (grid_.cells(a) + 2 * ghosts - 1) / side;
             Real largest = 0;
             for (int i = -ghosts; i < grid_.cells(a) + ghosts; ++i)
                 largest = std::max(largest, grid_.size(a, i));
             cell_diagonal_ += square(largest);
         }
         cell_diagonal_ = std::sqrt(cell_diagonal_);
-        slabs_.resize(static_cast<std::size_t>(last[outer]) + 1);
-        renew(wall, {}, last);
+        slabs_.resize(static_cast<std::size_t>(last_block()[outer]) + 1);
+        renew(wall, {}, last_block());
     }
 
     /// After the solid has changed between the corners `low` and `high` of a box [m], nowhere else: renews
@@ -122,7 +125,7 @@ public:
                 const Point<Dim> low = grid_.face_centre(a, cell);
                 Point<Dim> high = low;
                 high[a] = grid_.high(a);
-                fail({"GridFluid.wall at " + place_text<Dim>(low),
+                fail({std::string(params_.called) + " at " + place_text<Dim>(low),
                       "as far away as at the other, periodic end (" + short_text(wall(high)) + " m)", "m",
                       "give a wall that repeats itself, tilt gravity instead of a bed, or open the ends"},
                      short_text(wall(low)));
@@ -183,6 +186,12 @@ private:
         return low;
     }
 
+    Cell last_block() const noexcept {
+        Cell last;
+        for (int a = 0; a < Dim; ++a) last[at(a)] = (grid_.cells(a) + 2 * ghosts - 1) / side;
+        return last;
+    }
+
     /// Cells of blocks `from` to `to`.
     template <class Shape>
     void renew(const Shape& wall, const Cell& from, const Cell& to) {
@@ -192,8 +201,15 @@ private:
                                                shares_,
                                                params_.closed_below,
                                                {params_.levels, params_.flatness, params_.bounded_slope},
-                                               cell_diagonal_};
-        open_cells_ += renewal.run(wall, from, to, slabs);
+                                               cell_diagonal_,
+                                               params_.called};
+        const std::optional<Index> opened = renewal.run(wall, from, to, slabs);
+        if (!opened) {
+            params_.bounded_slope = false;
+            shares_.volume.fill(0), open_cells_ = 0;
+            return renew(wall, {}, last_block());
+        }
+        open_cells_ += *opened;
         require(open_cells_ > 0 || params_.may_close_all,
                 {"Walls: open cells of the grid", "at least 1", "",
                  "is the distance above 0 in the water, and does the grid cover some of it?"},

@@ -7,7 +7,9 @@
 #include <abrade/fluid/water_among_walls.hpp>
 
 #include <cmath>
+#include <memory>
 #include <string>
+#include <string_view>
 
 namespace abrade::detail {
 
@@ -26,14 +28,26 @@ void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, Fa
     });
 }
 
-/// Shares of the open volume that lie in the water of the start, and beyond inflows.
+/// Walls inside the box, none where none are given. Throws as `Walls` does.
+template <int Dim>
+std::shared_ptr<const Walls<Dim>> walls_inside(const Grid<Dim>& grid, const GridFluidParams<Dim>& params) {
+    if (!params.wall) return nullptr;
+    const typename Walls<Dim>::Params how{.called = "GridFluid.wall"};
+    const auto walls = std::make_shared<Walls<Dim>>(grid, params.wall, how);
+    walls->repeat(params.sides, params.wall);
+    return walls;
+}
+
+/// Shares of the open volume that lie in the water of the start, and beyond inflows. Throws InputError where
+/// a function answers no number, and what it throws.
 template <int Dim>
 void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, VolumeOfFluid<Dim>& liquid) {
     const Grid<Dim>& grid = liquid.grid();
     Field<Real>& f = liquid.fraction();
-    const auto shares = [&](const PlaceFunction<Dim>& water, auto&& wanted) {
+    const auto shares = [&](const PlaceFunction<Dim>& water, std::string_view called, auto&& wanted) {
         if (!water) return;
-        typename Walls<Dim>::Params how{.closed_below = 0, .may_close_all = true, .bounded_slope = false};
+        const typename Walls<Dim>::Params how{
+            .closed_below = 0, .may_close_all = true, .bounded_slope = false, .called = called};
         const Walls<Dim> filled(grid, water, how);
         grid.for_each(
             [&](const CellNumber<Dim>& cell, Offset c) {
@@ -46,8 +60,8 @@ void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, Vol
             },
             Layout<Dim>::ghosts);
     };
-    shares(params.water, [&](const CellNumber<Dim>& cell) { return grid.has(cell); });
-    shares(params.inflow_water, [&](const CellNumber<Dim>& cell) {
+    shares(params.water, "GridFluid.water", [&](const CellNumber<Dim>& cell) { return grid.has(cell); });
+    shares(params.inflow_water, "GridFluid.inflow_water", [&](const CellNumber<Dim>& cell) {
         for (int a = 0; a < Dim; ++a)
             if ((cell[a] < 0 && params.sides[a][0] == Side::inflow) ||
                 (cell[a] >= grid.cells(a) && params.sides[a][1] == Side::inflow))
