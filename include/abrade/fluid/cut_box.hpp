@@ -115,11 +115,14 @@ struct Answer {
     Real distance = 0;
 };
 
-/// Whether it changes from one place to another by more than the way, as no distance does.
+/// Whether answers change [m] by more than the way [m2, squared], as no distance does.
+inline bool is_steep(Real change, Real way_squared) noexcept {
+    constexpr Real round_off = 1e-6;
+    return square(change) > (1 + round_off) * way_squared;
+}
 template <int Dim>
 bool is_steep(const Answer<Dim>& a, const Answer<Dim>& b) noexcept {
-    constexpr Real round_off = 1e-6;
-    return square(a.distance - b.distance) > (1 + round_off) * (a.where - b.where).squaredNorm();
+    return is_steep(a.distance - b.distance, (a.where - b.where).squaredNorm());
 }
 
 /// Where a shape answered what is no number [m], or threw.

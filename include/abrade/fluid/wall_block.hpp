@@ -182,15 +182,13 @@ private:
 
     /// Along its edges and all its diagonals.
     static bool is_steep_within(const Piece<Dim, Dim>& box, const Corners<Dim>& d) noexcept {
-        const auto answer = [&](std::size_t corner) {
-            Point<Dim> unit;
-            for (int a = 0; a < Dim; ++a) unit[a] = static_cast<Real>((corner >> a) & 1);
-            return Answer<Dim>{box.at(unit), d[corner]};
-        };
+        Corners<Dim> way{};  // from the lowest corner, squared; from corner j to corner i that to i ^ j [m2]
         for (std::size_t i = 0; i < d.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j)
-                if (is_steep(answer(i), answer(j))) return true;
-        return false;
+            for (int a = 0; a < Dim; ++a) way[i] += static_cast<Real>((i >> a) & 1) * square(box.size[a]);
+        bool steep = false;
+        for (std::size_t i = 0; i < d.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) steep |= is_steep(d[i] - d[j], way[i ^ j]);
+        return steep;
     }
 
     const Grid<Dim>& grid_;

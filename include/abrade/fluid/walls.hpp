@@ -12,7 +12,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -44,7 +43,7 @@ public:
         /// |w(x) - w(y)| <= |x - y|: cells far from the wall need no look inside. Where that turns out not to
         /// hold, all are looked at, and `params()` says false.
         bool bounded_slope = true;
-        std::string_view called = "Walls: distance";  ///< in messages
+        std::string called = "Walls: distance";  ///< in messages
 
         void validate() const {
             require(closed_below >= 0 && closed_below <= 0.1,
@@ -125,7 +124,7 @@ public:
                 const Point<Dim> low = grid_.face_centre(a, cell);
                 Point<Dim> high = low;
                 high[a] = grid_.high(a);
-                fail({std::string(params_.called) + " at " + place_text<Dim>(low),
+                fail({params_.called + " at " + place_text<Dim>(low),
                       "as far away as at the other, periodic end (" + short_text(wall(high)) + " m)", "m",
                       "give a wall that repeats itself, tilt gravity instead of a bed, or open the ends"},
                      short_text(wall(low)));

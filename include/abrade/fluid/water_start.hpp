@@ -9,7 +9,6 @@
 #include <cmath>
 #include <memory>
 #include <string>
-#include <string_view>
 
 namespace abrade::detail {
 
@@ -44,7 +43,7 @@ template <int Dim>
 void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, VolumeOfFluid<Dim>& liquid) {
     const Grid<Dim>& grid = liquid.grid();
     Field<Real>& f = liquid.fraction();
-    const auto shares = [&](const PlaceFunction<Dim>& water, std::string_view called, auto&& wanted) {
+    const auto shares = [&](const PlaceFunction<Dim>& water, const char* called, auto&& wanted) {
         if (!water) return;
         const typename Walls<Dim>::Params how{
             .closed_below = 0, .may_close_all = true, .bounded_slope = false, .called = called};
