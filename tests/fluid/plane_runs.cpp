@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
+
 using namespace abrade;
 
 namespace {
@@ -37,6 +39,29 @@ TEST_CASE("each plane has one run, which begins at an even plane and is not too 
                     CHECK(first % 2 == 0);
                     if (count > 1) CHECK(runs[static_cast<std::size_t>(run)] - first >= least);
                 }
+            }
+    }
+}
+
+TEST_CASE("parts have every plane once and begin at even planes, whoever helps") {
+    for (const int threads : {1, 2, 3, 7}) {
+        const Threads use(threads);
+        for (const int planes : {1, 2, 5, 40, 101, 600})
+            for (const int least : {2, 32}) {
+                CAPTURE(threads);
+                CAPTURE(planes);
+                CAPTURE(least);
+                const auto runs = detail::plane_runs(Layout<3>({planes, 6, 4}), 2, [&](int plane, int) {
+                    return RowRange{0, plane > planes / 2 ? 6 : 0};
+                });
+                std::vector<std::atomic<int>> seen(static_cast<std::size_t>(planes));
+                std::atomic<int> odd = 0;
+                detail::parallel_parts(runs, least, [&](int first, int last) {
+                    odd += first % 2;
+                    for (int plane = first; plane < last; ++plane) ++seen[static_cast<std::size_t>(plane)];
+                });
+                CHECK(odd == 0);
+                for (const auto& count : seen) CHECK(count == 1);
             }
     }
 }

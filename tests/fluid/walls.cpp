@@ -492,6 +492,9 @@ TEST_CASE("what cannot be used is named") {
         throw std::domain_error("no map at x = " + std::to_string(x[0]));
     };
     CHECK(message_of<std::domain_error>([&] { Walls<3>(grid, throws); }).starts_with("no map at x = "));
+    CHECK(message_of<std::domain_error>([&] {
+              Walls<3>(grid, WallUnion(SpherePacking(heap(30, 6)), throws));
+          }).starts_with("no map at x = "));
     const Shape<3> solid = [](const Point<3>&) { return -1.0; };
     CHECK(message_of([&] { Walls<3>(grid, solid); }) ==
           "Walls: open cells of the grid must be at least 1, got 0; is the distance above 0 in the water, "

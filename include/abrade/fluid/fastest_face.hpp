@@ -31,6 +31,11 @@ struct FastFace {
     }
 };
 
+inline std::string place_in_time(Index step, Real time, Real dt) {
+    return "step " + std::to_string(step) + " (t = " + short_text(time) + " s, dt = " + short_text(dt) +
+           " s): ";
+}
+
 /// What is wrong with a velocity that came out of a step, where it is, and what helps. `after`: what cells
 /// gain of their volume [-].
 template <int Dim, class State>

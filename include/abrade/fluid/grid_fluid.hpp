@@ -1,11 +1,13 @@
 #pragma once
 // Water on a staggered Cartesian grid.
 
+#include <abrade/fluid/changed_walls.hpp>
 #include <abrade/fluid/eddy_viscosity.hpp>
 #include <abrade/fluid/fastest_face.hpp>
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/momentum.hpp>
 #include <abrade/fluid/outflows.hpp>
+#include <abrade/fluid/step_limits.hpp>
 #include <abrade/fluid/surface_heights.hpp>
 #include <abrade/fluid/water_record.hpp>
 
@@ -39,9 +41,9 @@ public:
     static constexpr std::string_view name = "GridFluid";
     using Params = GridFluidParams<Dim>;
 
-    /// Throws InputError where parameters make no flow.
+    /// Throws InputError where parameters make no flow, and what given functions throw.
     explicit GridFluid(Params params, Turbulence turbulence = {})
-        : params_((params.validate(), std::move(params))),
+        : params_((params.validate(), std::move(params))), turbulence_(std::move(turbulence)),
           grid_(std::make_shared<const Grid<Dim>>(params_.grid)),
           sides_(*grid_, gliding_sides(params_.sides, params_.wall_law), params_.side_velocity,
                  params_.start_time),
@@ -54,16 +56,9 @@ public:
             detail::check_inflows(params_, water_->liquid(), water_->walls());
             water_->find(projection_, pressure_);
             outflows_ = detail::Outflows<Dim>(*grid_, params_);
-        } else if (params_.wall || params_.outflow_water) {
-            fail({params_.wall ? "GridFluid.wall" : "GridFluid.outflow_water", "left out of a FullBox", "",
-                  "take a FreeSurface with water everywhere"},
-                 "given");
         }
-        if constexpr (Turbulence::has_eddies) {
-            const Walls<Dim>* walls = nullptr;
-            if constexpr (has_surface) walls = water_->walls();
-            eddies_.emplace(*grid_, params_, turbulence, walls);
-        }
+        if constexpr (!has_surface) detail::refuse_in_full_box(params_);
+        look_at_walls();
         detail::give_velocity(*grid_, params_, velocity_);
         sides_.fill(velocity_);
         if (params_.velocity) {
@@ -82,7 +77,6 @@ public:
         if constexpr (has_surface) {
             record_ = {*grid_, velocity_, stage_, *water_};
             late_.expect(stable_step().seconds);
-            heights_ = detail::SurfaceHeights<Dim>(*grid_, params_.sides.periodic_axes(), water_->walls());
             heights_.find(*grid_, water_->rows(), water_->held());
         } else {
             saved_velocity_ = velocity_;
@@ -107,34 +101,17 @@ public:
 
     /// The longest step that is stable from here.
     FluidStep stable_step() const {
-        FluidStep step;
-        if (params_.largest_step > 0) step.lower(params_.largest_step, "largest_step");
-        Point<Dim> falls = Point<Dim>::Zero();
-        if constexpr (has_surface) falls = params_.acceleration(time_);
-        Real per_h2 = 0, fall = 0, shortest = std::numeric_limits<Real>::infinity();
-        for (int a = 0; a < Dim; ++a) {
-            const Real size = grid_->smallest(a);
-            per_h2 += 1 / square(size);
-            fall += std::abs(falls[a]) / size;
-            shortest = std::min(shortest, size);
-        }
-        // Heun's method is stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum
-        // 1/h^2. At the limit itself a pattern of cells would not decay, and a surface feeds it.
         Real viscous = nu();
         if constexpr (Turbulence::has_eddies) viscous += eddies_->largest();
-        if (viscous > 0) step.lower((has_surface ? 0.4 : 0.5) / (viscous * per_h2), "viscosity");
         if constexpr (has_surface) {
-            // At its end gravity may have made the water faster by g dt.
-            const Real twice = fastest_ + std::sqrt(square(fastest_) + 4 * fall * params_.courant);
-            if (twice > 0) step.lower(2 * params_.courant / twice, "CFL");
+            const Point<Dim> gravity = params_.acceleration(time_);
+            FluidStep step = detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_, &gravity});
             step.lower(water_->liquid().stable_step(velocity_), "volume of fluid");
             if (steps_ == 0) step.lower(first_step_, "volume of fluid");
-            // The shortest wave that the grid knows, of two cells, must not cross a cell.
-            if (fall > 0) step.lower(std::sqrt(pi * shortest / falls.norm()), "gravity wave");
-        } else if (fastest_ > 0) {
-            step.lower(params_.courant / fastest_, "CFL");
+            return step;
+        } else {
+            return detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_});
         }
-        return step;
     }
 
     /// Goes on to exactly `to_time` [s] in steps of its own. Throws FluidError; InputError for no finite
@@ -160,7 +137,7 @@ public:
                 step_full(dt);
         } catch (const std::exception& wrong) {  // more than a cell would leave it, a given function fails
             take_back();
-            throw FluidError(place_in_time(dt) + wrong.what());
+            throw FluidError(detail::place_in_time(steps_, time_, dt) + wrong.what());
         } catch (...) {
             take_back();
             throw;
@@ -173,6 +150,29 @@ public:
         if (!params_.steady_sides) enters_ = sides_.rate_of_inflow(velocity_);
         fastest_ = std::max(report_.courant / dt, enters_);
         if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
+    }
+
+    /// Puts another wall in the box, between steps: one that has worn, for instance. Water stays where it is,
+    /// and none of it is lost: what opens amid water fills from beside in the next step, what closes drives
+    /// it out. So let a cell change by little at a time. Takes as long as building does. Throws as the
+    /// constructor does, and InputError where water has nowhere to go; the flow is then as it was.
+    void set_wall(PlaceFunction<Dim> wall) requires has_surface {
+        GridFluid next(*this);
+        next.params_.wall = std::move(wall);
+        GridFluidParams<Dim> dry = next.params_;
+        dry.water = {};
+        next.water_.emplace(*grid_, dry);
+        next.water_->find(next.projection_, next.stage_[0]);  // nowhere, so that nothing stays of the old
+        const auto [fraction, surplus] =
+            detail::ChangedWalls<Dim>(water_->liquid(), water_->walls(), next.water_->walls()).run();
+        next.water_->restore(fraction, surplus, water_->rows(), water_->liquid().steps());
+        detail::check_inflows(next.params_, next.water_->liquid(), next.water_->walls());
+        next.water_->find(next.projection_, next.pressure_);
+        next.look_at_walls();
+        next.heights_.find(*grid_, next.water_->rows(), next.water_->held());
+        next.finish(next.velocity_);
+        next.find_eddies();
+        *this = std::move(next);
     }
 
     /// Water at a point; in two dimensions at its x and z. Beyond the box as at its edge or, where sides are
@@ -197,13 +197,7 @@ public:
     }
 
     Real kinetic_energy() const {  ///< [J]; in two dimensions per width
-        Real sum = 0;
-        grid_->for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            Real energy = detail::kinetic_energy_at(velocity_, layout(), c);
-            if constexpr (has_surface) energy *= water_->held()[c];
-            sum += energy * grid_->volume(cell);
-        });
-        return params_.density * sum;
+        return params_.density * detail::kinetic_energy(*grid_, velocity_, held());
     }
 
 private:
@@ -213,9 +207,28 @@ private:
 
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     Real nu() const noexcept { return params_.viscosity / params_.density; }
+    /// Liquid of cells [-] and rows that hold it; none: all cells are full.
+    const Field<Real>* held() const noexcept {
+        if constexpr (has_surface) return &water_->held();
+        return nullptr;
+    }
+    const WetRows<Dim>* rows() const noexcept {
+        if constexpr (has_surface) return &water_->rows();
+        return nullptr;
+    }
     /// In a full box that of logarithmic sides alone; the surface's water has its own.
     static WallLaw side_law(const WallLaw& law) {
         return !has_surface && law.kind == WallLaw::Kind::logarithmic ? law : WallLaw{WallLaw::Kind::slip};
+    }
+
+    /// What walls decide once, beside the water.
+    void look_at_walls() {
+        [[maybe_unused]] const Walls<Dim>* walls = nullptr;
+        if constexpr (has_surface) {
+            walls = water_->walls();
+            heights_ = detail::SurfaceHeights<Dim>(*grid_, params_.sides.periodic_axes(), walls);
+        }
+        if constexpr (Turbulence::has_eddies) eddies_.emplace(*grid_, params_, turbulence_, walls);
     }
 
     /// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage_`
@@ -322,22 +335,13 @@ private:
     }
 
     void find_eddies() {
-        if constexpr (Turbulence::has_eddies) {
-            if constexpr (has_surface)
-                eddies_->find(velocity_, sides_, &water_->rows(), &water_->held());
-            else
-                eddies_->find(velocity_, sides_);
-        }
+        if constexpr (Turbulence::has_eddies) eddies_->find(velocity_, sides_, rows(), held());
     }
 
     /// Air beside the water, ghosts.
     void finish(FaceField<Dim, State>& u) {
-        if constexpr (has_surface) {
-            water_->extend(u);
-            sides_.fill(u, &water_->rows());
-        } else {
-            sides_.fill(u);
-        }
+        if constexpr (has_surface) water_->extend(u);
+        sides_.fill(u, rows());
     }
 
     /// Back to what a step that went wrong began with.
@@ -368,14 +372,11 @@ private:
             brimful ? "more flows in than out, and no surface is left to rise; make a side an outflow"
                     : detail::wrong_flow(*grid_, velocity_, report_.after, enters_ > 0);
         restore();
-        throw FluidError(place_in_time(dt) + cause);
-    }
-    std::string place_in_time(Real dt) const {
-        return "step " + std::to_string(steps_) + " (t = " + short_text(time_) +
-               " s, dt = " + short_text(dt) + " s): ";
+        throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);
     }
 
     Params params_;
+    [[no_unique_address]] Turbulence turbulence_;
     std::shared_ptr<const Grid<Dim>> grid_;  ///< shared among copies, parts of which point to it
     VelocitySides<Dim> sides_;
     Projection<Dim, State> projection_;

@@ -23,8 +23,9 @@ struct GridFluidParams {
     Sides<Dim> sides{};                 ///< walls unless told otherwise
     SideVelocity<Dim> side_velocity{};  ///< of walls and of what flows in; none: at rest
     bool steady_sides = true;           ///< side_velocity does not depend on time
-    /// Distance from walls inside the box, > 0 in the water (WallShape); none: no walls. Called from many
-    /// threads, as `water` is.
+    /// Distance from walls inside the box, > 0 in the water (WallShape); none: no walls. Steeper functions
+    /// are found out, but for one that levels off near the wall: divide it by its steepest slope. Called from
+    /// many threads, as `water` is.
     PlaceFunction<Dim> wall{};
     WallLaw wall_law{};  ///< friction of walls inside, and of sides that are walls
     /// > 0 where there is water at the start, such as the depth below a surface; none: dry. Linear functions

@@ -40,12 +40,18 @@ Real wrapped(const Grid<Dim>& grid, int axis, Real x) noexcept {
     return x - length * std::floor((x - grid.low(axis)) / length);
 }
 
-/// Half the mean square of the speed at the faces about a cell [m2/s2].
+/// Over density [m5/s2] (m4/s2 in 2-D): of each cell half the mean square of the speed at its faces, times
+/// its volume and what is `held` of it [-]; none: all.
 template <int Dim, class Number>
-Real kinetic_energy_at(const FaceField<Dim, Number>& velocity, const Layout<Dim>& layout, Offset c) noexcept {
+Real kinetic_energy(const Grid<Dim>& grid, const FaceField<Dim, Number>& velocity, const Field<Real>* held) {
     Real sum = 0;
-    for (int a = 0; a < Dim; ++a) sum += square(velocity[a][c]) + square(velocity[a][c + layout.stride[a]]);
-    return 0.25 * sum;
+    grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
+        Real squares = 0;
+        for (int a = 0; a < Dim; ++a)
+            squares += square(velocity[a][c]) + square(velocity[a][c + grid.layout().stride[a]]);
+        sum += 0.25 * squares * (held ? (*held)[c] : 1) * grid.volume(cell);
+    });
+    return sum;
 }
 
 }  // namespace detail

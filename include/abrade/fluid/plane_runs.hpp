@@ -39,9 +39,11 @@ PlaneRuns plane_runs(const Layout<Dim>& layout, int least, Range&& range) {
     return runs;
 }
 
-/// Calls body(first, last) for parts [first, last) of all runs, of `least` planes (even) but for the last of
-/// a run. A thread has a run of its own, part by part; when it is done it helps with the others': cells do
-/// not all cost the same, and cores have other work.
+/// Calls body(first, last) for parts [first, last) of all runs: the whole of an only run, else parts of a
+/// sixteenth of it, of `least` planes (even) at least, that begin at even planes. A thread has a run of its
+/// own, part by part; when it is done it helps with the others': cells do not all cost the same, and cores
+/// have other work. So body meets its neighbours at work, in any order, and writes to its own planes only. It
+/// must not throw.
 template <class Body>
 void parallel_parts(const PlaneRuns& runs, int least, Body&& body) {
     const std::size_t count = runs.size() - 1;
@@ -61,7 +63,7 @@ void parallel_parts(const PlaneRuns& runs, int least, Body&& body) {
     });
 }
 
-/// Calls body(plane) for all planes, in parallel.
+/// Calls body(plane) for all planes, in parallel, as `parallel_parts` does.
 template <class Body>
 void parallel_planes(const PlaneRuns& runs, Body&& body) {
     parallel_parts(runs, 2, [&](int first, int last) {

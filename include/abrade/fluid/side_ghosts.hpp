@@ -31,15 +31,15 @@ void copy_layer(Field<Number>& field, const Layout<Dim>& layout, int axis, int f
 
 /// The cell along a periodic axis of n that ghost g beyond an end is a copy of: an axis of one cell is its
 /// own neighbour, twice over.
-constexpr int wrapped(int n, bool high, int g) noexcept { return high ? g % n : n - 1 - g % n; }
+constexpr int copied_cell(int n, bool high, int g) noexcept { return high ? g % n : n - 1 - g % n; }
 
 /// Ghosts beyond both ends of a periodic axis.
 template <int Dim, class Number>
 void wrap_axis(Field<Number>& field, const Layout<Dim>& layout, int axis) noexcept {
     const int n = layout.cells[axis];
     for (int g = 0; g < Layout<Dim>::ghosts; ++g) {
-        copy_layer(field, layout, axis, wrapped(n, false, g), -1 - g);
-        copy_layer(field, layout, axis, wrapped(n, true, g), n + g);
+        copy_layer(field, layout, axis, copied_cell(n, false, g), -1 - g);
+        copy_layer(field, layout, axis, copied_cell(n, true, g), n + g);
     }
 }
 
@@ -58,12 +58,12 @@ void fill_periodic(FaceField<Dim, Number>& field, const Layout<Dim>& layout,
 /// Ghosts beyond all sides but those of an inflow, which are given: periodic, or as the cell inside. Rows get
 /// their ends filled where `rows` has them, dry ones are left as they are.
 template <int Dim, class Number>
-void fill_ghosts(Field<Number>& field, const WetRows<Dim>& rows, const Sides<Dim>& sides) noexcept {
+void fill_ghosts(Field<Number>& field, const WetRows<Dim>& rows, const Sides<Dim>& sides) {
     const Layout<Dim>& layout = rows.layout();
     constexpr int inner = Layout<Dim>::inner, ghosts = Layout<Dim>::ghosts;
     const auto source = [&](int axis, bool high, int g) {
         const int n = layout.cells[static_cast<std::size_t>(axis)];
-        return sides.periodic(axis) ? wrapped(n, high, g) : high ? n - 1 : 0;
+        return sides.periodic(axis) ? copied_cell(n, high, g) : high ? n - 1 : 0;
     };
     rows.for_each_row([&](int plane, int r, const RowRange&) {
         Number* row = field.data() + layout.row_start(plane, r);

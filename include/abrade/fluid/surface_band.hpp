@@ -132,7 +132,7 @@ private:
     }
 
     /// To all cells around: first along rows, then from row to row.
-    void spread(const Field<std::uint8_t>& marks, const WetRows<Dim>& rows) noexcept {
+    void spread(const Field<std::uint8_t>& marks, const WetRows<Dim>& rows) {
         constexpr int around = Dim == 3 ? 9 : 3;
         std::array<Offset, around> step;
         for (int k = 0; k < around; ++k)

@@ -384,7 +384,9 @@ private:
     SurfaceBand<Dim> band_;
     WetRows<Dim> wet_, active_, touched_;  ///< touched: active now or in the step before
     Field<std::uint8_t> filled_;           ///< 1: c of Weymouth and Yue; of cells of the band
-    std::vector<Index> settled_;           ///< cells that took what was moved aside
+    /// Cells outside of the last band that may have to be closed: set from outside, or given what was moved
+    /// aside.
+    std::vector<Index> settled_;
     Index steps_ = 0;
     Point<Dim> gravity_ = Point<Dim>::Zero();
 

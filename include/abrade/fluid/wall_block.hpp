@@ -43,7 +43,7 @@ class WallBlock {
 public:
     static constexpr int side = 4;
 
-    /// Looks at the wall. Where it is far from all cells nothing but `content` is set.
+    /// Looks at the wall. Where it is far from all cells nothing but `content` and `centre` is set.
     template <class Shape>
     WallBlock(const Grid<Dim>& grid, const CellRange<Dim>& cells, Probe<Dim, Shape>& wall,
               const Subdivision& rule, Real cell_diagonal)
@@ -149,7 +149,7 @@ private:
         for (int a = 0; a < Dim; ++a) axes[static_cast<std::size_t>(a)] = a;
         const Corners<Dim> d = distances<Dim>(cell, axes);
         const auto box = piece<Dim>(cell, axes);
-        steep_ = steep_ || is_steep_within(box, d);
+        if (rule.bounded_slope) steep_ = steep_ || is_steep_within(box, d);
         FaceShares<Dim> faces;
         bool rough = false;
         for (std::size_t a = 0; a < Dim; ++a) {

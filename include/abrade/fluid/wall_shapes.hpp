@@ -24,8 +24,9 @@ namespace abrade {
 
 /// A wall: w(x) is the distance of x from its surface [m], above 0 in the water, below 0 in the solid. Any
 /// function that is 0 at the surface will do; where it never changes by more than the way between two
-/// points, as distances do, cells far from the wall cost nothing (Walls::Params::bounded_slope).
-/// Called from many threads.
+/// points, as distances do, cells far from the wall cost nothing (Walls::Params::bounded_slope). Steeper ones
+/// are found out where their answers show it; one that levels off near the wall may hide what is smaller than
+/// four cells. Called from many threads; `nearby`, where it has one, must not throw.
 // clang-format off
 template <class W, int Dim>
 concept WallShape = requires(const W& wall, const Point<Dim>& x) {
@@ -196,14 +197,13 @@ class WallUnion {
 public:
     explicit WallUnion(Shapes... shapes) : shapes_(std::move(shapes)...) {}
     template <int Dim>
-    requires(WallShape<Shapes, Dim>&&...) Real operator()(
-        const Eigen::Matrix<Real, Dim, 1>& x) const noexcept {
+    requires(WallShape<Shapes, Dim>&&...) Real operator()(const Eigen::Matrix<Real, Dim, 1>& x) const {
         return std::apply([&](const auto&... shape) { return smallest({static_cast<Real>(shape(x))...}); },
                           shapes_);
     }
 
     /// For the same walls near a place (SpherePacking::nearby).
-    auto nearby(const auto& x, Real radius) const noexcept {
+    auto nearby(const auto& x, Real radius) const {
         return std::apply(
             [&](const auto&... shape) {
                 return WallUnion<decltype(few(shape, x, radius))...>(few(shape, x, radius)...);
@@ -213,7 +213,7 @@ public:
 
 private:
     template <class Shape>
-    static auto few(const Shape& shape, const auto& x, Real radius) noexcept {
+    static auto few(const Shape& shape, const auto& x, Real radius) {
         if constexpr (requires { shape.nearby(x, radius); }) {
             return shape.nearby(x, radius);
         } else {

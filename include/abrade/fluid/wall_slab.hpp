@@ -136,7 +136,8 @@ private:
              "nan");
     }
 
-    /// Blocks that are passed over for being far are compared by their centres, along each axis.
+    /// Blocks are compared by their centres along each axis: those passed over for being far have nothing
+    /// else.
     static bool any_steep(std::span<const Slab> slabs, int row_length) {
         const auto row = static_cast<std::size_t>(row_length);
         std::span<const Answer<Dim>> before;
@@ -153,6 +154,7 @@ private:
 
     template <class Shape>
     void cut(Slab& slab, const Range& cells, const Shape& wall) const {
+        if (slab.failure) return;
         Probe<Dim, Shape> distance(wall);
         const WallBlock<Dim> block(grid, cells, distance, rule, cell_diagonal);
         const auto put = [&](const Cell& c, Real volume, auto&& area) {
@@ -177,7 +179,7 @@ private:
                 if (open && inside(c)) ++slab.opened;
             });
         }
-        if (!slab.failure) slab.failure = distance.failure();
+        slab.failure = distance.failure();
         if (rule.bounded_slope) slab.centres.push_back(block.centre()), slab.steep |= block.steep();
     }
 

@@ -40,10 +40,11 @@ public:
         int levels = 1;            ///< how often cells and faces are halved where the wall is not flat
         Real flatness = 0.02;      ///< not flat: the distance at the centre is off by that share of the size
         bool may_close_all = false;  ///< that no cell is open is no error
-        /// |w(x) - w(y)| <= |x - y|: cells far from the wall need no look inside. Where that turns out not to
-        /// hold, all are looked at, and `params()` says false.
+        /// |w(x) - w(y)| <= |x - y|: cells far from the wall need no look inside. Where answers show that it
+        /// does not hold, all are looked at, and `params()` says false. A steep function that levels off near
+        /// the wall may hide what is smaller than four cells: for such, say false.
         bool bounded_slope = true;
-        std::string called = "Walls: distance";  ///< in messages
+        std::string called = "Walls: distance";  ///< in messages about its answers
 
         void validate() const {
             require(closed_below >= 0 && closed_below <= 0.1,
@@ -88,7 +89,8 @@ public:
     }
 
     /// After the solid has changed between the corners `low` and `high` of a box [m], nowhere else: renews
-    /// the cells there, to the same bits as built anew. Throws as the constructor does; then build anew.
+    /// the cells there, to the same bits as built anew, unless only that finds the function steeper than a
+    /// distance. Throws as the constructor does; then build anew.
     template <WallShape<Dim> Shape>
     void update(const Shape& wall, const Point<Dim>& low, const Point<Dim>& high) {
         require(!slabs_.empty(), {"Walls.update", "called on walls", "", "give the constructor a shape"}, 0);

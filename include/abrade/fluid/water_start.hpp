@@ -27,6 +27,15 @@ void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, Fa
     });
 }
 
+/// Throws InputError for what needs a surface.
+template <int Dim>
+void refuse_in_full_box(const GridFluidParams<Dim>& params) {
+    if (params.wall || params.outflow_water)
+        fail({params.wall ? "GridFluid.wall" : "GridFluid.outflow_water", "left out of a FullBox", "",
+              "take a FreeSurface with water everywhere"},
+             "given");
+}
+
 /// Walls inside the box, none where none are given. Throws as `Walls` does.
 template <int Dim>
 std::shared_ptr<const Walls<Dim>> walls_inside(const Grid<Dim>& grid, const GridFluidParams<Dim>& params) {

@@ -1,0 +1,159 @@
+// Walls that change between steps: no water is lost, it goes on as it flowed, and what cannot be leaves it as
+// it was.
+#include <abrade/fluid/grid_fluid.hpp>
+
+#include <abrade/fluid/turbulence.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "../message_of.hpp"
+
+using namespace abrade;
+
+namespace {
+
+/// A tank of 1 m in cells of 1/32 m, above a bed.
+GridFluidParams<2> tank(Real bed, Real level) {
+    GridFluidParams<2> params{.grid = {.cells = {32, 32}, .spacing = {1.0 / 32, 1.0 / 32}},
+                              .sides = Sides<2>::all(Side::slip),
+                              .gravity = {0, -9.81}};
+    params.wall = [bed](const Point<2>& x) { return x[1] - bed; };
+    params.water = [level](const Point<2>& x) { return level - x[1]; };
+    return params;
+}
+
+/// Root mean square of the water's speed [m/s].
+Real mean_speed(const GridFluid<2>& flow) {
+    return std::sqrt(2 * flow.kinetic_energy() / (flow.params().density * flow.liquid().volume()));
+}
+
+template <class Flow>
+bool same(const Flow& a, const Flow& b) {
+    bool equal = true;
+    a.grid().for_each([&](const auto&, Offset c) {
+        for (int k = 0; k < 2; ++k) equal = equal && a.velocity()[k][c] == b.velocity()[k][c];
+        equal = equal && a.liquid().fraction()[c] == b.liquid().fraction()[c] &&
+                a.liquid().surplus()[c] == b.liquid().surplus()[c] && a.pressure()[c] == b.pressure()[c];
+    });
+    return equal;
+}
+
+}  // namespace
+
+TEST_CASE("a bed that wears: the water sinks with it, and comes to rest") {
+    Real bed = 0.243;
+    GridFluid<2> flow(tank(bed, 0.613));
+    const Real volume = flow.liquid().volume(), sinks = 2.0 / 32;
+    for (int step = 0; step < 40; ++step) {  // a twentieth of a cell each
+        bed -= sinks / 40;
+        flow.set_wall([bed](const Point<2>& x) { return x[1] - bed; });
+        CHECK(flow.liquid().volume() == doctest::Approx(volume).epsilon(1e-14));
+        flow.advance(flow.time() + 0.025);
+        if (step > 10) CHECK(mean_speed(flow) == doctest::Approx(sinks).epsilon(0.1));
+    }
+    flow.advance(flow.time() + 0.5);
+    CHECK(flow.liquid().volume() == doctest::Approx(volume).epsilon(1e-13));
+    MESSAGE("then " << mean_speed(flow) << " m/s");
+    CHECK(mean_speed(flow) < 0.1 * sinks);
+    for (const Real x : {0.1, 0.5, 0.9})
+        CHECK(std::abs(flow.surface_at({x, 0}) - (0.613 - sinks)) < 0.05 / 32);
+}
+
+TEST_CASE(
+    "a hole that wears into the bed and is filled again: the volume stays, and the surface comes back") {
+    GridFluid<2> flow(tank(0.243, 0.613));
+    const Real volume = flow.liquid().volume();
+    Real fell = 0;
+    for (int step = 0; step <= 60; ++step) {
+        const Real depth = 0.09 * square(std::sin(pi * step / 60));  // three cells, a seventh of one a time
+        flow.set_wall([depth](const Point<2>& x) {
+            return x[1] - 0.243 + std::max(0.0, depth * (1 - square((x[0] - 0.4) / 0.2)));
+        });
+        flow.advance(flow.time() + 0.05);
+        CHECK(std::abs(flow.liquid().volume() / volume - 1) < 1e-13);
+        if (step == 30) fell = 0.613 - flow.surface_at({0.5, 0});
+    }
+    flow.advance(flow.time() + 1);
+    MESSAGE("fell by " << fell << " m, then " << flow.surface_at({0.5, 0}) - 0.613 << " m off, at "
+                       << mean_speed(flow) << " m/s");
+    CHECK(fell == doctest::Approx(0.09 * 0.4 * 2 / 3).epsilon(0.1));
+    for (const Real x : {0.1, 0.5, 0.9}) CHECK(std::abs(flow.surface_at({x, 0}) - 0.613) < 2e-3);
+    CHECK(mean_speed(flow) < 0.05);
+}
+
+TEST_CASE("the same wall changes nothing but what was a step's") {
+    auto waves = tank(0.243, 0.613);
+    waves.water = [](const Point<2>& x) { return 0.6 + 0.02 * std::cos(pi * x[0]) - x[1]; };
+    GridFluid<2> kept(waves), set(waves);
+    kept.advance(0.1), set.advance(0.1);
+    set.set_wall(waves.wall);
+    CHECK(same(kept, set));
+    kept.advance(0.5), set.advance(0.5);
+    for (const Real x : {0.1, 0.3, 0.7})
+        CHECK(set.surface_at({x, 0}) == doctest::Approx(kept.surface_at({x, 0})).epsilon(1e-6));
+}
+
+TEST_CASE(
+    "an invert that wears under running water, with eddies: as deep and fast as one that was built so") {
+    const auto worn = [](Real by) {
+        return [by](const Point<2>& x) { return x[1] - 0.1 + (x[0] > 0.5 && x[0] < 1.5 ? by : 0.0); };
+    };
+    GridFluidParams<2> params{.grid = {.cells = {100, 24}, .spacing = {0.02, 0.02}},
+                              .sides = Sides<2>::all(Side::slip),
+                              .wall = worn(0),
+                              .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
+                              .water = [](const Point<2>& x) { return 0.25 - x[1]; },
+                              .velocity = [](const Point<2>&) { return Point<2>(2, 0); },
+                              .gravity = {0.3, -9.8}};
+    params.sides[0] = {Side::inflow, Side::outflow};
+    params.side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.1 ? 2 : 0, 0); };
+    params.inflow_water = params.water;
+    GridFluid<2, FreeSurface, Limited, Real, MixingLength> flow(params, {.depth = 0.15});
+    flow.advance(0.5);
+    for (int step = 1; step <= 20; ++step) {
+        flow.set_wall(worn(0.03 * step / 20));
+        flow.advance(flow.time() + 0.05);
+    }
+    flow.advance(4);
+    params.wall = worn(0.03);
+    GridFluid<2, FreeSurface, Limited, Real, MixingLength> built(params, {.depth = 0.15});
+    built.advance(4);
+    for (const Real x : {0.4, 1.0, 1.8}) {
+        CHECK(flow.surface_at({x, 0}) == doctest::Approx(built.surface_at({x, 0})).epsilon(0.02));
+        CHECK(flow.sample({x, 0, 0.2}, 0).velocity.x() ==
+              doctest::Approx(built.sample({x, 0, 0.2}, 0).velocity.x()).epsilon(0.02));
+    }
+}
+
+TEST_CASE("walls that come and go") {
+    auto params = tank(0, 0.5);
+    params.wall = {};
+    GridFluid<2> flow(params);
+    const Real volume = flow.liquid().volume();
+    flow.set_wall([](const Point<2>& x) { return (x - Point<2>(0.5, 0.3)).norm() - 0.02; });
+    CHECK(flow.liquid().volume() == doctest::Approx(volume).epsilon(1e-14));
+    flow.advance(0.2);
+    flow.set_wall({});
+    CHECK(flow.walls() == nullptr);
+    flow.advance(0.4);
+    CHECK(flow.liquid().volume() == doctest::Approx(volume).epsilon(1e-13));
+    CHECK(mean_speed(flow) < 0.1);
+}
+
+TEST_CASE("what cannot be is named and changes nothing") {
+    GridFluid<2> flow(tank(0.243, 0.613));
+    flow.advance(0.1);
+    GridFluid<2> before = flow;
+    const auto says = [&](PlaceFunction<2> wall) {
+        return message_of([&] { flow.set_wall(std::move(wall)); });
+    };
+    CHECK(says([](const Point<2>& x) { return x[1] - 0.5; }).starts_with("GridFluid.set_wall: wall at x = "));
+    CHECK(says([](const Point<2>& x) { return std::sqrt(0.2 - x[1]); }).starts_with("GridFluid.wall at x ="));
+    CHECK(says([](const Point<2>&) { return -1.0; }).starts_with("Walls: open cells"));
+    CHECK(same(before, flow));
+    flow.advance(0.2), before.advance(0.2);
+    CHECK(same(before, flow));
+}
