@@ -4,7 +4,9 @@
 #include <abrade/fluid/volume_of_fluid.hpp>
 #include <abrade/fluid/walls.hpp>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace abrade::detail {
 
@@ -15,29 +17,37 @@ struct WaterShares {
 
 /// The same liquid between other walls; none of either: all is open.
 ///
-/// A full cell stays full: what it has more room for or less is its surplus, which the next projection asks
-/// from beside or drives out. What opens amid full cells is full, and lacks all of it. Elsewhere liquid stays
-/// as it is, as far as there is room. The liquid of a cell that closes goes to those beside it.
-/// Throws InputError where all of those are closed as well.
+/// Columns settle at once: what opens below water is filled from the top of the water above it, what closes
+/// pushes it up there. A void at the bed would stay, for no pressure fills it. Below a roof, or where nothing
+/// presses down, a full cell stays full, and what it has more room for or less is its surplus, which the next
+/// projection asks from beside or drives out. A cell at the surface keeps what it holds.
+/// Throws InputError where the liquid of a cell that closes finds no room above or beside it, and where it
+/// needs more than the room of a box that nothing leaves.
 template <int Dim>
 class ChangedWalls {
+    static constexpr int vertical = Grid<Dim>::vertical;
+
 public:
-    ChangedWalls(const VolumeOfFluid<Dim>& liquid, const Walls<Dim>* before, const Walls<Dim>* after)
-        : liquid_(liquid), before_(before), after_(after), shares_{liquid.fraction(), liquid.surplus()} {}
+    /// Of gravity [m/s2] the sign along the vertical axis counts.
+    ChangedWalls(const VolumeOfFluid<Dim>& liquid, const Walls<Dim>* before, const Walls<Dim>* after,
+                 const Point<Dim>& gravity)
+        : liquid_(liquid), grid_(liquid.grid()), before_(before),
+          after_(after), shares_{liquid.fraction(), liquid.surplus()} {
+        const Offset step = grid_.layout().stride[vertical];
+        up_ = gravity[vertical] < 0 ? step : gravity[vertical] > 0 ? -step : 0;
+    }
 
     WaterShares run() {
-        const Grid<Dim>& grid = liquid_.grid();
-        grid.for_each([&](const CellNumber<Dim>&, Offset c) {
+        std::vector<Offset> changed, closed;
+        grid_.for_each([&](const CellNumber<Dim>&, Offset c) {
             const Real was = open(before_, c), is = open(after_, c);
-            if (was == is || is == 0) return;
-            if (was == 0)
-                set(c, amid_full(c), 0);
-            else
-                set(c, is_full(c), (liquid_.fraction()[c] + liquid_.surplus()[c]) * was / is);
+            if (was == is) return;
+            (is > 0 ? changed : closed).push_back(c);
+            if (is > 0) set(c, holds(c) * was / is);
         });
-        grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            if (open(after_, c) == 0) push_aside(cell, c);
-        });
+        for (const Offset c : changed) settle(c);
+        for (const Offset c : closed) leave(c);
+        check_room();
         return std::move(shares_);
     }
 
@@ -45,54 +55,134 @@ private:
     static Real open(const Walls<Dim>* walls, Offset c) noexcept {
         return walls ? walls->open_volume()[c] : 1;
     }
+    /// What walls leave of a cell now [m3].
+    Real room(Offset c) const noexcept { return open(after_, c) * grid_.volume(grid_.layout().number(c)); }
     bool is_inside(Offset c) const noexcept { return (liquid_.marks()[c] & cell_mark::inside) != 0; }
-    bool is_full(Offset c) const noexcept { return liquid_.fraction()[c] >= liquid_.full(); }
-    bool amid_full(Offset c) const noexcept {
-        bool any = false;
-        for (const Offset s : liquid_.grid().layout().stride)
-            for (const Offset n : {c - s, c + s}) {
-                if (!is_inside(n) || open(before_, n) == 0) continue;
-                if (!is_full(n)) return false;
-                any = true;
-            }
-        return any;
+    /// The next cell up, or -1 where a roof is between.
+    Offset above(Offset c) const noexcept {
+        const Offset n = c + up_;
+        if (up_ == 0 || !is_inside(n) || open(after_, n) == 0) return -1;
+        return after_ && after_->open_area()[vertical][std::max(c, n)] == 0 ? -1 : n;
     }
-    /// `holds`: liquid over the open volume of now.
-    void set(Offset c, bool full, Real holds) noexcept {
+
+    Real holds(Offset c) const noexcept { return shares_.fraction[c] + shares_.surplus[c]; }
+    void set(Offset c, Real holds) noexcept {
         constexpr Real wisp = VolumeOfFluid<Dim>::wisp;
         // What lacks as little as makes no surface is full.
-        const bool fills = full || holds >= 1 - 10 * (1 - liquid_.full());
-        shares_.fraction[c] = fills ? 1 : holds < wisp ? 0 : holds;
+        const bool full = holds >= 1 - 10 * (1 - liquid_.full());
+        shares_.fraction[c] = full ? 1 : holds < wisp ? 0 : holds;
         shares_.surplus[c] = holds - shares_.fraction[c];
     }
-    void push_aside(const CellNumber<Dim>& cell, Offset c) {
-        const Grid<Dim>& grid = liquid_.grid();
-        const Real amount =
-            (liquid_.fraction()[c] + liquid_.surplus()[c]) * open(before_, c) * grid.volume(cell);
+
+    /// A cell of which more or less is open than it was.
+    void settle(Offset c) {
+        const Real beyond = (holds(c) - 1) * room(c);
+        if (beyond > 0) {
+            const Real left = push_up(c, beyond);
+            shares_.fraction[c] = 1, shares_.surplus[c] = left / room(c);
+            return;
+        }
+        const Offset n = above(c);
+        const bool was_full = open(before_, c) > 0 && liquid_.fraction()[c] >= liquid_.full();
+        if (n >= 0 && holds(n) > VolumeOfFluid<Dim>::wisp) {
+            const Real left = take_down(c, -beyond);
+            set(c, 1 - left / room(c));
+            if (left > 0 && holds(n) > VolumeOfFluid<Dim>::wisp) fill(c);  // up to a roof all is full
+        } else if (n < 0 && was_full) {
+            fill(c);
+        }
+    }
+    /// Full, and lacks what it does not hold.
+    void fill(Offset c) noexcept {
+        const Real lacks = holds(c) - 1;
+        shares_.fraction[c] = 1, shares_.surplus[c] = lacks;
+    }
+
+    /// Puts liquid [m3] on top of the column above a cell, into one dry cell at most: a narrow one would rise
+    /// far above what is beside it. Answers what finds no room.
+    Real push_up(Offset c, Real amount) {
+        bool dry = false;
+        for (Offset n = above(c); n >= 0 && amount > 0 && !dry; n = above(n)) {
+            dry = holds(n) <= VolumeOfFluid<Dim>::wisp;
+            const Real part = std::clamp((1 - holds(n)) * room(n), Real(0), amount);
+            if (part > 0) set(n, holds(n) + part / room(n));
+            amount -= part;
+        }
+        return amount;
+    }
+
+    /// Takes liquid [m3] from the top of the column above a cell; answers what is not to be had. Of a column
+    /// that is full up to a roof nothing is: its top would be a void.
+    Real take_down(Offset c, Real amount) {
+        column_.clear();
+        for (Offset n = above(c); n >= 0 && holds(n) > VolumeOfFluid<Dim>::wisp; n = above(n))
+            column_.push_back(n);
+        const Offset top = column_.back();
+        if (holds(top) >= 1 - 10 * (1 - liquid_.full()) && above(top) < 0) return amount;
+        for (; !column_.empty() && amount > 0; column_.pop_back()) {
+            const Offset n = column_.back();
+            const Real part = std::clamp(holds(n) * room(n), Real(0), amount);
+            set(n, holds(n) - part / room(n));
+            amount -= part;
+        }
+        return amount;
+    }
+
+    /// The liquid of a cell that closes: up, or to what is beside it.
+    void leave(Offset c) {
+        const CellNumber<Dim> cell = grid_.layout().number(c);
+        Real amount = holds(c) * open(before_, c) * grid_.volume(cell);
         shares_.fraction[c] = shares_.surplus[c] = 0;
+        if (up_ != 0 && is_inside(c + up_) && open(after_, c + up_) > 0 && amount > 0) {
+            const Offset n = c + up_;
+            set(n, holds(n) + amount / room(n));
+            settle(n);
+            return;
+        }
         if (amount == 0) return;
-        Real room = 0;
+        Real beside = 0;
         const auto each_beside = [&](auto&& body) {
-            for (const Offset s : grid.layout().stride)
+            for (const Offset s : grid_.layout().stride)
                 for (const Offset n : {c - s, c + s})
                     if (is_inside(n) && open(after_, n) > 0) body(n);
         };
-        each_beside([&](Offset n) { room += open(after_, n) * grid.volume(grid.layout().number(n)); });
-        if (!(room > 0))
-            fail({"GridFluid.set_wall: wall at " + place_text<Dim>(grid.centre(cell)),
-                  "open beside a cell whose water it takes the place of", "",
+        each_beside([&](Offset n) { beside += room(n); });
+        if (!(beside > 0))
+            fail({"GridFluid.set_wall: wall at " + place_text<Dim>(grid_.centre(cell)),
+                  "open above or beside a cell whose water it takes the place of", "",
                   "change it by less than a cell at a time"},
                  "closed");
         each_beside([&](Offset n) {
-            set(n, shares_.fraction[n] >= liquid_.full(),
-                shares_.fraction[n] + shares_.surplus[n] + amount / room);
+            set(n, holds(n) + amount / beside);
+            settle(n);
         });
     }
 
+    void check_room() const {
+        for (const auto& ends : liquid_.sides().kind)
+            if (ends[0] == Side::outflow || ends[1] == Side::outflow) return;
+        Real liquid = 0, all = 0;
+        grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) {
+            const Real volume = open(after_, c) * grid_.volume(cell);
+            all += volume, liquid += holds(c) * volume;
+        });
+        constexpr Real round_off = 1e-9;
+        if (liquid > (1 + round_off) * all)
+            fail({"GridFluid.set_wall: room that the wall leaves",
+                  "at least that of the water in a box that "
+                  "nothing leaves (" +
+                      short_text(liquid) + ")",
+                  Dim == 3 ? "m3" : "m2", "make a side an outflow, or leave the wall"},
+                 short_text(all));
+    }
+
     const VolumeOfFluid<Dim>& liquid_;
+    const Grid<Dim>& grid_;
     const Walls<Dim>* before_;
     const Walls<Dim>* after_;
+    Offset up_ = 0;  ///< to the next cell against gravity; 0: nothing presses down
     WaterShares shares_;
+    std::vector<Offset> column_;
 };
 
 }  // namespace abrade::detail

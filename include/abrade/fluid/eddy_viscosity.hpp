@@ -28,16 +28,13 @@ public:
     template <class Model>
     EddyViscosity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, const Model& model,
                   const Walls<Dim>* walls)
-        : layout_(grid.layout()), field_(layout_.total), length2_(layout_.total), all_(layout_),
-          most_(static_cast<std::size_t>(layout_.planes())) {
+        : layout_(grid.layout()), field_(layout_.total), length2_(layout_.total),
+          all_(WetRows<Dim>::whole(layout_)), most_(static_cast<std::size_t>(layout_.planes())) {
         model.validate();
         for (int a = 0; a < Dim; ++a) {
             per_size_[a] = Table(grid, [&](int k) { return 1 / grid.size(a, a == vertical ? k : 0); });
             per_gap_[a] = Table(grid, [&](int k) { return 1 / grid.gap(a, a == vertical ? k : 0); });
         }
-        for (int plane = 0; plane < layout_.planes(); ++plane)
-            for (int row = 0; row < layout_.rows_per_plane(); ++row)
-                all_.row(plane, row) = {0, layout_.row_length()};
         const auto set_length = [&](const CellNumber<Dim>& cell, Offset c, const Point<Dim>& middle) {
             const Real size = std::pow(grid.volume(cell), 1.0 / Dim);
             length2_[c] = static_cast<State>(square(model.length(size, wall_distance(grid, params, middle))));

@@ -152,24 +152,24 @@ public:
         if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
     }
 
-    /// Puts another wall in the box, between steps: one that has worn, for instance. Water stays where it is,
-    /// and none of it is lost: what opens amid water fills from beside in the next step, what closes drives
-    /// it out. So let a cell change by little at a time. Takes as long as building does. Throws as the
-    /// constructor does, and InputError where water has nowhere to go; the flow is then as it was.
+    /// Puts another wall in the box, between steps: one that has worn, for instance. No water is lost, and
+    /// columns settle at once (ChangedWalls): so let a cell change by little at a time. Takes as long as
+    /// building does. Throws as that does, and InputError where water has no room; the flow is as it was.
     void set_wall(PlaceFunction<Dim> wall) requires has_surface {
         GridFluid next(*this);
         next.params_.wall = std::move(wall);
         GridFluidParams<Dim> dry = next.params_;
         dry.water = {};
-        next.water_.emplace(*grid_, dry);
-        next.water_->find(next.projection_, next.stage_[0]);  // nowhere, so that nothing stays of the old
-        const auto [fraction, surplus] =
-            detail::ChangedWalls<Dim>(water_->liquid(), water_->walls(), next.water_->walls()).run();
-        next.water_->restore(fraction, surplus, water_->rows(), water_->liquid().steps());
-        detail::check_inflows(next.params_, next.water_->liquid(), next.water_->walls());
-        next.water_->find(next.projection_, next.pressure_);
+        auto& water = next.water_.emplace(*grid_, dry);
+        water.find(next.projection_, next.stage_[0]);  // nowhere, so that nothing stays of the old
+        detail::ChangedWalls<Dim> change(water_->liquid(), water_->walls(), water.walls(), params_.gravity);
+        const auto [fraction, surplus] = change.run();
+        water.restore(fraction, surplus, WetRows<Dim>::whole(layout()), water_->liquid().steps());
+        detail::check_inflows(next.params_, water.liquid(), water.walls());
+        water.find(next.projection_, next.pressure_);
+        next.find_pressure_of_weight(1e-3);  // the old one knows nothing of where the surface is now
         next.look_at_walls();
-        next.heights_.find(*grid_, next.water_->rows(), next.water_->held());
+        next.heights_.find(*grid_, water.rows(), water.held());
         next.finish(next.velocity_);
         next.find_eddies();
         *this = std::move(next);

@@ -36,11 +36,8 @@ public:
         }
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
         Field<std::uint8_t> wet(grid.layout().total, 0);
-        WetRows<Dim> rows(grid.layout());
+        const auto rows = WetRows<Dim>::whole(grid.layout());
         grid.for_each([&](const CellNumber<Dim>&, Offset c) { wet[c] = 1; });
-        for (int plane = 0; plane < grid.layout().planes(); ++plane)
-            for (int row = 0; row < grid.layout().rows_per_plane(); ++row)
-                rows.row(plane, row) = {0, grid.layout().row_length()};
         const std::vector<OpenFace> open = outflows(wet);
         set({wet, rows, open});
     }

@@ -30,13 +30,9 @@ public:
           liquid_(grid, params.sides, {.smallest_void = std::clamp(params.tolerance, 1e-6, 1e-4)}),
           walls_(walls_inside(grid, params)), friction_(grid, params.sides, params.wall_law, walls_.get()),
           before_(grid.layout().total), burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
-          rows_(grid.layout()), extension_(grid.layout(), sides_),
+          rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
           open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
-        // The projection begins with a full box.
-        for (int plane = 0; plane < layout().planes(); ++plane)
-            for (int row = 0; row < layout().rows_per_plane(); ++row)
-                rows_.row(plane, row) = {0, layout().row_length()};
         if (sides_.periodic(vertical))
             fail({"GridFluid.sides.z", "not periodic where there is a surface", "",
                   "close the floor, or take a FullBox"},
@@ -257,16 +253,18 @@ public:
     void restore(const Field<Real>& fraction, const Field<Real>& surplus, const WetRows<Dim>& rows,
                  Index steps) {
         liquid_.set_steps(steps);
-        const auto clear = [&](int plane, int row, const RowRange& r) {
-            std::fill_n(liquid_.fraction().data() + layout().row_start(plane, row) + r.begin, r.length(),
-                        0.0);
-        };
-        rows_.for_each_row(clear);
+        rows_.for_each_row([&](int plane, int row, const RowRange& r) {
+            std::fill_n(liquid_.fraction().data() + layout().row_start(plane, row) + r.begin, r.length(), 0);
+        });
         rows.copy(fraction, liquid_.fraction());
-        const Field<Real> elsewhere = liquid_.surplus();
+        Field<Real> kept = liquid_.surplus();
         settle();
-        liquid_.surplus() = elsewhere;
-        rows.copy(surplus, liquid_.surplus());
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {  // of what it has closed as well
+            const Offset start = layout().row_start(plane, row);
+            for (Offset c = start + r.begin; c < start + r.end; ++c)
+                kept[c] = surplus[c] + (fraction[c] - liquid_.fraction()[c]);
+        });
+        liquid_.surplus() = std::move(kept);
     }
 
 private:

@@ -39,6 +39,14 @@ public:
         share_out();
     }
 
+    /// All cells of the box.
+    static WetRows whole(const Layout<Dim>& layout) {
+        WetRows rows(layout);
+        rows.rows_.assign(rows.rows_.size(), {0, layout.row_length()});
+        rows.share_out();
+        return rows;
+    }
+
     const Layout<Dim>& layout() const noexcept { return layout_; }
     const RowRange& row(int plane, int row) const noexcept { return rows_[index(plane, row)]; }
     RowRange& row(int plane, int row) noexcept { return rows_[index(plane, row)]; }
