@@ -7,7 +7,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "../message_of.hpp"
 
@@ -197,9 +196,9 @@ TEST_CASE("what cannot be is named and changes nothing") {
     CHECK(says([](const Point<2>&) { return -1.0; }).starts_with("Walls: open cells"));
     CHECK(same_water(before, flow));
     GridFluid<2> brimful(tank(0.243, 2));
-    CHECK(message_of([&] {
-              brimful.set_wall([](const Point<2>& x) { return x[1] - 0.25; });
-          }).starts_with("GridFluid.set_wall: room that the wall leaves must be at least that of the water"));
+    CHECK(message_of([&] { brimful.set_wall([](const Point<2>& x) { return x[1] - 0.25; }); })
+              .starts_with(
+                  "GridFluid.set_wall: room that the wall leaves must be at least that of the water, for"));
     flow.advance(0.2), before.advance(0.2);
     CHECK(same_water(before, flow));
 }

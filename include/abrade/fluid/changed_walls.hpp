@@ -65,12 +65,12 @@ private:
         return after_ && after_->open_area()[vertical][std::max(c, n)] == 0 ? -1 : n;
     }
 
+    /// What lacks as little as makes no surface.
+    bool is_full(Real holds) const noexcept { return holds >= 1 - liquid_.void_amid_water(); }
+    bool is_wet(Offset c) const noexcept { return holds(c) > VolumeOfFluid<Dim>::wisp; }
     Real holds(Offset c) const noexcept { return shares_.fraction[c] + shares_.surplus[c]; }
     void set(Offset c, Real holds) noexcept {
-        constexpr Real wisp = VolumeOfFluid<Dim>::wisp;
-        // What lacks as little as makes no surface is full.
-        const bool full = holds >= 1 - 10 * (1 - liquid_.full());
-        shares_.fraction[c] = full ? 1 : holds < wisp ? 0 : holds;
+        shares_.fraction[c] = is_full(holds) ? 1 : holds < VolumeOfFluid<Dim>::wisp ? 0 : holds;
         shares_.surplus[c] = holds - shares_.fraction[c];
     }
 
@@ -84,10 +84,10 @@ private:
         }
         const Offset n = above(c);
         const bool was_full = open(before_, c) > 0 && liquid_.fraction()[c] >= liquid_.full();
-        if (n >= 0 && holds(n) > VolumeOfFluid<Dim>::wisp) {
+        if (n >= 0 && is_wet(n)) {
             const Real left = take_down(c, -beyond);
             set(c, 1 - left / room(c));
-            if (left > 0 && holds(n) > VolumeOfFluid<Dim>::wisp) fill(c);  // up to a roof all is full
+            if (left > 0 && is_wet(n)) fill(c);  // up to a roof all is full
         } else if (n < 0 && was_full) {
             fill(c);
         }
@@ -103,7 +103,7 @@ private:
     Real push_up(Offset c, Real amount) {
         bool dry = false;
         for (Offset n = above(c); n >= 0 && amount > 0 && !dry; n = above(n)) {
-            dry = holds(n) <= VolumeOfFluid<Dim>::wisp;
+            dry = !is_wet(n);
             const Real part = std::clamp((1 - holds(n)) * room(n), Real(0), amount);
             if (part > 0) set(n, holds(n) + part / room(n));
             amount -= part;
@@ -115,10 +115,9 @@ private:
     /// that is full up to a roof nothing is: its top would be a void.
     Real take_down(Offset c, Real amount) {
         column_.clear();
-        for (Offset n = above(c); n >= 0 && holds(n) > VolumeOfFluid<Dim>::wisp; n = above(n))
-            column_.push_back(n);
+        for (Offset n = above(c); n >= 0 && is_wet(n); n = above(n)) column_.push_back(n);
         const Offset top = column_.back();
-        if (holds(top) >= 1 - 10 * (1 - liquid_.full()) && above(top) < 0) return amount;
+        if (is_full(holds(top)) && above(top) < 0) return amount;
         for (; !column_.empty() && amount > 0; column_.pop_back()) {
             const Offset n = column_.back();
             const Real part = std::clamp(holds(n) * room(n), Real(0), amount);
@@ -131,7 +130,7 @@ private:
     /// The liquid of a cell that closes: up, or to what is beside it.
     void leave(Offset c) {
         const CellNumber<Dim> cell = grid_.layout().number(c);
-        Real amount = holds(c) * open(before_, c) * grid_.volume(cell);
+        const Real amount = holds(c) * open(before_, c) * grid_.volume(cell);
         shares_.fraction[c] = shares_.surplus[c] = 0;
         if (up_ != 0 && is_inside(c + up_) && open(after_, c + up_) > 0 && amount > 0) {
             const Offset n = c + up_;
@@ -169,9 +168,7 @@ private:
         constexpr Real round_off = 1e-9;
         if (liquid > (1 + round_off) * all)
             fail({"GridFluid.set_wall: room that the wall leaves",
-                  "at least that of the water in a box that "
-                  "nothing leaves (" +
-                      short_text(liquid) + ")",
+                  "at least that of the water, for nothing leaves the box (" + short_text(liquid) + ")",
                   Dim == 3 ? "m3" : "m2", "make a side an outflow, or leave the wall"},
                  short_text(all));
     }

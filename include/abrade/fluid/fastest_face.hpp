@@ -31,6 +31,7 @@ struct FastFace {
     }
 };
 
+/// What an error of a step begins with; time and length of the step [s].
 inline std::string place_in_time(Index step, Real time, Real dt) {
     return "step " + std::to_string(step) + " (t = " + short_text(time) + " s, dt = " + short_text(dt) +
            " s): ";

@@ -158,6 +158,8 @@ public:
     Field<Real>& surplus() noexcept { return surplus_; }
     /// Beside air there is a surface below this [-].
     Real full() const noexcept { return 1 - params_.smallest_void; }
+    /// Amid other water a cell that lacks no more than this is full: residues of some steps come together.
+    Real void_amid_water() const noexcept { return 10 * params_.smallest_void; }
     const WetRows<Dim>& wet() const noexcept { return wet_; }
     const SurfaceBand<Dim>& band() const noexcept { return band_; }
     const SurfacePlanes<Dim>& planes() const noexcept { return planes_; }
@@ -242,8 +244,6 @@ public:
     }
 
 private:
-    /// Amid other water a cell that lacks no more than this is full: residues of some steps come together.
-    Real void_amid_water() const noexcept { return 10 * params_.smallest_void; }
     static constexpr Real little = 1e-5;  ///< less liquid of a cell than this has no momentum to speak of [-]
     /// Without a pressure of its own a cell that holds more than this takes in more than it has room for [-].
     static constexpr Real nearly_full = 0.9;
