@@ -249,10 +249,6 @@ private:
         finish(stage_);
     }
 
-    /// What pushes within a step would push too much in a longer one: but for the water's weight, only as
-    /// large an impulse is taken on.
-    bool grows(Real dt) const noexcept { return steps_ > 0 && dt > (late_.brief(dt) ? 1 : 1.1) * late_.last; }
-
     void step_full(Real dt) {
         const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
@@ -279,8 +275,11 @@ private:
 
     void step_below_surface(Real dt) {
         auto& water = *water_;
-        if (record_.keep(velocity_, pressure_, water, late_, dt)) finish(velocity_);
-        if (grows(dt)) {
+        if (record_.keep(velocity_, pressure_, water, late_, dt)) {
+            finish(velocity_);
+            if (!water.liquid().can_advance(velocity_, dt)) record_.stay(velocity_), finish(velocity_);
+        }
+        if (late_.grows(dt)) {
             find_pressure_of_weight(1e-3);
             record_.add_excess(pressure_, late_.last / dt);
         }

@@ -139,6 +139,8 @@ public:
         return step;
     }
 
+    /// Whether `advance` would take such a step.
+    bool can_advance(const FaceField<Dim>& u, Real dt) const { return dt * outflow_rate(u) <= courant_end; }
     /// The largest step [s] at which no more than `courant_limit` of a cell at the surface leaves it;
     /// infinite where nothing moves there.
     Real stable_step(const FaceField<Dim>& velocity) const {

@@ -19,6 +19,9 @@ struct LateSteps {
     void took(Real dt) noexcept { last = dt, longest = std::max(dt, longest - dt); }
     /// Too short beside them to tell how the flow goes on.
     bool brief(Real dt) const noexcept { return dt < 0.2 * longest; }
+    /// What pushed within the last step would push too much in this one: but for the water's weight, only as
+    /// large an impulse is taken on.
+    bool grows(Real dt) const noexcept { return last > 0 && dt > (brief(dt) ? 1 : 1.1) * last; }
     /// In which a step drives out what cells hold too much: what a long one left, no short one [s].
     Real pace(Real dt) const noexcept { return dt < 0.5 * longest ? longest : dt; }
 };
@@ -97,6 +100,13 @@ public:
         steps_ = water.liquid().steps();
         restored_ = false;
         return lead_ != 0;
+    }
+
+    /// Takes the lead back: where water is thrown about it may drive out more than cells hold. A later step
+    /// catches up.
+    void stay(FaceField<Dim>& velocity) {
+        rows_.copy(velocity_, velocity);
+        lead_ = 0;
     }
 
     /// Before the last step, and before it was moved on.
