@@ -17,6 +17,5 @@ TEST_CASE("a jump stands where the tailwater has Belanger's depth: Froude 2, 6 c
     CHECK(std::abs(found.depth - 1) < 0.05);
     // Our own: it stands.
     CHECK(std::abs(found.speed) < 0.03);
-    // Behind it the water still swirls; nothing takes that up where the bed is smooth.
-    WARN(std::abs(found.lost - 1) < 0.1);
+    // The energy that it loses takes a longer channel: long_hydraulic_jump.cpp.
 }

@@ -19,8 +19,7 @@ TEST_CASE("standing waves: frequency and energy over cells and steps") {
                       << ": frequency " << 100 * error << " %, energy lost per period "
                       << 100 * found.lost_per_period << " %");
             CHECK(std::abs(error) < 0.01);
-            // Steps of its own follow the wave's speed, and it gains energy.
-            WARN(std::abs(found.lost_per_period) < 0.01);
+            CHECK(std::abs(found.lost_per_period) < 0.01);
         }
 }
 
@@ -68,19 +67,24 @@ TEST_CASE("a dam breaks over shallow water: the depth between the waves is Stoke
         const Real from = middle + time * (0.75 * tail + 0.25 * shock),
                    to = middle + time * (0.25 * tail + 0.75 * shock);
         const Grid<2>& grid = flow.grid();
-        Real depth = 0;
+        const auto height = [&](int i) { return flow.surface_at({grid.centre(0, i), 0}); };
+        Real depth = 0, half_way_up = 0;
         int counted = 0;
-        for (int i = 0; i < grid.cells(0); ++i)
-            if (grid.centre(0, i) > from && grid.centre(0, i) < to)
-                depth += flow.surface_at({grid.centre(0, i), 0}), ++counted;
+        for (int i = 0; i < grid.cells(0); ++i) {
+            if (grid.centre(0, i) > from && grid.centre(0, i) < to) depth += height(i), ++counted;
+            if (height(i) > 0.5 * (dam.right + row.at("h"))) half_way_up = grid.centre(0, i);
+        }
         depth /= counted;
-        Real front = 0;
-        for (int i = 0; i < grid.cells(0); ++i)
-            if (flow.surface_at({grid.centre(0, i), 0}) > 0.5 * (dam.right + row.at("h")))
-                front = grid.centre(0, i);
+        // The front breaks: it is where water that has come as far as half way between the waves would end
+        // were it sharp. How far its roller reaches ahead of that is not Stoker's.
+        Real come = 0;
+        const int inside = static_cast<int>((0.5 * (from + to)) / grid.size(0, 0));
+        for (int i = inside; i < grid.cells(0); ++i) come += (height(i) - dam.right) * grid.size(0, 0);
+        const Real front = inside * grid.size(0, 0) + come / (row.at("h") - dam.right);
         const Real speed = (front - middle) / time;
         MESSAGE("onto " << dam.right << " m: depth " << 100 * (depth / row.at("h") - 1) << " %, front "
-                        << 100 * (speed / shock - 1) << " %");
+                        << 100 * (speed / shock - 1) << " %, half way up "
+                        << 100 * ((half_way_up - middle) / time / shock - 1) << " %");
         CHECK(std::abs(depth / row.at("h") - 1) < 0.03);
         CHECK(std::abs(speed / shock - 1) < 0.03);
     }

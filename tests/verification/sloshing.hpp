@@ -106,34 +106,36 @@ inline std::vector<Elevation> measured() {
     return found;
 }
 
-/// Means over the three crests of the measured while.
+/// Means over crests. Each bore breaks in its own way, so crests differ by more than the measured ones do:
+/// the longer the computed while, the better their mean is known.
 struct Found {
     Real crest = 0;  ///< computed height over measured [-]
     Real late = 0;   ///< by how much the computed front comes later [T]
 };
-inline Found compare(const std::vector<Elevation>& here) {
-    const auto highest = [](const std::vector<Elevation>& series, Real from) {
-        Real most = 0;
-        for (const Elevation& e : series)
-            if (e.time >= from && e.time < from + 0.7) most = std::max(most, e.height);
-        return most;
-    };
-    // When the surface first stands 0.02 m above still water: the front is steep there.
-    const auto arrival = [](const std::vector<Elevation>& series, Real from) {
-        for (const Elevation& e : series)
-            if (e.time >= from && e.height > 0.02) return e.time;
-        return series.back().time;
-    };
-    const std::vector<Elevation> there = measured();
-    Found found;
-    Real sum = 0;
-    for (const Real from : {8.55, 9.55, 10.55}) {
-        const Real crest = highest(here, from), known = highest(there, from);
-        const Real late = arrival(here, from) - arrival(there, from);
-        MESSAGE("crest " << crest << " m, measured " << known << " m; front later by " << late << " T");
-        found.crest += crest / 3, sum += known / 3, found.late += late / 3;
+
+struct Crests {
+    Real height = 0, arrival = 0;  ///< means [m]; [T] after the beginning of their period
+};
+inline Crests crests(const std::vector<Elevation>& series) {
+    Crests mean;
+    int count = 0;
+    for (Real from = 8.55; from + 0.4 < series.back().time; from += 1, ++count) {
+        Real highest = 0, arrival = -1;
+        for (const Elevation& e : series) {
+            if (e.time < from || e.time >= from + 0.7) continue;
+            highest = std::max(highest, e.height);
+            // When the surface first stands 0.02 m above still water: the front is steep there.
+            if (arrival < 0 && e.height > 0.02) arrival = e.time - from;
+        }
+        REQUIRE(arrival >= 0);
+        mean.height += highest, mean.arrival += arrival;
     }
-    found.crest /= sum;
+    return {mean.height / count, mean.arrival / count};
+}
+
+inline Found compare(const std::vector<Elevation>& here) {
+    const Crests computed = crests(here), known = crests(measured());
+    const Found found{computed.height / known.height, computed.arrival - known.arrival};
     MESSAGE("crests over the measured ones: " << found.crest << "; fronts later by " << found.late << " T");
     return found;
 }
