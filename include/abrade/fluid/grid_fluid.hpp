@@ -277,7 +277,8 @@ private:
         auto& water = *water_;
         if (record_.keep(velocity_, pressure_, water, late_, dt)) {
             finish(velocity_);
-            if (!water.liquid().can_advance(velocity_, dt)) record_.stay(velocity_), finish(velocity_);
+            if (steps_ > 0 && !water.liquid().can_advance(velocity_, dt))
+                record_.stay(velocity_), finish(velocity_);
         }
         if (late_.grows(dt)) {
             find_pressure_of_weight(1e-3);

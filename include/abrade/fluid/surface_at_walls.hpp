@@ -78,6 +78,8 @@ public:
             if (left == open_.size()) break;
             open_.resize(left);
         }
+        parallel_for((static_cast<Index>(open_.size()) + pack_lanes - 1) / pack_lanes,
+                     [&](Index n) { follow_fractions(planes, n * pack_lanes, fraction, marks); });
     }
 
 private:
@@ -172,6 +174,30 @@ private:
         else
             for (const Real component : plane.normal) planes.distance[own] -= std::abs(component);
         return true;
+    }
+
+    /// A pack of cells that nobody tells of. What holds next to nothing, or is all but full, gets a tilt from
+    /// all that is around it: among whole cells alone it may seem a drop in a corner.
+    void follow_fractions(SurfacePlanes<Dim>& planes, Index first, const Real* fraction,
+                          const std::uint8_t* marks) const noexcept {
+        const Index lanes = std::min<Index>(pack_lanes, static_cast<Index>(open_.size()) - first);
+        detail::PackCells cells, levels;
+        const auto plane = [&](int lane) {
+            return static_cast<std::size_t>(
+                open_[static_cast<std::size_t>(first + std::min<Index>(lane, lanes - 1))]);
+        };
+        for (int lane = 0; lane < pack_lanes; ++lane)
+            cells[at(lane)] = planes.cell[plane(lane)], levels[at(lane)] = planes.level[plane(lane)];
+        const auto normal = fit_.find(0, fraction, marks, cell_mark::open, cells, levels).normal;
+        const Pack distance = plane_distance<Dim>(normal, detail::values_at(fraction, cells));
+        for (int lane = 0; lane < lanes; ++lane) {
+            const std::size_t k = plane(lane);
+            const Real f = fraction[planes.cell[k]];
+            const bool whole = (marks[planes.cell[k]] & cell_mark::whole) != 0;
+            if (!whole || (f > 1e-3 && f < 1 - 1e-3)) continue;
+            for (std::size_t a = 0; a < Dim; ++a) planes.normal[a][k] = normal[a][lane];
+            planes.distance[k] = planes.position[k] = distance[lane];
+        }
     }
 
     /// Share of what is open of a cell that lies below a plane, the wall being a plane as well [-].
