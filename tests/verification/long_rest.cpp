@@ -105,6 +105,16 @@ TEST_CASE("a surface that ends on the curved bed") {
     CHECK(met_3d >= 12);
 }
 
+// Each cell beside it is all but full or all but dry, and those that walls cut are told by them where it is.
+TEST_CASE("a level surface on the curved bed, at faces of cells") {
+    for (const int cells : {3, 4, 5, 6, 7}) {
+        const Real found = report<2>(cells * cell, 0, true);
+        WARN(found < gate);
+        CHECK(found < 0.05);
+    }
+    for (const int cells : {2, 3, 4}) WARN(report<3>(cells * 2 * cell, 0, true) < gate);
+}
+
 TEST_CASE("a surface that passes through centres of cells") {
     const auto check = [](Real found, const std::string& what) {
         MESSAGE(what << ", surface at centres of cells: " << found << " sqrt(g h)");

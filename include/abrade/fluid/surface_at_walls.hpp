@@ -78,12 +78,18 @@ public:
             if (left == open_.size()) break;
             open_.resize(left);
         }
-        parallel_for((static_cast<Index>(open_.size()) + pack_lanes - 1) / pack_lanes,
-                     [&](Index n) { follow_fractions(planes, n * pack_lanes, fraction, marks); });
+        // Traces of water or air in whole cells that nobody tells of.
+        std::erase_if(open_, [&](Index i) {
+            const Index c = planes.cell[static_cast<std::size_t>(i)];
+            return (marks[c] & cell_mark::whole) == 0 || (fraction[c] > trace && fraction[c] < 1 - trace);
+        });
+        for (Index first = 0; first < static_cast<Index>(open_.size()); first += pack_lanes)
+            follow_fractions(planes, first, fraction, marks);
     }
 
 private:
     static constexpr int vertical = Grid<Dim>::vertical;
+    static constexpr Real trace = 1e-3;          ///< [-]
     static constexpr std::uint8_t of_trace = 2;  ///< no surface: asks nobody, and nobody asks it
     static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
@@ -176,8 +182,8 @@ private:
         return true;
     }
 
-    /// A pack of cells that nobody tells of. What holds next to nothing, or is all but full, gets a tilt from
-    /// all that is around it: among whole cells alone it may seem a drop in a corner.
+    /// Tilts from all that is around a pack of cells: among whole cells alone, of which the fit knows, a
+    /// trace may seem a drop in a corner.
     void follow_fractions(SurfacePlanes<Dim>& planes, Index first, const Real* fraction,
                           const std::uint8_t* marks) const noexcept {
         const Index lanes = std::min<Index>(pack_lanes, static_cast<Index>(open_.size()) - first);
@@ -192,9 +198,6 @@ private:
         const Pack distance = plane_distance<Dim>(normal, detail::values_at(fraction, cells));
         for (int lane = 0; lane < lanes; ++lane) {
             const std::size_t k = plane(lane);
-            const Real f = fraction[planes.cell[k]];
-            const bool whole = (marks[planes.cell[k]] & cell_mark::whole) != 0;
-            if (!whole || (f > 1e-3 && f < 1 - 1e-3)) continue;
             for (std::size_t a = 0; a < Dim; ++a) planes.normal[a][k] = normal[a][lane];
             planes.distance[k] = planes.position[k] = distance[lane];
         }
