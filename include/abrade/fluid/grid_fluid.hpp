@@ -129,7 +129,7 @@ public:
     /// One step of dt [s]. Throws FluidError where it goes wrong, and leaves the flow as it was.
     void step(Real dt) {
         require_positive(dt, "GridFluid.step: dt", "s");
-        sides_.keep();
+        sides_.keep(velocity_);
         try {
             if constexpr (has_surface)
                 step_below_surface(dt);
@@ -352,11 +352,11 @@ private:
         } else {
             std::swap(velocity_, saved_velocity_), std::swap(pressure_, saved_pressure_);
         }
-        sides_.back();
+        sides_.back(velocity_);
         if constexpr (has_surface) finish(velocity_);
     }
     /// After a step that threw: a full box has not changed by then.
-    void take_back() { has_surface ? restore() : sides_.back(); }
+    void take_back() { has_surface ? restore() : sides_.back(velocity_); }
     void check(Real dt) {
         Real size = 0;
         for (int a = 0; a < Dim; ++a) size = std::max(size, grid_->largest(a));

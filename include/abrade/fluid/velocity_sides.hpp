@@ -71,10 +71,19 @@ public:
         std::swap(tables_, kept_);
         changed_ = true;
     }
-    /// What `back` leads to, if a time is set since. Neither asks the given function.
-    void keep() noexcept { changed_ = false; }
-    void back() noexcept {
+    /// What `back` leads to: the time, if one is set since, and what leaves through upper sides, faces of no
+    /// cell inside. Neither asks the given function.
+    template <class State>
+    void keep(const FaceField<Dim, State>& u) {
+        changed_ = false;
+        leaving_.clear();
+        for_upper_outflows([&](int a, Offset face) { leaving_.push_back(static_cast<Real>(u[a][face])); });
+    }
+    template <class State>
+    void back(FaceField<Dim, State>& u) {
         if (std::exchange(changed_, false)) std::swap(tables_, kept_);
+        auto next = leaving_.begin();
+        for_upper_outflows([&](int a, Offset face) { u[a][face] = static_cast<State>(*next++); });
     }
 
     /// Lets nothing through the sides along an axis, but for outflows and what goes around.
@@ -192,6 +201,11 @@ public:
     }
 
 private:
+    void for_upper_outflows(auto&& body) const {
+        for_sides(Side::outflow, [&](int a, bool high) {
+            if (high) along_side({a, high}, [&](Offset c, std::size_t) { body(a, c + step(a)); });
+        });
+    }
     Offset step(int axis) const noexcept { return grid_->layout().stride[axis]; }
     int cells(int axis) const noexcept { return grid_->cells(axis); }
     Side kind(int axis, bool high) const noexcept { return sides_[axis][high]; }
@@ -274,6 +288,7 @@ private:
     Sides<Dim> sides_;
     SideVelocity<Dim> given_;
     std::array<std::vector<Real>, static_cast<std::size_t>(2 * Dim * Dim)> tables_, kept_;
+    std::vector<Real> leaving_;
     bool changed_ = false;
 };
 

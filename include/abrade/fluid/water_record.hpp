@@ -57,7 +57,9 @@ public:
         const bool begins = late.last == 0;
         brief_ = late.brief(dt);
         const bool knows = begins || was_brief_ || (restored_ && known_);
-        const Real led = std::exchange(lead_, brief_ ? 0 : 0.5 * dt - ahead_);
+        // An equal step that went wrong has not found the change; a later one catches up.
+        const bool waits = brief_ || (restored_ && !known_);
+        const Real led = std::exchange(lead_, waits ? 0 : 0.5 * dt - ahead_);
         const Real led_far = std::exchange(far_, begins ? std::numeric_limits<Real>::infinity() : 0.25);
         known_ = lead_ != 0 || led != 0 || brief_;
         if (!known_) rows_.copy(velocity, velocity_);  // equal steps
