@@ -85,6 +85,7 @@ TEST_CASE("a dam breaks over shallow water: the depth between the waves is Stoke
         MESSAGE("onto " << dam.right << " m: depth " << 100 * (depth / row.at("h") - 1) << " %, front "
                         << 100 * (speed / shock - 1) << " %, half way up "
                         << 100 * ((half_way_up - middle) / time / shock - 1) << " %");
+        WARN(std::abs((half_way_up - middle) / time / shock - 1) < 0.03);
         CHECK(std::abs(depth / row.at("h") - 1) < 0.03);
         CHECK(std::abs(speed / shock - 1) < 0.03);
     }

@@ -119,6 +119,7 @@ struct Crests {
 inline Crests crests(const std::vector<Elevation>& series) {
     Crests mean;
     int count = 0;
+    // The measured series ends soon after its last crest.
     for (Real from = 8.55; from + 0.4 < series.back().time; from += 1, ++count) {
         Real highest = 0, arrival = -1;
         for (const Elevation& e : series) {

@@ -277,7 +277,7 @@ private:
         auto& water = *water_;
         if (record_.keep(velocity_, pressure_, water, late_, dt)) {
             finish(velocity_);
-            if (steps_ > 0 && !water.liquid().can_advance(velocity_, dt))
+            if (steps_ > 0 && !water.liquid().can_advance(velocity_, dt))  // too long a first one is told
                 record_.stay(velocity_), finish(velocity_);
         }
         if (late_.grows(dt)) {

@@ -15,7 +15,8 @@ namespace abrade {
 /// a wall leaves at a shallow angle. So a planar surface stays exact up to the wall: water in a curved invert
 /// rests. The plane that holds the cell's volume (`distance`) gets the same normal. Whole cells of which the
 /// surface cuts a corner only, or whose whole neighbours do not tell its tilt, are treated alike. Cells that
-/// no neighbour tells of keep what they have.
+/// no neighbour tells of keep what they have, but for traces of water or air in whole ones: these follow the
+/// fractions of all that is around.
 ///
 /// Where a cut cell holds about as much as would lie below that plane, it is `told` on which side of the
 /// surface its centre is: a cell half full of its open part may have its centre above the water, inside the
@@ -89,7 +90,7 @@ public:
 
 private:
     static constexpr int vertical = Grid<Dim>::vertical;
-    static constexpr Real trace = 1e-3;          ///< [-]
+    static constexpr Real trace = 1e-3;          ///< [-], as SurfaceNormals ends a column
     static constexpr std::uint8_t of_trace = 2;  ///< no surface: asks nobody, and nobody asks it
     static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
