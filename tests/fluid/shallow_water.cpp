@@ -316,6 +316,44 @@ TEST_CASE("steps that empty a cell are repeated at half their length") {
     CHECK(water.volume_residual() < 1e-13);
 }
 
+TEST_CASE("over a drop in a dry bed a stream runs no faster than it falls") {
+    for (const Real drop : {0.05, 0.5})
+        for (const Real manning : {0.0, 0.03})
+            for (const Index cells : {50, 200}) {
+                CAPTURE(drop);
+                CAPTURE(manning);
+                CAPTURE(cells);
+                const Real discharge = 0.01;
+                ShallowWaterParams<1> p;
+                p.high = {10}, p.cells = {cells}, p.manning = manning;
+                p.sides[0] = {WaterSide::inflow(discharge), WaterSide::outflow()};
+                p.bed = [drop](Real x, Real) { return x < 5 ? drop : 0; };
+                ShallowWater<1> water(p);
+                Real most = 0;
+                for (int n = 1; n <= 400; ++n) {
+                    water.advance(0.25 * n);
+                    most = std::max(most, fastest(water));
+                }
+                // Over the brink it goes with its critical head, 3/2 of (q^2/g)^(1/3).
+                const Real head = 1.5 * std::cbrt(square(discharge) / standard_gravity);
+                CHECK(most < std::sqrt(2 * standard_gravity * (drop + head)));
+                CHECK(water.discharge(cells - 2) == doctest::Approx(discharge).epsilon(0.01));
+                CHECK(water.volume_residual() < 1e-13);
+            }
+    // Waves of the bed, up to as steep as 2:1, that water runs onto from one end.
+    ShallowWaterParams<2> p;
+    p.high = {10, 10}, p.cells = {80, 80}, p.manning = 0.03;
+    p.sides[0] = {WaterSide::inflow(2), WaterSide::outflow()};
+    p.bed = [](Real x, Real y) { return 0.2 * std::sin(7.3 * x) * std::cos(5.1 * y) - 0.1 * x; };
+    ShallowWater<2> water(p);
+    Real most = 0;
+    for (int n = 1; n <= 100; ++n) {
+        water.advance(0.1 * n);
+        most = std::max(most, fastest(water));
+    }
+    CHECK(most < 5);
+}
+
 TEST_CASE("what goes wrong stops with the cell, its speed and the cause, and leaves the state before it") {
     auto p = square_of<2>(10);
     p.surface = [](Real, Real) { return 1.0; };
@@ -387,6 +425,17 @@ TEST_CASE("bad input is named with its value, its unit and what helps") {
         })
             .starts_with(
                 "ShallowWater.speed in cell (0, 0) at (0.125, 0.125) m must be within ShallowWater.fastest"));
+    CHECK(said([](P& p) {
+              p.surface = [](Real, Real) { return 1.0; };
+              p.speed[1] = [](Real, Real) { return std::nan(""); };
+          }).find("must be finite, got nan m/s") != std::string::npos);
+    ShallowWater<2> lake(square_of<2>(4));
+    CHECK(message_of([&] {
+              lake.advance(std::nan(""));
+          }).starts_with("ShallowWater.advance: to_time must be finite, got nan s"));
+    CHECK(message_of([&] {
+              lake.advance(std::numeric_limits<Real>::infinity());
+          }).starts_with("ShallowWater.advance: to_time must be finite, got inf s"));
     auto line = square_of<1>(4);
     line.gravity.y() = 1;
     CHECK(message_of([&] { ShallowWater<1> water(line); }).find("ShallowWater<2>") != std::string::npos);

@@ -90,6 +90,16 @@ TEST_CASE("both sides see one bed: the higher one, and none deeper than twice a 
     CHECK(bed_at_face(0.1, 0.5, 2.0, 0.9, 0.0) == 0.9);  // a dry cell above the water: its bed is a wall
 }
 
+TEST_CASE("a surface dips no lower than the bed, and a level one is not turned") {
+    CHECK(change_above_bed(-0.4, 0.0, 0.1) == -0.1);
+    CHECK(change_above_bed(0.4, 0.0, 0.1) == 0.1);
+    CHECK(change_above_bed(-0.3, -0.3, 0.1) == -0.3);  // a film down a slope
+    CHECK(change_above_bed(-0.5, -0.3, 0.1) == -0.4);
+    CHECK(change_above_bed(-0.05, 0.0, 0.1) == -0.05);
+    CHECK(change_above_bed(0.0, 0.5, 0.1) == 0.0);
+    CHECK(change_above_bed(0.0, -0.5, 0.1) == 0.0);
+}
+
 TEST_CASE("friction: Manning's, from films to rivers") {
     for (Real h = 1e-6; h < 100; h *= 3)
         CHECK(friction_rate(h, 2.0, g * square(0.015)) ==

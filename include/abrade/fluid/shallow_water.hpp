@@ -40,8 +40,9 @@ public:
     FluidStep stable_step() const noexcept { return solver_.stable_step(params_.courant); }
 
     /// Goes on to exactly that time. Throws FluidError, which leaves the state before the step that went
-    /// wrong.
+    /// wrong; InputError where the time is not finite.
     void advance(Real to_time) {
+        require_finite(to_time, "ShallowWater.advance: to_time", "s");
         while (time_ < to_time) {
             const Real left = to_time - time_;
             Real dt = stable_step().seconds;

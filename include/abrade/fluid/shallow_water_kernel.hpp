@@ -48,6 +48,16 @@ Number limited_half_change(Number before, Number after) noexcept {
     return max(none, min(mean, min(before, after))) + min(none, max(mean, max(before, after)));
 }
 
+/// What is left of half the change of a surface across a cell, lest it dips below the bed at either end: a
+/// film above a drop would be driven by the slope of what falls beside it, and show its face no depth.
+/// Nothing turns a level surface, so a shore rests.
+template <class Number>
+Number change_above_bed(Number change, Number bed_change, Number depth) noexcept {
+    using std::max, std::min;
+    const Number none(0);
+    return min(max(change, min(none, bed_change - depth)), max(none, bed_change + depth));
+}
+
 /// Water on one side of a face: depth [m], speeds through and along the face [m/s].
 template <class Number>
 struct WaterBeside {

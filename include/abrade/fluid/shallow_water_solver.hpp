@@ -130,11 +130,14 @@ private:
                 for (std::size_t a = 0; a < Dim; ++a) {
                     if (!p.speed[a]) continue;
                     const Real u = p.speed[a](x, y);
-                    if (!(std::abs(u) <= p.fastest))
+                    if (!(std::abs(u) <= p.fastest)) {  // a name of its own for each cell takes long
+                        const std::string field = "ShallowWater.speed in " + grid_.name_of(i, j);
+                        require_finite(u, field, "m/s");
                         require(false,
-                                {"ShallowWater.speed in " + grid_.name_of(i, j),
-                                 "within ShallowWater.fastest (" + to_text(p.fastest) + " m/s)", "m/s"},
+                                {field, "within ShallowWater.fastest (" + to_text(p.fastest) + " m/s)", "m/s",
+                                 "raise fastest if it is meant"},
                                 u);
+                    }
                     start.speed[a][k] = u;
                 }
             });

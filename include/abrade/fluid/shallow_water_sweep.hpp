@@ -125,7 +125,9 @@ private:
                 const std::size_t step = a == 0 ? 1 : stride;
                 const Real* before = a == 0 ? &middle[b - 1] : &surface(j - 1)[b];
                 const Real* after = a == 0 ? &middle[b + 1] : &surface(j + 1)[b];
-                const Pack change = limited_half_change(level - load(before), load(after) - level);
+                const Pack bed_change = load(&bed_.half_change[a][k]);
+                const Pack change = change_above_bed(
+                    limited_half_change(level - load(before), load(after) - level), bed_change, depth);
                 put(&to.surface_change[a][b], change);
                 std::array<Pack, Dim> speed_change;
                 for (std::size_t c = 0; c < Dim; ++c) {
@@ -136,8 +138,7 @@ private:
                     gain[c] -= per[a] * speed[a] * speed_change[c];
                 }
                 gain[a] -= per[a] * press * change;
-                rise -=
-                    per[a] * (depth * speed_change[a] + speed[a] * (change - load(&bed_.half_change[a][k])));
+                rise -= per[a] * (depth * speed_change[a] + speed[a] * (change - bed_change));
             }
             const PackMask flows = depth > dry;
             Pack held(1);
