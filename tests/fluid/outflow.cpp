@@ -67,6 +67,76 @@ TEST_CASE("a slow stream comes to the tailwater's level, from above and from bel
     }
 }
 
+TEST_CASE("a wave leaves through a tailwater of the water's level") {
+    constexpr Real depth = 0.2, height = 0.01, length = 10, wide = 1;
+    const Real wave = std::sqrt(g * depth);
+    const auto risen = [](Real x) { return height * std::exp(-square((x - 0.5 * length) / wide)); };
+    GridFluidParams<2> p{
+        .grid = {.cells = {200, 15}, .spacing = {0.05, 0.02}},
+        .sides = Sides<2>::all(Side::slip),
+        .water = [=](const Point<2>& x) { return depth + risen(x[0]) - x[1]; },
+        .outflow_water = [=](const Point<2>& x) { return depth - x[1]; },
+        .velocity =
+            [=](const Point<2>& x) { return Point<2>(wave * risen(x[0]) / (depth + risen(x[0])), 0); },
+        .gravity = {0, -g}};
+    for (const bool high : {true, false}) {  // and the same towards the other end
+        if (!high) {
+            const auto run = p.velocity;
+            p.velocity = [run](const Point<2>& x) { return Point<2>(-run(x)); };
+        }
+        p.sides[0] = {high ? Side::slip : Side::outflow, high ? Side::outflow : Side::slip};
+        GridFluid<2> flow(p);
+        const auto energy = [&] {  // above rest, over density [m4/s2]
+            Real sum = flow.kinetic_energy() / flow.params().density;
+            const Grid<2>& grid = flow.grid();
+            for (int i = 0; i < grid.cells(0); ++i)
+                sum += 0.5 * g * grid.size(0, 0) * square(flow.surface_at({grid.centre(0, i), 0}) - depth);
+            return sum;
+        };
+        const Real before = energy();
+        flow.advance(0.3 * length / wave);
+        CHECK(energy() > 0.95 * before);
+        flow.advance(0.8 * length / wave);
+        MESSAGE("share of the energy that stays: " << energy() / before);
+        CHECK(energy() < 0.01 * before);
+        flow.advance(6 * length / wave);
+        CHECK(energy() < 0.01 * before);
+    }
+}
+
+TEST_CASE("water that comes back through an outflow brings no energy along") {
+    for (const Real start : {0.4, 0.1}) {  // above the level, below it
+        CAPTURE(start);
+        constexpr Real level = 0.25, length = 5;
+        GridFluidParams<2> p{.grid = {.cells = {100, 30}, .spacing = {0.05, 0.02}},
+                             .sides = Sides<2>::all(Side::slip),
+                             .water = [=](const Point<2>& x) { return start - x[1]; },
+                             .outflow_water = [](const Point<2>& x) { return level - x[1]; },
+                             .gravity = {0, -g}};
+        p.sides[0][1] = Side::outflow;
+        GridFluid<2> flow(p);
+        const Grid<2>& grid = flow.grid();
+        const auto energy = [&] {
+            Real sum = flow.kinetic_energy() / flow.params().density;
+            grid.for_each([&](const CellNumber<2>& cell, Offset c) {
+                sum +=
+                    flow.liquid().fraction()[c] * grid.volume(cell) * g * (grid.centre(1, cell[1]) - level);
+            });
+            return sum + 0.5 * g * length * square(level);
+        };
+        const Real before = 0.5 * g * length * square(start - level);
+        Real most = 0;
+        for (int k = 1; k <= 400; ++k) {
+            flow.advance(0.1 * k);
+            most = std::max(most, energy());
+        }
+        CHECK(most < 1.01 * before);
+        MESSAGE("from " << start << " m: " << energy() / before << " of the energy is left");
+        CHECK(energy() < 0.05 * before);
+        CHECK(mean_depth(flow) == doctest::Approx(level).epsilon(0.03).scale(0));
+    }
+}
+
 TEST_CASE("where there is nothing to hold it is refused") {
     auto params = channel(0.2);
     params.sides[0][1] = Side::slip;

@@ -146,7 +146,7 @@ public:
         find_eddies();
         time_ += dt, late_.took(dt);
         ++steps_;
-        if constexpr (has_surface) record_.took();
+        if constexpr (has_surface) record_.took(), outflows_.took();
         if (!params_.steady_sides) enters_ = sides_.rate_of_inflow(velocity_);
         fastest_ = std::max(report_.courant / dt, enters_);
         if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
@@ -243,7 +243,7 @@ private:
             sides_.close(stage_[a], a);
         }
         water_->clear_walls(stage_);
-        outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1]});
+        outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1], true});
         projection_.project(stage_, pressure_, {1, tolerance});
         water_->clear_air(stage_);
         finish(stage_);
