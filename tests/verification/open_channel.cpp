@@ -26,7 +26,7 @@ struct RoughBed {
     Real friction_speed() const { return std::sqrt(g * depth * slope); }
     Real eddy_viscosity() const { return plug > 0 ? 0 : karman * friction_speed() * depth / 6; }
     /// u / u* of the wall law at the centre of the lowest cell.
-    Real law() const { return std::log(30 * 0.5 * size() / roughness()) / karman; }
+    Real law() const { return std::log1p(30 * 0.5 * size() / roughness()) / karman; }
     Real speed(Real z) const {
         if (plug > 0) return plug;
         const auto shape = [&](Real at) { return at - 0.5 * at * at / depth; };

@@ -56,7 +56,7 @@ Found found(const Bed& bed, int cells, Real length, Model model) {
     flow.advance(50 * turns);
     Found f;
     f.mean = mean(), f.change = f.mean / before - 1;
-    f.friction_speed = u(0) * karman / std::log(15 * h / bed.roughness());
+    f.friction_speed = u(0) * karman / std::log1p(15 * h / bed.roughness());
     for (int k = 0; k < cells; ++k) {
         const Real law = bed.log_law((k + 0.5) * h);
         f.profile = std::max(f.profile, std::abs(u(k) / law - 1));
@@ -88,6 +88,16 @@ TEST_CASE("uniform flow with the mixing length: bed shear, log profile and mean 
         CHECK(f.profile < 0.1);
         CHECK(f.mean == doctest::Approx(bed.mean_log_law()).epsilon(0.05).scale(0));
         CHECK(f.mean == doctest::Approx(bed.mean_manning()).epsilon(0.1).scale(0));
+    }
+}
+
+TEST_CASE("cells smaller than the bed is rough: the mean speed stays") {
+    const Bed bed{.depth = 0.2, .slope = 0.01, .manning = 0.02};  // k_s = 0.0198 m
+    for (const int cells : {8, 20, 40}) {
+        const Found f = told(std::to_string(cells) + " cells, " +
+                                 short_text(bed.depth / cells / bed.roughness()) + " k_s high",
+                             bed, found(bed, cells, bed.depth / cells, MixingLength{.depth = bed.depth}));
+        CHECK(f.mean == doctest::Approx(bed.mean_log_law()).epsilon(0.03).scale(0));
     }
 }
 

@@ -14,7 +14,7 @@ struct WallLaw {
     enum class Kind {
         no_slip,      ///< shear nu u / d: the wall's layer is resolved
         slip,         ///< none
-        logarithmic,  ///< rho u*^2, u* = kappa u / ln(30 d / k_s): rough walls whose layer is below a cell
+        logarithmic,  ///< rho u*^2, u* = kappa u / ln(1 + 30 d / k_s): rough walls whose layer is below a cell
     };
     Kind kind = Kind::no_slip;
     Real roughness = 0;  ///< k_s, equivalent sand roughness of a logarithmic wall [m]
@@ -38,7 +38,7 @@ Sides<Dim> gliding_sides(Sides<Dim> sides, const WallLaw& law) {
 
 /// Friction of walls inside cells, and at sides of the box where they are logarithmic: the velocity u at
 /// distance d from a wall of area A loses
-///   du/dt = - C u A / V,   C = nu / d or (kappa / ln(30 d / k_s))^2 |u|,
+///   du/dt = - C u A / V,   C = nu / d or (kappa / ln(1 + 30 d / k_s))^2 |u|,
 /// V the open volume about the face. Taken implicitly, so thin cells do not rule the step. A wall's area is
 /// shared out among the faces of its cell; what flows into the wall is 0 anyway, so each component is held
 /// alone.
@@ -62,7 +62,7 @@ public:
                 h.per_speed =
                     law_.kind == WallLaw::Kind::no_slip
                         ? 1 / h.distance
-                        : square(karman / std::log(30 * std::max(h.distance / law_.roughness, 0.5)));
+                        : square(karman / std::log1p(30 * h.distance / law_.roughness));
         }
     }
 
