@@ -231,7 +231,7 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     CHECK(says(params).starts_with("GridFluid.side_velocity must be given where a side is an inflow"));
     params = good;
     params.wall = [](const Point<2>&) { return -1.0; };
-    CHECK(says(params).find("open cells") != std::string::npos);
+    CHECK(says(params).find("leaves open") != std::string::npos);
     params = good;
     params.courant = 2;
     CHECK(says(params).starts_with("GridFluid.courant must be in (0, 1], got 2"));

@@ -409,9 +409,9 @@ TEST_CASE("bad input is named with its value, its unit and what helps") {
     CHECK(said([](P& p) {
               p.sides[1][0] = WaterSide::inflow(1, -1);
           }).starts_with("ShallowWater.sides.y.low.depth must be finite and >= 0, got -1 m"));
-    CHECK(said([](P& p) {
-              p.sides[1][0] = WaterSide::periodic();
-          }).starts_with("ShallowWater.sides.y must be periodic at both ends or at none"));
+    CHECK(said([](P& p) { p.sides[1][0] = WaterSide::periodic(); })
+              .starts_with("ShallowWater.sides.y must be periodic at both ends or at none, got only low "
+                           "periodic; water"));
     CHECK(said([](P& p) {
               p.sides[1][0].discharge = 1;
           }).starts_with("ShallowWater.sides.y.low.discharge must be 0 but at an inflow, got 1 m3/s"));

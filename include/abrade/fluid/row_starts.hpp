@@ -28,7 +28,9 @@ public:
     /// Calls body(k) for the items in rows that are not dry (none given: for all), in parallel.
     void for_each(const WetRows<Dim>* rows, auto&& body) const {
         if (first_.back() == 0) return;
-        if (!rows) return parallel_for(first_.back(), [&](Index k) { body(static_cast<std::size_t>(k)); });
+        if (!rows)
+            return parallel_for(static_cast<Index>(first_.back()),
+                                [&](Index k) { body(static_cast<std::size_t>(k)); });
         rows->for_each_row([&](int plane, int row, const RowRange&) {
             const std::size_t r = row_of(plane, row);
             for (std::uint32_t k = first_[r]; k < first_[r + 1]; ++k) body(std::size_t{k});

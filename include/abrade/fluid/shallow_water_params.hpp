@@ -81,11 +81,13 @@ private:
             std::abs(low[a]) < 1e6 * (high[a] - low[a]),
             {"ShallowWater.low." + axis, "within a million times the plane's length", "m", "move the origin"},
             low[a]);
-        require((sides[a][0].kind == WaterSide::Kind::periodic) ==
-                    (sides[a][1].kind == WaterSide::Kind::periodic),
-                {"ShallowWater.sides." + axis, "periodic at both ends or at none, periodic ends", "",
-                 "water that leaves one end comes in at the other"},
-                1);
+        const auto periodic = [&](std::size_t end) {
+            return sides[a][end].kind == WaterSide::Kind::periodic;
+        };
+        if (periodic(0) != periodic(1))
+            fail({"ShallowWater.sides." + axis, "periodic at both ends or at none", "",
+                  "water that leaves one end comes in at the other"},
+                 periodic(0) ? "only low periodic" : "only high periodic");
         for (std::size_t end = 0; end < 2; ++end) {
             const WaterSide& side = sides[a][end];
             const std::string field = "ShallowWater.sides." + axis + (end == 0 ? ".low" : ".high");

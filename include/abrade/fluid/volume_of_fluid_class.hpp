@@ -354,11 +354,11 @@ private:
         for (Index i = 0; i < count && !std::isnan(most); ++i)
             if (const Real rate = rate_of(velocity, i); !(rate <= most)) worst = i, most = rate;
         fail({"VolumeOfFluid.advance: dt",
-              "small enough that no more than all of a cell at the surface leaves it; in cell " +
-                  text(layout_.number(band_.cells()[static_cast<std::size_t>(worst)])) + " " +
-                  short_text(most) + " of it leave per second",
+              "small enough that no more than all of a cell at the surface leaves it, " +
+                  short_text(dt * most) + " times cell " +
+                  text(layout_.number(band_.cells()[static_cast<std::size_t>(worst)])) + " would",
               "s", "take at most stable_step()"},
-             to_text(dt));
+             short_text(dt));
     }
     static std::string text(const CellNumber<Dim>& cell) {
         std::string result = "[";

@@ -14,7 +14,8 @@ struct WallLaw {
     enum class Kind {
         no_slip,      ///< shear nu u / d: the wall's layer is resolved
         slip,         ///< none
-        logarithmic,  ///< rho u*^2, u* = kappa u / ln(1 + 30 d / k_s): rough walls whose layer is below a cell
+        logarithmic,  ///< rho u*^2, u* = kappa u / ln(1 + 30 d / k_s): rough walls whose layer is below a
+                      ///< cell
     };
     Kind kind = Kind::no_slip;
     Real roughness = 0;  ///< k_s, equivalent sand roughness of a logarithmic wall [m]
@@ -23,6 +24,9 @@ struct WallLaw {
         if (kind == Kind::logarithmic)
             require_positive(roughness, "WallLaw.roughness", "m",
                              "k_s = (26 n)^6 by Strickler: 3.5e-3 m for Manning's n = 0.015");
+        else
+            require_not_negative(roughness, "WallLaw.roughness", "m",
+                                 "leave it out, or make the wall logarithmic");
     }
 };
 
@@ -59,10 +63,9 @@ public:
             merge(list);
             starts_[a] = {layout_, list.size(), [&](std::size_t k) { return list[k].face; }};
             for (Held& h : list)
-                h.per_speed =
-                    law_.kind == WallLaw::Kind::no_slip
-                        ? 1 / h.distance
-                        : square(karman / std::log1p(30 * h.distance / law_.roughness));
+                h.per_speed = law_.kind == WallLaw::Kind::no_slip
+                                  ? 1 / h.distance
+                                  : square(karman / std::log1p(30 * h.distance / law_.roughness));
         }
     }
 
