@@ -327,8 +327,9 @@ void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
             for (int l = 0; l < lanes; ++l) {
                 const Offset c = planes_.cell[static_cast<std::size_t>(item[index(l)])];
                 const auto or_stray = [&](Real from_slab, int way, Real volume) {
-                    return from_slab == 0 && volume > 0 ? stray(axis, c, way, std::min(volume, room[l]))
-                                                        : from_slab;
+                    return from_slab == 0 && volume > 0
+                               ? stray(axis, c, way, std::min(volume, room[l]), room[l])
+                               : from_slab;
                 };
                 if (up[l] > 0) moved[c + step] = or_stray(once[l], 1, up[l]);
                 if (u[c] < 0) moved[c] = -or_stray(up[l] > 0 ? again[l] : once[l], -1, down[l]);
@@ -359,15 +360,20 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 
 /// A film thinner than its cell whose plane lies at the end that it comes from, with nothing there to hold
 /// it: a slab of the other end would find nothing, for ever. It leaves as if it filled the cell evenly. At a
-/// side it is held, but where gravity pulls it off.
+/// side or a wall it is held, but where gravity pulls it off. What lies in a cell that a wall cuts, of `room`
+/// [m3], is held by that wall, until it would cross the cell in five steps and finds a dry one.
 template <int Dim>
-Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume) const noexcept {
-    if (fraction_[c] >= 0.5 || open_volumes_) return 0;
-    const Offset behind = c - way * layout_.stride[index(axis)];
-    constexpr std::uint8_t room = cell_mark::inside | cell_mark::open;
-    const bool held = (marks_[behind] & room) == room || sides_.periodic(axis) ? fraction_[behind] > wisp
-                                                                               : !(gravity_[axis] * way > 0);
-    return held ? 0 : fraction_[c] * volume;
+Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume, Real room) const noexcept {
+    const Offset ahead = way * layout_.stride[index(axis)], behind = c - ahead;
+    const auto is_cut = [&](Offset at) { return open_volumes_ && (*open_volumes_)[at] < 1; };
+    const Real evenly = fraction_[c] * volume;
+    if (is_cut(c)) return fraction_[c + ahead] == 0 && volume > 0.2 * room ? evenly : 0;
+    if (fraction_[c] >= 0.5) return 0;
+    constexpr std::uint8_t cell = cell_mark::inside | cell_mark::open;
+    const bool is_room = (marks_[behind] & cell) == cell && (fraction_[behind] > wisp || !is_cut(behind));
+    const bool held =
+        is_room || sides_.periodic(axis) ? fraction_[behind] > wisp : !(gravity_[axis] * way > 0);
+    return held ? 0 : evenly;
 }
 
 }  // namespace abrade
