@@ -361,19 +361,23 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 /// A film thinner than its cell whose plane lies at the end that it comes from, with nothing there to hold
 /// it: a slab of the other end would find nothing, for ever. It leaves as if it filled the cell evenly. At a
 /// side or a wall it is held, but where gravity pulls it off. What lies in a cell that a wall cuts, of `room`
-/// [m3], is held by that wall, until it would cross the cell in five steps and finds a dry one.
+/// [m3], is held by that wall, until it would cross the cell in five steps and finds a dry one. A cell that
+/// a wall cuts takes no more than it has room for.
 template <int Dim>
 Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume, Real room) const noexcept {
-    const Offset ahead = way * layout_.stride[index(axis)], behind = c - ahead;
-    const auto is_cut = [&](Offset at) { return open_volumes_ && (*open_volumes_)[at] < 1; };
-    const Real evenly = fraction_[c] * volume;
-    if (is_cut(c)) return fraction_[c + ahead] == 0 && volume > 0.2 * room ? evenly : 0;
-    if (fraction_[c] >= 0.5) return 0;
-    constexpr std::uint8_t cell = cell_mark::inside | cell_mark::open;
-    const bool is_room = (marks_[behind] & cell) == cell && (fraction_[behind] > wisp || !is_cut(behind));
-    const bool held =
-        is_room || sides_.periodic(axis) ? fraction_[behind] > wisp : !(gravity_[axis] * way > 0);
-    return held ? 0 : evenly;
+    const Offset ahead = c + way * layout_.stride[index(axis)], behind = 2 * c - ahead;
+    const auto open = [&](Offset at) { return open_volumes_ ? (*open_volumes_)[at] : 1; };
+    if (open(c) < 1) {
+        if (fraction_[ahead] > 0 || volume <= 0.2 * room) return 0;
+    } else {
+        if (fraction_[c] >= 0.5) return 0;
+        constexpr std::uint8_t cell = cell_mark::inside | cell_mark::open;
+        const bool holds = fraction_[behind] > wisp;
+        const bool is_room = (marks_[behind] & cell) == cell && (holds || open(behind) == 1);
+        if (is_room || sides_.periodic(axis) ? holds : !(gravity_[axis] * way > 0)) return 0;
+    }
+    const Real evenly = fraction_[c] * volume, left = 1 - fraction_[ahead];
+    return open(ahead) < 1 ? std::min(evenly, left * room * open(ahead) / open(c)) : evenly;
 }
 
 }  // namespace abrade
