@@ -497,10 +497,8 @@ TEST_CASE("what cannot be used is named") {
           }).starts_with("no map at x = "));
     const Shape<3> solid = [](const Point<3>&) { return -1.0; };
     CHECK(message_of([&] { Walls<3>(grid, solid); }) ==
-          "Walls: cells of the grid that the wall (GridFluid.wall) leaves open must be at least 1, got 0 "
-          "cells; is the distance above 0 in the water, "
-          "and does "
-          "the grid cover some of it?");
+          "Walls: distance, cells of the grid that it leaves open must be at least 1, got 0 cells; is the "
+          "distance above 0 in the water, and does the grid cover some of it?");
     CHECK(message_of([&] { Walls<3>(grid, solid, {.closed_below = 0.5}); }) ==
           "Walls.closed_below must be from 0 to 0.1, got 0.5; 1e-3 costs no accuracy: few cells are that "
           "small");

@@ -42,13 +42,14 @@ inline std::string place_in_time(Index step, Real time, Real dt) {
 template <int Dim, class State>
 std::string wrong_flow(const Grid<Dim>& grid, const FaceField<Dim, State>& velocity, Real after,
                        bool enters) {
-    std::string cause = "beyond GridFluid.fastest", remedy = ", or raise fastest if it is meant";
+    std::string cause, remedy;
     if (!std::isfinite(after))
-        cause = "the velocity is not a number", remedy = "";
+        cause = "the velocity is not a number";
     else if (after > 1)
         cause = "no pressure was found, cells gain " + short_text(after) + " of their volume" +
-                (enters ? " (can what flows in reach a surface or an outflow?)" : ""),
-        remedy = "";
+                (enters ? " (can what flows in reach a surface or an outflow?)" : "");
+    else
+        cause = "beyond GridFluid.fastest", remedy = ", or raise fastest if it is meant";
     return cause + "; " + FastFace<Dim>(grid, velocity).text() +
            "; take a smaller courant or step, or a finer grid there" + remedy;
 }

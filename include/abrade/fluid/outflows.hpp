@@ -5,7 +5,9 @@
 #include <abrade/fluid/projection.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace abrade::detail {
@@ -65,11 +67,11 @@ public:
 private:
     struct Face {
         Offset cell, face, inside,
-            back;    ///< inside: the next face, by the cell above it; back: to the one below
-        Real slope;  ///< from the cell's centre to the side [1/m]
-        Real depth;  ///< below the tailwater's level [m]
-        Real height;
-        int column;  ///< along the side
+            back;     ///< inside: the next face, by the cell above it; back: to the one below
+        Real slope;   ///< from the cell's centre to the side [1/m]
+        Real depth;   ///< below the tailwater's level [m]
+        Real height;  ///< of the face [m]
+        int column;   ///< along the side
     };
     struct OutflowSide {
         int axis = 0;
@@ -100,10 +102,12 @@ private:
         sides_.push_back(std::move(side));
     }
 
-    /// r [m]. Also finds what U_T will be.
+    /// r [m]. Also finds what U_T will be: slower than waves, or no tailwater would hold it. A front that
+    /// comes first would drain the box by its speed.
     static Real rise(OutflowSide& side, const FaceField<Dim>& u, const Poisson<Dim>& m, const Step& step) {
+        side.next_mean = side.mean_speed;
         if (side.axis == vertical || !(step.weight > 0)) return 0;
-        Real height = 0, flow = 0, columns = 0;  // of the wet faces, of columns of equal width
+        Real height = 0, flow = 0, columns = 0;  // of whole wet faces, of columns of equal width
         std::fill(side.wet.begin(), side.wet.end(), 0);
         for (const Face& f : side.faces) {
             if (!(m.inverse_diagonal[f.cell] > 0)) continue;
@@ -111,11 +115,10 @@ private:
             auto& wet = side.wet[static_cast<std::size_t>(f.column)];
             columns += 1 - wet, wet = 1;
         }
-        side.next_mean = side.mean_speed;
         if (columns == 0) return 0;
-        const Real speed = flow / height, depth = height / columns;
-        const Real mean = side.mean_speed.value_or(speed);
-        const Real swings = step.seconds * std::sqrt(step.weight * depth) / (4 * side.length);
+        const Real speed = flow / height, depth = height / columns, wave = std::sqrt(step.weight * depth);
+        const Real mean = std::clamp(side.mean_speed.value_or(speed), -wave, wave);
+        const Real swings = step.seconds * wave / (4 * side.length);
         side.next_mean = mean + swings / (1 + swings) * (speed - mean);
         return std::sqrt(depth / step.weight) * (speed - mean);
     }

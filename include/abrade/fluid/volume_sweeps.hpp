@@ -326,9 +326,10 @@ void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
             if (both) again = given(down, Pack(-1));
             for (int l = 0; l < lanes; ++l) {
                 const Offset c = planes_.cell[static_cast<std::size_t>(item[index(l)])];
+                const Index level = planes_.level[static_cast<std::size_t>(item[index(l)])];
                 const auto or_stray = [&](Real from_slab, int way, Real volume) {
                     return from_slab == 0 && volume > 0
-                               ? stray(axis, c, way, std::min(volume, room[l]), room[l])
+                               ? stray(axis, c, level, way, std::min(volume, room[l]))
                                : from_slab;
                 };
                 if (up[l] > 0) moved[c + step] = or_stray(once[l], 1, up[l]);
@@ -360,24 +361,28 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 
 /// A film thinner than its cell whose plane lies at the end that it comes from, with nothing there to hold
 /// it: a slab of the other end would find nothing, for ever. It leaves as if it filled the cell evenly. At a
-/// side or a wall it is held, but where gravity pulls it off. What lies in a cell that a wall cuts, of `room`
-/// [m3], is held by that wall, until it would cross the cell in five steps and finds a dry one. A cell that
-/// a wall cuts takes no more than it has room for.
+/// side or a wall it is held, but where gravity pulls it off. What lies in a cell that a wall cuts is held by
+/// that wall, until it would cross the cell in five steps and finds a dry one. A cell that a wall cuts takes
+/// no more than it has room for.
 template <int Dim>
-Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume, Real room) const noexcept {
+Real VolumeOfFluid<Dim>::stray(int axis, Offset c, Index level, int way, Real volume) const noexcept {
     const Offset ahead = c + way * layout_.stride[index(axis)], behind = 2 * c - ahead;
-    const auto open = [&](Offset at) { return open_volumes_ ? (*open_volumes_)[at] : 1; };
-    if (open(c) < 1) {
-        if (fraction_[ahead] > 0 || volume <= 0.2 * room) return 0;
+    const auto is = [&](Offset at, std::uint8_t mark) { return (marks_[at] & mark) != 0; };
+    if (!is(c, cell_mark::whole)) {
+        if (fraction_[ahead] > wisp || volume <= 0.2 * open_volume(c, level)) return 0;
     } else {
         if (fraction_[c] >= 0.5) return 0;
-        constexpr std::uint8_t cell = cell_mark::inside | cell_mark::open;
         const bool holds = fraction_[behind] > wisp;
-        const bool is_room = (marks_[behind] & cell) == cell && (holds || open(behind) == 1);
-        if (is_room || sides_.periodic(axis) ? holds : !(gravity_[axis] * way > 0)) return 0;
+        // Or a side, a wall, a cell that a wall cuts and that holds nothing.
+        const bool is_room = is(behind, cell_mark::open) &&
+                             (is(behind, cell_mark::inside) || sides_.periodic(axis)) &&
+                             (holds || is(behind, cell_mark::whole));
+        if (is_room ? holds : !(gravity_[axis] * way > 0)) return 0;
     }
-    const Real evenly = fraction_[c] * volume, left = 1 - fraction_[ahead];
-    return open(ahead) < 1 ? std::min(evenly, left * room * open(ahead) / open(c)) : evenly;
+    const Real evenly = fraction_[c] * volume;
+    if (is(ahead, cell_mark::whole) || !is(ahead, cell_mark::open)) return evenly;
+    const Index level_ahead = axis == Grid<Dim>::vertical ? level + way : level;
+    return std::min(evenly, std::max(1 - fraction_[ahead], Real(0)) * open_volume(ahead, level_ahead));
 }
 
 }  // namespace abrade

@@ -212,7 +212,7 @@ private:
         }
         open_cells_ += *opened;
         require(open_cells_ > 0 || params_.may_close_all,
-                {"Walls: cells of the grid that the wall (GridFluid.wall) leaves open", "at least 1", "cells",
+                {params_.called + ", cells of the grid that it leaves open", "at least 1", "cells",
                  "is the distance above 0 in the water, and does the grid cover some of it?"},
                 open_cells_);
         merge(from, to, slabs);
