@@ -193,7 +193,9 @@ TEST_CASE("what cannot be is named and changes nothing") {
     };
     CHECK(says([](const Point<2>& x) { return x[1] - 0.5; }).starts_with("GridFluid.set_wall: wall at x = "));
     CHECK(says([](const Point<2>& x) { return std::sqrt(0.2 - x[1]); }).starts_with("GridFluid.wall at x ="));
-    CHECK(says([](const Point<2>&) { return -1.0; }).starts_with("Walls: open cells"));
+    CHECK(says([](const Point<2>&) {
+              return -1.0;
+          }).starts_with("GridFluid.wall, cells of the grid that it leaves open"));
     CHECK(same_water(before, flow));
     GridFluid<2> brimful(tank(0.243, 2));
     CHECK(message_of([&] { brimful.set_wall([](const Point<2>& x) { return x[1] - 0.25; }); })

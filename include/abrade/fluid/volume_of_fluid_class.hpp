@@ -337,7 +337,7 @@ private:
     void fluxes_of_band(int axis);
     void fluxes_of_planes(int axis);
     void join_periodic(int axis);
-    Real stray(int axis, Offset c, Index level, int way, Real volume) const noexcept;
+    Real stray(int axis, Offset c, int way, Real volume) const noexcept;
     void even_out_rims(int axis);
     void settle(VolumeStep& step);
     Real share_out(Offset c, Index level, Real amount);

@@ -326,11 +326,9 @@ void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
             if (both) again = given(down, Pack(-1));
             for (int l = 0; l < lanes; ++l) {
                 const Offset c = planes_.cell[static_cast<std::size_t>(item[index(l)])];
-                const Index level = planes_.level[static_cast<std::size_t>(item[index(l)])];
                 const auto or_stray = [&](Real from_slab, int way, Real volume) {
-                    return from_slab == 0 && volume > 0
-                               ? stray(axis, c, level, way, std::min(volume, room[l]))
-                               : from_slab;
+                    return from_slab == 0 && volume > 0 ? stray(axis, c, way, std::min(volume, room[l]))
+                                                        : from_slab;
                 };
                 if (up[l] > 0) moved[c + step] = or_stray(once[l], 1, up[l]);
                 if (u[c] < 0) moved[c] = -or_stray(up[l] > 0 ? again[l] : once[l], -1, down[l]);
@@ -361,28 +359,15 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 
 /// A film thinner than its cell whose plane lies at the end that it comes from, with nothing there to hold
 /// it: a slab of the other end would find nothing, for ever. It leaves as if it filled the cell evenly. At a
-/// side or a wall it is held, but where gravity pulls it off. What lies in a cell that a wall cuts is held by
-/// that wall, until it would cross the cell in five steps and finds a dry one. A cell that a wall cuts takes
-/// no more than it has room for.
+/// side it is held, but where gravity pulls it off.
 template <int Dim>
-Real VolumeOfFluid<Dim>::stray(int axis, Offset c, Index level, int way, Real volume) const noexcept {
-    const Offset ahead = c + way * layout_.stride[index(axis)], behind = 2 * c - ahead;
-    const auto is = [&](Offset at, std::uint8_t mark) { return (marks_[at] & mark) != 0; };
-    if (!is(c, cell_mark::whole)) {
-        if (fraction_[ahead] > wisp || volume <= 0.2 * open_volume(c, level)) return 0;
-    } else {
-        if (fraction_[c] >= 0.5) return 0;
-        const bool holds = fraction_[behind] > wisp;
-        // Or a side, a wall, a cell that a wall cuts and that holds nothing.
-        const bool is_room = is(behind, cell_mark::open) &&
-                             (is(behind, cell_mark::inside) || sides_.periodic(axis)) &&
-                             (holds || is(behind, cell_mark::whole));
-        if (is_room ? holds : !(gravity_[axis] * way > 0)) return 0;
-    }
-    const Real evenly = fraction_[c] * volume;
-    if (is(ahead, cell_mark::whole) || !is(ahead, cell_mark::open)) return evenly;
-    const Index level_ahead = axis == Grid<Dim>::vertical ? level + way : level;
-    return std::min(evenly, std::max(1 - fraction_[ahead], Real(0)) * open_volume(ahead, level_ahead));
+Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume) const noexcept {
+    if (fraction_[c] >= 0.5 || open_volumes_) return 0;
+    const Offset behind = c - way * layout_.stride[index(axis)];
+    constexpr std::uint8_t room = cell_mark::inside | cell_mark::open;
+    const bool held = (marks_[behind] & room) == room || sides_.periodic(axis) ? fraction_[behind] > wisp
+                                                                               : !(gravity_[axis] * way > 0);
+    return held ? 0 : fraction_[c] * volume;
 }
 
 }  // namespace abrade
