@@ -18,7 +18,7 @@ void check(Real froude, int n) {
     CHECK(std::abs(found.speed) < 0.03);
     // In a plane, without friction, what swirls takes long to be lost.
     WARN(std::abs(found.lost - 1) < 0.1);
-    CHECK(std::abs(found.lost - 1) < 0.3);
+    CHECK(std::abs(found.lost - 1) < 0.2);
 }
 
 }  // namespace

@@ -110,7 +110,8 @@ TEST_CASE("a level surface on the curved bed, at faces of cells") {
     for (const int cells : {3, 4, 5, 6, 7}) {
         const Real found = report<2>(cells * cell, 0, true);
         WARN(found < gate);
-        CHECK(found < 0.1);  // 0.02 or, by other round-off, 0.06; 0.3 where planes of traces err
+        // With other flags than the tests' round-off makes it 0.06; 0.3 where planes of traces err.
+        CHECK(found < 0.05);
     }
     for (const int cells : {2, 3, 4}) {
         const Real found = report<3>(cells * 2 * cell, 0, true);
