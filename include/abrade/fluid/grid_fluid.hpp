@@ -353,7 +353,7 @@ private:
             std::swap(velocity_, saved_velocity_), std::swap(pressure_, saved_pressure_);
         }
         sides_.back(velocity_);
-        if constexpr (has_surface) finish(velocity_);
+        if constexpr (has_surface) finish(velocity_), sides_.fill(velocity_);  // what the step reached, too
     }
     /// After a step that threw: a full box has not changed by then.
     void take_back() { has_surface ? restore() : sides_.back(velocity_); }

@@ -33,8 +33,8 @@ struct GridFluidParams {
     PlaceFunction<Dim> water{};
     PlaceFunction<Dim> inflow_water{};  ///< the same beyond sides where water flows in
     /// Depth below the level that water beyond outflows holds, < 0 above it [m]. Flow slower than its waves
-    /// asks for it; none: it leaves freely, which is for faster flow. Waves leave; what stays meets the level,
-    /// after a change in some times 4 lengths of the box over sqrt(g h).
+    /// asks for it; none: it leaves freely, which is for faster flow. Waves leave; what stays meets the
+    /// level, after a change in some times 4 lengths of the box over sqrt(g h).
     PlaceFunction<Dim> outflow_water{};
     std::function<Point<Dim>(const Point<Dim>&)> velocity{};  ///< at the start; none: at rest
     Point<Dim> gravity = Point<Dim>::Zero();                  ///< [m/s2]

@@ -193,6 +193,7 @@ public:
 
     /// Velocities of the air beside the water, and of films.
     void extend(FaceField<Dim>& u) {
+        extension_.clear_left(u, rows_before_, rows_);
         extension_.extend(u, {wet_, rows_, held(), still_});
         films_.hold(u, rows_, wet_, held());
     }
