@@ -303,7 +303,7 @@ private:
             for (const WaterFace& f : water.still())
                 result[f.axis][f.face] = record_.velocity()[f.axis][f.face] + kept * 2 * dt * falls[f.axis];
             water.share_shear(result, by, (1 - kept) * dt * nu());
-            sides_.leave(result);
+            sides_.leave(result, water.open_area());
         };
         stage(velocity_, stage_, 0, -dt);
         sides_.join(stage_);  // friction of walls looks across the ends

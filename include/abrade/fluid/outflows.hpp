@@ -47,11 +47,10 @@ public:
             const Real raised = held_ && !step.from_rest ? rise(side, u, m, step) : 0;
             for (const Face& f : side.faces) {
                 Real& speed = u[side.axis][f.face];
-                if (held_ && m.inverse_diagonal[f.cell] > 0) {
-                    const Real back = step.from_rest ? 0 : std::max(-side.outwards * speed, Real(0));
-                    const Real behind =
-                        step.weight * std::max(f.depth + raised, Real(0)) - 0.5 * square(back);
-                    speed -= dt * f.slope * (behind - pressure[f.cell]);
+                const Real back = step.from_rest ? 0 : std::max(-side.outwards * speed, Real(0));
+                if ((held_ || back > 0) && m.inverse_diagonal[f.cell] > 0) {
+                    const Real head = held_ ? step.weight * std::max(f.depth + raised, Real(0)) : 0;
+                    speed -= dt * f.slope * (head - 0.5 * square(back) - pressure[f.cell]);
                 } else if (!held_ && m.face[side.axis][f.inside] > 0) {
                     speed -=
                         dt * 0.5 * std::abs(f.slope) * (pressure[f.inside] - pressure[f.inside - f.back]);

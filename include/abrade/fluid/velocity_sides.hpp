@@ -115,13 +115,16 @@ public:
         });
     }
 
-    /// Faces through which water leaves go on as the ones before them.
+    /// Faces through which water leaves go on as the ones before them; where walls leave more of them `open`,
+    /// with no more water: as much of a jet from a gap would come back as what widens it asks for.
     template <class State>
-    void leave(FaceField<Dim, State>& u) const {
+    void leave(FaceField<Dim, State>& u, const FaceField<Dim>* open = nullptr) const {
         for_sides(Side::outflow, [&](int a, bool high) {
             along_side({a, high}, [&](Offset c, std::size_t) {
-                const Offset next = c + step(a);
-                high ? u[a][next] = u[a][c] : u[a][c] = u[a][next];
+                const Offset upper = c + step(a), side = high ? upper : c, before = high ? c : upper;
+                u[a][side] = u[a][before];
+                if (open && (*open)[a][before] < (*open)[a][side])
+                    u[a][side] *= static_cast<State>((*open)[a][before] / (*open)[a][side]);
             });
         });
     }

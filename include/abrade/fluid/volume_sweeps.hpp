@@ -226,8 +226,8 @@ void VolumeOfFluid<Dim>::sweep(int number) {
         fluxes_of_band(axis);
     }
     fluxes_of_planes(axis);
-    even_out_rims(axis);
     join_periodic(axis);
+    even_out_rims(axis);
 
     const auto dilatation = [&](int a, Offset c, Index level) {
         return swept_of_pack(a, c + layout_.stride[index(a)], level) - swept_of_pack(a, c, level);
