@@ -245,6 +245,13 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     params = good;
     params.velocity = [](const Point<2>& x) { return Point<2>(0, x[0] > 0.9 && x[1] > 0.8 ? nan : 0); };
     CHECK(says(params).starts_with("GridFluid.velocity.z at x = 0.9375 m, z = 0.875 m, t = 0 s must"));
+    params.velocity = [](const Point<2>&) { return Point<2>(1e200, 0); };
+    CHECK(
+        says(params).starts_with("GridFluid.velocity.x at x = 0 m, z = 0.0625 m, t = 0 s must be at most "
+                                 "GridFluid.fastest, 100, got 1e+200 m/s"));
+    params = good;
+    params.start_time = 1e17;
+    CHECK(says(params).starts_with("GridFluid.start_time must be from -1e9 to 1e9, got 1e+17 s"));
     params = good;
     params.water = [](const Point<2>& x) { return std::sqrt(0.6 - x[1]); };
     CHECK(says(params).starts_with("GridFluid.water at x = "));

@@ -215,6 +215,12 @@ TEST_CASE("where there is nothing to hold it is refused") {
     CHECK(message_of([&] {
               GridFluid<2, FullBox> flow(params);
           }).starts_with("GridFluid.outflow_water must be left out of a FullBox"));
+    std::swap(params.inflow_water, params.outflow_water);
+    params.sides[0][0] = Side::inflow;
+    params.side_velocity = [](const Point<2>&, Real) { return Point<2>(1, 0); };
+    CHECK(message_of([&] {
+              GridFluid<2, FullBox> flow(params);
+          }).starts_with("GridFluid.inflow_water must be left out of a FullBox"));
 }
 
 TEST_CASE("a step that goes wrong leaves what streams out as it was") {

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <random>
+
 #include <cmath>
 
 #include "../message_of.hpp"
@@ -123,6 +125,32 @@ TEST_CASE("a bed that wears under a film: no void is left below the water") {
         });
         CHECK(std::abs(flow.surface_at({0.5, 0}) - (bed + cells / 32)) < 0.1 / 32);
     }
+}
+
+TEST_CASE("a ball in still water that wears and grows: cells that open below it are no voids") {
+    GridFluidParams<3> params;
+    params.grid = {.cells = {13, 13, 14}, .spacing = {0.05, 0.05, 0.05}};
+    params.sides = Sides<3>::all(Side::slip);
+    params.gravity = {0, 0, -9.81};
+    params.water = [](const Point<3>& x) { return 0.52 - x[2]; };
+    const auto ball = [](Real radius) {
+        return [radius](const Point<3>& x) { return (x - Point<3>(0.325, 0.325, 0.26)).norm() - radius; };
+    };
+    params.wall = ball(0.15);
+    GridFluid<3> flow(params);
+    const Real before = flow.liquid().volume();
+    std::mt19937 random(3);
+    std::uniform_real_distribution<Real> change(-0.0005, 0.0005);  // a hundredth of a cell
+    Real radius = 0.15, fastest = 0;
+    for (int step = 0; step < 60; ++step) {
+        if (step % 5 == 4) flow.set_wall(ball(radius -= change(random)));
+        flow.step(flow.stable_step().seconds);
+        flow.grid().for_each([&](const CellNumber<3>&, Offset c) {
+            for (const auto& u : flow.velocity()) fastest = std::max(fastest, std::abs(u[c]));
+        });
+    }
+    CHECK(fastest < 1);  // what falls a cell deep
+    CHECK(flow.liquid().volume() == doctest::Approx(before).epsilon(1e-12).scale(0));
 }
 
 TEST_CASE("the same wall moves no water") {

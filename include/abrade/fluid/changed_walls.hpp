@@ -83,14 +83,33 @@ private:
             return;
         }
         const Offset n = above(c);
-        const bool was_full = open(before_, c) > 0 && liquid_.fraction()[c] >= liquid_.full();
-        if (n >= 0 && is_wet(n)) {
+        if (is_below_roof(c)) {
+            if (was_full(c) || opens_in_water(c)) fill(c);
+        } else if (is_wet(n)) {
             const Real left = take_down(c, -beyond);
             set(c, 1 - left / room(c));
             if (left > 0 && is_wet(n)) fill(c);  // up to a roof all is full
-        } else if (n < 0 && was_full) {
-            fill(c);
         }
+    }
+    bool was_full(Offset c) const noexcept {
+        return open(before_, c) > 0 && liquid_.fraction()[c] >= liquid_.full();
+    }
+    bool is_below_roof(Offset c) const noexcept {
+        const Offset n = above(c);
+        return n < 0 || opens_in_water(n);  // which only now is one cell higher
+    }
+    /// Whether a cell was closed and all that it opens to, and was open, was full.
+    bool opens_in_water(Offset c) const noexcept {
+        if (!after_ || open(before_, c) > 0) return false;
+        bool any = false, all = true;
+        for (int a = 0; a < Dim; ++a)
+            for (const int side : {0, 1}) {
+                const Offset s = grid_.layout().stride[a], n = side == 0 ? c - s : c + s;
+                if (!is_inside(n) || after_->open_area()[a][c + side * s] == 0 || open(before_, n) == 0)
+                    continue;
+                any = true, all = all && was_full(n);
+            }
+        return any && all;
     }
     /// Full, and lacks what it does not hold.
     void fill(Offset c) noexcept {
@@ -117,7 +136,7 @@ private:
         column_.clear();
         for (Offset n = above(c); n >= 0 && is_wet(n); n = above(n)) column_.push_back(n);
         const Offset top = column_.back();
-        if (is_full(holds(top)) && above(top) < 0) return amount;
+        if (is_below_roof(top) && (is_full(holds(top)) || was_full(top))) return amount;
         for (; !column_.empty() && amount > 0; column_.pop_back()) {
             const Offset n = column_.back();
             const Real part = std::clamp(holds(n) * room(n), Real(0), amount);

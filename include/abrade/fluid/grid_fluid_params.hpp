@@ -78,7 +78,10 @@ struct GridFluidParams {
         wall_law.validate();
         for (int a = 0; a < Dim; ++a)
             require_finite(gravity[a], std::string("GridFluid.gravity.") + Grid<Dim>::axis_name(a), "m/s2");
-        require_finite(start_time, "GridFluid.start_time", "s");
+        require(
+            std::abs(start_time) <= 1e9,
+            {"GridFluid.start_time", "from -1e9 to 1e9", "s", "beyond that steps are lost in its round-off"},
+            start_time);
         if (body_force)
             for (int a = 0; a < Dim; ++a)
                 require_finite(body_force(start_time)[a],

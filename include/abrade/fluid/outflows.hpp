@@ -13,8 +13,9 @@
 namespace abrade::detail {
 
 /// Pressure's part in the velocity of faces where water leaves; the projection holds the pressure there.
-/// Without a tailwater it is what it has come to. With one it is that of water below a level, which a flow
-/// slower than its waves takes over,
+/// Without a tailwater it is what it has come to, but for water that comes back, which starts from 0:
+/// p / rho = -u^2 / 2. With one it is that of water below a level, which a flow slower than its waves takes
+/// over,
 ///   p / rho = g max(d + r, 0) - max(-u, 0)^2 / 2,  r = sqrt(h / g) (U - U_T),
 /// u outwards, d the depth below the level that is given:
 /// - r lets waves out: as high as one that goes on would be where the mean speed U through the side changes

@@ -12,7 +12,7 @@
 
 namespace abrade::detail {
 
-/// Velocities of the start on faces [m/s]. Throws InputError where one is no number.
+/// Velocities of the start on faces [m/s]. Throws InputError where one is no number or too fast.
 template <int Dim, class State>
 void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, FaceField<Dim, State>& u) {
     if (!params.velocity) return;
@@ -22,6 +22,11 @@ void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, Fa
             const Real value = params.velocity(x)[a];
             if (!std::isfinite(value))
                 require_finite(value, velocity_at<Dim>("GridFluid.velocity", a, x, params.start_time), "m/s");
+            if (std::abs(value) > params.fastest)
+                fail({velocity_at<Dim>("GridFluid.velocity", a, x, params.start_time),
+                      "at most GridFluid.fastest, " + short_text(params.fastest), "m/s",
+                      "raise fastest if it is meant"},
+                     short_text(value));
             u[a][c] = static_cast<State>(value);
         }
     });
@@ -30,9 +35,11 @@ void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, Fa
 /// Throws InputError for what needs a surface.
 template <int Dim>
 void refuse_in_full_box(const GridFluidParams<Dim>& params) {
-    if (params.wall || params.outflow_water)
-        fail({params.wall ? "GridFluid.wall" : "GridFluid.outflow_water", "left out of a FullBox", "",
-              "take a FreeSurface with water everywhere"},
+    if (params.wall || params.inflow_water || params.outflow_water)
+        fail({params.wall           ? "GridFluid.wall"
+              : params.inflow_water ? "GridFluid.inflow_water"
+                                    : "GridFluid.outflow_water",
+              "left out of a FullBox", "", "take a FreeSurface with water everywhere"},
              "given");
 }
 
