@@ -178,8 +178,8 @@ TEST_CASE("a cylinder that stands in a free outflow: no water comes from beyond,
         most = std::max(most, flow.kinetic_energy());
         beyond = std::max(beyond, flow.liquid().volume() - 3 * 0.15 * flow.time());
     }
-    // Were the box full at the speed that comes in; what does come in has as much from its depth as well.
-    CHECK(most < 0.5 * params.density * 0.8 * square(3));
+    // Without the cylinder it is 675 J/m; before it water stands deeper.
+    CHECK(most < 3 * 675);
     CHECK(beyond < 1e-6);
 }
 
@@ -201,8 +201,9 @@ TEST_CASE("a gap that walls leave before a tailwater, which widens to the side")
     flow.grid().for_each([&](const CellNumber<2>&, Offset c) {
         for (const auto& u : flow.velocity()) fastest = std::max(fastest, std::abs(u[c]));
     });
-    // What comes in and falls from the lid makes 3.8 m/s.
-    CHECK(fastest < 8);
+    // What comes in and falls from the lid makes 3.7 m/s, and walls squeeze it (docs: grid_fluid, not
+    // reached).
+    CHECK(fastest < 3 * 3.7);
 }
 
 TEST_CASE("where there is nothing to hold it is refused") {

@@ -6,9 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include <random>
-
 #include <cmath>
+#include <random>
 
 #include "../message_of.hpp"
 

@@ -20,7 +20,8 @@ struct WaterShares {
 /// Columns settle at once: what opens below water is filled from the top of the water above it, what closes
 /// pushes it up there. A void at the bed would stay, for no pressure fills it. Below a roof, or where nothing
 /// presses down, a full cell stays full, and what it has more room for or less is its surplus, which the next
-/// projection asks from beside or drives out. A cell at the surface keeps what it holds.
+/// projection asks from beside or drives out; one that opens there amid full cells is full as well, and lacks
+/// all of it. A cell at the surface keeps what it holds.
 /// Throws InputError where the liquid of a cell that closes finds no room above or beside it, and where it
 /// needs more than the room of a box that nothing leaves.
 template <int Dim>
@@ -100,13 +101,18 @@ private:
     }
     /// Whether a cell was closed and all that it opens to, and was open, was full.
     bool opens_in_water(Offset c) const noexcept {
-        if (!after_ || open(before_, c) > 0) return false;
+        if (open(before_, c) > 0) return false;
         bool any = false, all = true;
         for (int a = 0; a < Dim; ++a)
             for (const int side : {0, 1}) {
-                const Offset s = grid_.layout().stride[a], n = side == 0 ? c - s : c + s;
-                if (!is_inside(n) || after_->open_area()[a][c + side * s] == 0 || open(before_, n) == 0)
-                    continue;
+                const Offset s = grid_.layout().stride[a], away = side == 0 ? -s : s;
+                Offset n = c + away;
+                if (!is_inside(n)) {
+                    if (!liquid_.sides().periodic(a)) continue;
+                    n -= grid_.cells(a) * away;
+                }
+                const bool passes = !after_ || after_->open_area()[a][c + side * s] > 0;
+                if (!passes || open(before_, n) == 0) continue;
                 any = true, all = all && was_full(n);
             }
         return any && all;
@@ -124,7 +130,10 @@ private:
         for (Offset n = above(c); n >= 0 && amount > 0 && !dry; n = above(n)) {
             dry = !is_wet(n);
             const Real part = std::clamp((1 - holds(n)) * room(n), Real(0), amount);
-            if (part > 0) set(n, holds(n) + part / room(n));
+            if (shares_.fraction[n] == 1)  // and lacks it: no void
+                shares_.surplus[n] += part / room(n);
+            else if (part > 0)
+                set(n, holds(n) + part / room(n));
             amount -= part;
         }
         return amount;

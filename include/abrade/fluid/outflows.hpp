@@ -53,8 +53,8 @@ public:
                     const Real head = held_ ? step.weight * std::max(f.depth + raised, Real(0)) : 0;
                     speed -= dt * f.slope * (head - 0.5 * square(back) - pressure[f.cell]);
                 } else if (!held_ && m.face[side.axis][f.inside] > 0) {
-                    speed -=
-                        dt * 0.5 * std::abs(f.slope) * (pressure[f.inside] - pressure[f.inside - f.back]);
+                    const Real fall = pressure[f.inside] - pressure[f.inside - f.back];
+                    speed -= dt * 0.5 * std::abs(f.slope) * fall * narrowing(projection, side.axis, f);
                 }
             }
         }
@@ -100,6 +100,13 @@ private:
                                   grid.size(vertical, cell[vertical]), cell[along]});
         });
         sides_.push_back(std::move(side));
+    }
+
+    /// Of a face to the one before it, where that is less open, as `VelocitySides::leave` gives it speed.
+    static Real narrowing(const Projection<Dim, Real>& projection, int axis, const Face& f) noexcept {
+        if (projection.open_area() == nullptr) return 1;
+        const Field<Real>& open = (*projection.open_area())[axis];
+        return open[f.inside] < open[f.face] ? open[f.inside] / open[f.face] : 1;
     }
 
     /// r [m]. Also finds what U_T will be: slower than waves, or no tailwater would hold it. A front that

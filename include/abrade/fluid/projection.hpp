@@ -79,6 +79,7 @@ public:
     const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }
     std::span<const OpenFace> open_faces() const noexcept { return open_; }
     const Multigrid<Dim>& multigrid() const noexcept { return multigrid_; }
+    const FaceField<Dim>* open_area() const noexcept { return open_area_; }  ///< none: all open
     Index wet_cells() const noexcept { return wet_cells_; }
 
     struct Report {

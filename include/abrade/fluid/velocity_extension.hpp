@@ -84,8 +84,8 @@ public:
         }
     }
 
-    /// Clears what lies in rows of `before` and in none of `now`, which water has left; but not on lower
-    /// sides, which may let water in.
+    /// Clears what lies in rows of `before` and in none of `now`, which water has left; but not what is given
+    /// on lower sides, which let water in.
     template <class State>
     void clear_left(FaceField<Dim, State>& u, const WetRows<Dim>& before, const WetRows<Dim>& now) const {
         before.for_each_row([&](int plane, int row, const RowRange& r) {
@@ -93,9 +93,9 @@ public:
             for (const auto& [begin, end] : {RowRange{r.begin, std::min(r.end, stays.begin)},
                                              RowRange{std::max(r.begin, stays.end), r.end}})
                 for (int a = 0; a < Dim; ++a) {
-                    const bool inner = a == Layout<Dim>::inner;
-                    if (!inner && (a == Layout<Dim>::outer ? plane : row) == 0) continue;
-                    const int first = std::max(begin, inner ? 1 : 0);
+                    const bool inner = a == Layout<Dim>::inner, given = sides_[a][0] == Side::inflow;
+                    if (given && !inner && (a == Layout<Dim>::outer ? plane : row) == 0) continue;
+                    const int first = std::max(begin, given && inner ? 1 : 0);
                     State* const values = u[a].data() + layout_.row_start(plane, row);
                     if (first < end) std::fill(values + first, values + end, State(0));
                 }

@@ -22,7 +22,10 @@ void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, Fa
             const Real value = params.velocity(x)[a];
             if (!std::isfinite(value))
                 require_finite(value, velocity_at<Dim>("GridFluid.velocity", a, x, params.start_time), "m/s");
-            if (std::abs(value) > params.fastest)
+            const auto holds_water = [&] {
+                return (!params.wall || params.wall(x) > 0) && (!params.water || params.water(x) > 0);
+            };
+            if (std::abs(value) > params.fastest && holds_water())
                 fail({velocity_at<Dim>("GridFluid.velocity", a, x, params.start_time),
                       "at most GridFluid.fastest, " + short_text(params.fastest), "m/s",
                       "raise fastest if it is meant"},
