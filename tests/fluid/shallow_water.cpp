@@ -391,6 +391,9 @@ TEST_CASE("bad input is named with its value, its unit and what helps") {
     CHECK(said([](P& p) { p.cells[1] = 0; }) ==
           "ShallowWater.cells.y must be at least 1, got 0 cells; length over spacing");
     CHECK(said([](P& p) {
+              p.cells = {100000, 20000};
+          }) == "ShallowWater.cells must be below 1e9 in all, got 2e+09 cells; take larger ones");
+    CHECK(said([](P& p) {
               p.start_time = -1e17;
           }).starts_with("ShallowWater.start_time must be from -1e9 to 1e9, got -1e+17 s; beyond"));
     CHECK(said([](P& p) { p.high[0] = -1; }) ==

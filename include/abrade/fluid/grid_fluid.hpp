@@ -368,9 +368,9 @@ private:
         if (found && (report_.courant / dt * size <= params_.fastest ||
                       detail::FastFace<Dim>(*grid_, velocity_).speed <= params_.fastest))
             return;
-        const std::string cause =
-            brimful ? "more flows in than out, and no surface is left to rise; make a side an outflow"
-                    : detail::wrong_flow(*grid_, velocity_, report_.after, enters_ > 0);
+        const std::string cause = brimful ? "more flows in than out, and no surface is left to rise; make a "
+                                            "side that it reaches an outflow"
+                                          : detail::wrong_flow(*grid_, velocity_, report_.after, enters_ > 0);
         restore();
         throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);
     }

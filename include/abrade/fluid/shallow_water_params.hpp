@@ -35,7 +35,9 @@ struct ShallowWaterParams {
     Real start_time = 0;    ///< [s]; before 0: it settles before the solids begin
 
     void validate() const {
-        for (std::size_t a = 0; a < Dim; ++a) validate_axis(a);
+        Real all = 1;
+        for (std::size_t a = 0; a < Dim; ++a) validate_axis(a), all *= static_cast<Real>(cells[a]);
+        require(all < 1e9, {"ShallowWater.cells", "below 1e9 in all", "cells", "take larger ones"}, all);
         require_finite(gravity, "ShallowWater.gravity", "m/s2");
         require(gravity.z() < 0,
                 {"ShallowWater.gravity.z", "below 0", "m/s2",
