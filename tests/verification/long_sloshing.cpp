@@ -26,8 +26,6 @@ TEST_CASE("a shallow tank that sways far, on 10 cells to the depth") {
 }
 
 TEST_CASE("a shallow tank that sways far, on 20 cells to the depth") {
-    // Met with these flags; with others nine crests in a row stood 24 % too low, or 12 %.
-    const Real crest = sway(20, 17.6).crest;
-    WARN(std::abs(crest - 1) < 0.15);
-    CHECK(std::abs(crest - 1) < 0.25);
+    // Holds as tests are built; by other round-off nine crests in a row stood 12 % or 24 % too low.
+    CHECK(std::abs(sway(20, 17.6).crest - 1) < 0.15);
 }

@@ -75,8 +75,8 @@ public:
                         known_.empty() ? shear<false>(u, {a, b, pair}, row, start, r)
                                        : shear<true>(u, {a, b, pair}, row, start, r);
                 const State* const length2 = length2_.data() + start;
-                for (int i = Layout<Dim>::pack(r.begin); i < r.end;
-                     i += lanes)  // whole packs, as they were set
+                // Whole packs, as they were set.
+                for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
                     for (int k = i; k < i + lanes; ++k) nu[k] = length2[k] * std::sqrt(nu[k]);
                 if (held) {
                     const Real* const __restrict h = held->data() + start;

@@ -5,8 +5,11 @@
 #include <abrade/core/law.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace abrade {
 
@@ -28,6 +31,12 @@ struct FluidStep {
         if (candidate < seconds) seconds = candidate, limit = reason, cell = whose;
     }
 };
+
+/// Throws InputError for a fluid's time that its steps would be lost in.
+inline void require_start_time(Real time, std::string field) {
+    require(std::abs(time) <= 1e9,
+            {std::move(field), "from -1e9 to 1e9", "s", "beyond that steps are lost in its round-off"}, time);
+}
 
 /// A step of a fluid that went wrong. What throws it leaves the fluid as it was before that step, and says in
 /// its text where, how fast and why; a simulation raises it as RunError.

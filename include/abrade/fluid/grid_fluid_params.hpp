@@ -1,6 +1,7 @@
 #pragma once
 // Water on a grid: what it is made from.
 
+#include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/velocity_sides.hpp>
 #include <abrade/fluid/wall_friction.hpp>
 
@@ -78,10 +79,7 @@ struct GridFluidParams {
         wall_law.validate();
         for (int a = 0; a < Dim; ++a)
             require_finite(gravity[a], std::string("GridFluid.gravity.") + Grid<Dim>::axis_name(a), "m/s2");
-        require(
-            std::abs(start_time) <= 1e9,
-            {"GridFluid.start_time", "from -1e9 to 1e9", "s", "beyond that steps are lost in its round-off"},
-            start_time);
+        require_start_time(start_time, "GridFluid.start_time");
         if (body_force)
             for (int a = 0; a < Dim; ++a)
                 require_finite(body_force(start_time)[a],

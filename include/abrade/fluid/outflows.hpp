@@ -54,7 +54,7 @@ public:
                     speed -= dt * f.slope * (head - 0.5 * square(back) - pressure[f.cell]);
                 } else if (!held_ && m.face[side.axis][f.inside] > 0) {
                     const Real fall = pressure[f.inside] - pressure[f.inside - f.back];
-                    speed -= dt * 0.5 * std::abs(f.slope) * fall * narrowing(projection, side.axis, f);
+                    speed -= dt * 0.5 * std::abs(f.slope) * fall * carried(projection, side.axis, f);
                 }
             }
         }
@@ -102,11 +102,9 @@ private:
         sides_.push_back(std::move(side));
     }
 
-    /// Of a face to the one before it, where that is less open, as `VelocitySides::leave` gives it speed.
-    static Real narrowing(const Projection<Dim, Real>& projection, int axis, const Face& f) noexcept {
-        if (projection.open_area() == nullptr) return 1;
-        const Field<Real>& open = (*projection.open_area())[axis];
-        return open[f.inside] < open[f.face] ? open[f.inside] / open[f.face] : 1;
+    static Real carried(const Projection<Dim, Real>& projection, int axis, const Face& f) noexcept {
+        const FaceField<Dim>* const open = projection.open_area();
+        return open ? carried_share((*open)[axis], f.inside, f.face) : 1;
     }
 
     /// r [m]. Also finds what U_T will be: slower than waves, or no tailwater would hold it. A front that

@@ -2,6 +2,7 @@
 // Depth-averaged water, what it is made from.
 
 #include <abrade/core/law.hpp>
+#include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/shallow_water_sides.hpp>
 
 #include <functional>
@@ -56,10 +57,7 @@ struct ShallowWaterParams {
                 courant);
         require_positive(dry_depth, "ShallowWater.dry_depth", "m", "a hundredth of a millimetre is common");
         require_positive(fastest, "ShallowWater.fastest", "m/s", "100 m/s is far beyond any channel");
-        require(std::abs(start_time) <= 1e9,
-                {"ShallowWater.start_time", "from -1e9 to 1e9", "s",
-                 "beyond that steps are lost in its round-off"},
-                start_time);
+        require_start_time(start_time, "ShallowWater.start_time");
     }
     void visit(auto&& f) const {
         f("cells_x", static_cast<Real>(cells[0]), "-");

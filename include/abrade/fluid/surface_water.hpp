@@ -260,7 +260,7 @@ public:
         rows.copy(fraction, liquid_.fraction());
         Field<Real> kept = liquid_.surplus();
         settle();
-        rows_before_.include(rows);
+        rows_before_.include(rows);  // what they hold more than now, water has left
         rows.for_each_row([&](int plane, int row, const RowRange& r) {  // of what it has closed as well
             const Offset start = layout().row_start(plane, row);
             for (Offset c = start + r.begin; c < start + r.end; ++c)

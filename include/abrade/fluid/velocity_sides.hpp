@@ -26,6 +26,15 @@ std::string velocity_at(std::string_view name, int component, const Point<Dim>& 
            ", t = " + short_text(time) + " s";
 }
 
+namespace detail {
+
+/// Share of its speed [-] that a face hands on to one of which walls leave more open: no more water.
+inline Real carried_share(const Field<Real>& open, Offset before, Offset side) noexcept {
+    return open[before] < open[side] ? open[before] / open[side] : 1;
+}
+
+}  // namespace detail
+
 /// A side of the box, or what of it lies beside rows that are wet.
 template <int Dim>
 struct SidePart {
@@ -123,8 +132,7 @@ public:
             along_side({a, high}, [&](Offset c, std::size_t) {
                 const Offset upper = c + step(a), side = high ? upper : c, before = high ? c : upper;
                 u[a][side] = u[a][before];
-                if (open && (*open)[a][before] < (*open)[a][side])
-                    u[a][side] *= static_cast<State>((*open)[a][before] / (*open)[a][side]);
+                if (open) u[a][side] *= static_cast<State>(detail::carried_share((*open)[a], before, side));
             });
         });
     }
