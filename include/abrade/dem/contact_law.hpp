@@ -210,6 +210,23 @@ struct NormalSpring {
     }
 };
 
+/// The normal force of laws that lose by yielding, with the dashpot for rest beside it. `push` is the force
+/// of the branch, `loading` that of the virgin line at the largest overlap so far: they are equal on that
+/// line. Below it, while the contact is loaded again, the dashpot adds f_v = min(c v, push, loading - push),
+/// v > 0 the speed of approach. Nothing is added on the virgin line nor while the contact unloads, so an
+/// impact never meets the dashpot; at both ends of the branch the force is continuous.
+template <class Number>
+struct LoadingAgain {
+    Number force;  ///< [N]
+    Number lost;   ///< to the dashpot, over the step [J], >= 0
+
+    static LoadingAgain at(Number push, Number loading, Number dashpot, Number approach, Real dt) noexcept {
+        const Number speed = max(approach, Number(0)), room = max(min(push, loading - push), Number(0));
+        const Number damping = min(dashpot * speed, room);
+        return {push + damping, damping * speed * Number(dt)};
+    }
+};
+
 /// A spring whose stiffness k follows the contact and which makes no energy: while k grows the spring
 /// shortens so that its force stays, and the way adds to it at the mean k of the step (for an overlap that
 /// grows evenly); while k falls the spring stays.

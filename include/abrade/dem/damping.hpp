@@ -13,6 +13,13 @@ inline void require_restitution(Real value, std::string_view field) {
             {field, "in (0, 1]", "", "1 loses nothing, 0.5 three quarters of the energy"}, value);
 }
 
+/// Of the dashpot that brings pressed contacts to rest, in laws whose impacts lose by other means.
+inline void require_rest_damping(Real value, std::string_view field) {
+    require(value >= 0 && value <= 0.5,
+            {field, "in [0, 0.5]", "", "it is a share of critical damping; 0 lets a pressed bed ring"},
+            value);
+}
+
 /// Ratio of critical damping zeta that gives restitution e when the contact cannot pull.
 /// A contact that ends when its force falls to zero has
 ///   e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),             zeta < 1,
