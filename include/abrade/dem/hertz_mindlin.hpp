@@ -3,6 +3,7 @@
 
 #include <abrade/dem/contact_law.hpp>
 #include <abrade/dem/damping.hpp>
+#include <abrade/dem/elastic_pair.hpp>
 
 namespace abrade {
 
@@ -82,12 +83,6 @@ public:
             f("poisson_other", poisson_other, "-");
             f("largest_overlap", largest_overlap, "-");
         }
-
-    private:
-        static void require_poisson(Real value, std::string_view field) {
-            require(value > -1 && value <= 0.5,
-                    {field, "in (-1, 0.5]", "", "concrete has about 0.2, rubber nearly 0.5"}, value);
-        }
     };
 
     template <class Number>
@@ -98,11 +93,9 @@ public:
 
     explicit HertzMindlin(Params params) : params_(params) {
         params_.validate();
-        const bool same = params_.youngs_other == 0;
-        const Real e1 = params_.youngs, nu1 = params_.poisson, e2 = same ? e1 : params_.youngs_other,
-                   nu2 = same ? nu1 : params_.poisson_other;
-        effective_youngs_ = 1 / ((1 - square(nu1)) / e1 + (1 - square(nu2)) / e2);
-        effective_shear_ = 1 / (2 * (2 - nu1) * (1 + nu1) / e1 + 2 * (2 - nu2) * (1 + nu2) / e2);
+        const auto pair =
+            ElasticPair::of(params_.youngs, params_.poisson, params_.youngs_other, params_.poisson_other);
+        effective_youngs_ = pair.youngs, effective_shear_ = pair.shear;
         damping_ratio_ = params_.tension ? damping_ratio_with_tension(params_.restitution)
                                          : damping_ratio_without_tension(params_.restitution);
         per_width_ = tangents(1);
@@ -170,6 +163,10 @@ public:
     Real effective_youngs() const noexcept { return effective_youngs_; }  ///< E* [Pa]
     Real effective_shear() const noexcept { return effective_shear_; }    ///< G* [Pa]
     Real damping_ratio() const noexcept { return damping_ratio_; }
+    /// Of a normal impact: the same at any speed [m/s], effective mass [kg] and effective radius [m].
+    Real restitution(Real /*speed*/, Real /*mass*/, Real /*radius*/) const noexcept {
+        return params_.restitution;
+    }
     /// Secant, f_n / delta = 4/3 E* sqrt(R delta) [N/m].
     template <class Number>
     Number normal_stiffness(Number overlap, Number curvature) const noexcept {

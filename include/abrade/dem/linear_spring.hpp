@@ -94,6 +94,10 @@ public:
     }
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
     Real damping_ratio() const noexcept { return damping_ratio_; }
+    /// Of a normal impact: the same at any speed [m/s], effective mass [kg] and effective radius [m].
+    Real restitution(Real /*speed*/, Real /*mass*/, Real /*radius*/) const noexcept {
+        return params_.restitution;
+    }
 
     /// Without friction nothing acts across the normal.
     ContactRigidity rigidity(Real /*radius*/) const noexcept {
