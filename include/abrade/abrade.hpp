@@ -6,7 +6,9 @@
 #include <abrade/bond/parallel_bond.hpp>
 #include <abrade/bond/twist_resistance.hpp>
 #include <abrade/coupling/drag.hpp>
+#include <abrade/dem/elastic_plastic_hertz.hpp>
 #include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/linear_hysteretic.hpp>
 #include <abrade/dem/linear_spring.hpp>
 #include <abrade/dem/material_pairs.hpp>
 #include <abrade/dem/rolling_resistance.hpp>

@@ -44,9 +44,10 @@ namespace abrade {
 /// and stay as they are. Stones with each other need a law without it: a table by materials (MaterialPairs).
 ///
 /// Range of validity: delta far below R, stones harder than what yields. p_y is no property of concrete that
-/// handbooks list: about 1.6 to 2.8 times the yield stress of a ductile material (Johnson's Contact
-/// Mechanics, 6.1), to be fitted to a measured restitution else. A contact that opens loses its dent. Throws
-/// InputError for parameters out of their range.
+/// handbooks list: for ductile materials it is 1.6 (first yield) to 3 times (fully plastic) the yield stress
+/// (K. L. Johnson, Contact Mechanics, 1985, doi:10.1017/CBO9781139171731, 6.2 and 6.3); for concrete fit it
+/// to a measured restitution. A contact that opens loses its dent.
+/// Throws InputError for parameters out of their range.
 class ElasticPlasticHertz {
 public:
     static constexpr std::string_view name = "ElasticPlasticHertz";
@@ -69,7 +70,7 @@ public:
                              "give that of the material; softening makes the run's softer");
             require_poisson(poisson, "ElasticPlasticHertz.poisson");
             require_positive(yield_pressure, "ElasticPlasticHertz.yield_pressure", "Pa",
-                             "1.6 to 2.8 times the yield stress; fit it to a measured restitution");
+                             "fit it to a measured restitution; concrete is near 1e8 Pa");
             require_not_negative(friction, "ElasticPlasticHertz.friction", "", "0 slides freely");
             require_not_negative(youngs_other, "ElasticPlasticHertz.youngs_other", "Pa",
                                  "0 means the same material");
