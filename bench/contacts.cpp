@@ -55,6 +55,13 @@ void hertz_contacts(benchmark::State& state) {
     contacts_in_cache(state,
                       HertzMindlin{{.youngs = 1e8, .poisson = 0.25, .restitution = 0.5, .friction = 0.5}});
 }
+void hysteretic_contacts(benchmark::State& state) {
+    contacts_in_cache(state, LinearHysteretic{{.stiffness = 1e5, .restitution = 0.5, .friction = 0.5}});
+}
+/// Dented some nine times deeper than where they begin to yield.
+void elastic_plastic_contacts(benchmark::State& state) {
+    contacts_in_cache(state, ElasticPlasticHertz{{.youngs = 1e8, .yield_pressure = 5e5, .friction = 0.5}});
+}
 
 /// The same contacts with concrete, by law: what wear adds to a contact.
 template <WearLaw Wear>
@@ -64,6 +71,8 @@ void wear_of_linear_contacts(benchmark::State& state, const Wear& wear) {
 
 BENCHMARK(linear_contacts);
 BENCHMARK(hertz_contacts);
+BENCHMARK(hysteretic_contacts);
+BENCHMARK(elastic_plastic_contacts);
 BENCHMARK_CAPTURE(wear_of_linear_contacts, sub_particle, SubParticleAbrasion{{}});
 BENCHMARK_CAPTURE(wear_of_linear_contacts, archard, Archard{{.coefficient = 1e-4, .hardness = 1e9}});
 BENCHMARK_CAPTURE(wear_of_linear_contacts, finnie, Finnie{{.flow_stress = 1e8}});

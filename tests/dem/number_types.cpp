@@ -1,6 +1,9 @@
 // One source of the contact law for several number types.
 #include <abrade/core/simd.hpp>
+#include <abrade/dem/contact_kernel.hpp>
+#include <abrade/dem/elastic_plastic_hertz.hpp>
 #include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/linear_hysteretic.hpp>
 #include <abrade/dem/linear_spring.hpp>
 
 #include <doctest/doctest.h>
@@ -163,4 +166,84 @@ TEST_CASE(
                 CHECK(sliding > 100);
                 CHECK(apart > 100);
             }
+}
+
+namespace {
+
+/// Packs of random contacts, some of which have just begun, some apart, some within their dent: each lane
+/// answers as its contact does alone, in double and in float.
+template <class Law>
+void lanes_answer_alone(const Law& yields, Real stiffness) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<Real> u(-1, 1);
+    const auto anything = [&] { return Vec3(u(random), u(random), u(random)); };
+    int sliding = 0, apart = 0, dented = 0, again = 0;
+    for (int n = 0; n < 1000; ++n) {
+        ContactKinematics<Pack> all{};
+        typename Law::template Memory<Pack> held_by_all{};
+        all.time_step = 1e-6;
+        const Real speed = n % 2 ? 1 : 1e-3;
+        for (int lane = 0; lane < pack_lanes; ++lane) {
+            const Vec3 normal = anything().normalized(), velocity = speed * anything(),
+                       travel = speed * 1e-6 * anything(), spring = 1e-6 * anything();
+            for (int a = 0; a < 3; ++a) {
+                all.normal[a].set(lane, normal[a]), all.velocity[a].set(lane, velocity[a]);
+                all.travel[a].set(lane, travel[a]), held_by_all.spring[a].set(lane, spring[a]);
+            }
+            all.overlap.set(lane, n % 2 ? 5e-5 * u(random) * u(random) : 5e-5);
+            all.inverse_mass.set(lane, 100), all.curvature.set(lane, 200);
+            held_by_all.deepest.set(lane, 6e-5 * std::max(u(random), 0.0));
+            if constexpr (requires { held_by_all.stiffness; })
+                held_by_all.stiffness.set(lane, stiffness * (1 + 0.5 * u(random)));
+        }
+        const auto answer = yields.respond(all, held_by_all);
+        for (int lane = 0; lane < pack_lanes; ++lane) {
+            using Memory = typename Law::template Memory<Real>;
+            const auto contact = detail::lane_of(all, lane);
+            const auto held = detail::memory_of_lane<Memory>(held_by_all, lane);
+            const auto alone = yields.respond(contact, held);
+            const auto load = detail::lane_of(answer.load, lane);
+            const auto memory = detail::memory_of_lane<Memory>(answer.memory, lane);
+            const Real push = stiffness * 6e-5 + 10 * speed, energy = push * 6e-5;
+            const auto is = [](Real value, Real size) {
+                return doctest::Approx(value).scale(size).epsilon(1e-9);
+            };
+            for (int a = 0; a < 3; ++a) {
+                REQUIRE(load.force[a] == is(alone.load.force[a], push));
+                REQUIRE(memory.spring[a] == is(alone.memory.spring[a], 1e-6));
+            }
+            REQUIRE(memory.deepest == alone.memory.deepest);
+            REQUIRE(load.stored == is(alone.load.stored, energy));
+            REQUIRE(load.lost_normal == is(alone.load.lost_normal, energy));
+            REQUIRE(load.lost_tangential == is(alone.load.lost_tangential, energy));
+            REQUIRE(std::min(load.lost_normal, load.lost_tangential) >= 0);
+            sliding += alone.load.lost_tangential > 0, apart += contact.overlap <= 0;
+            dented += alone.memory.deepest > held.deepest;
+            again += alone.load.lost_normal > 0 && alone.memory.deepest == held.deepest;
+        }
+        ContactKinematics<float> narrow{};
+        const auto wide = detail::lane_of(all, 0);
+        narrow.normal = wide.normal.template cast<float>(),
+        narrow.velocity = wide.velocity.template cast<float>();
+        narrow.overlap = static_cast<float>(wide.overlap);
+        narrow.inverse_mass = 100, narrow.curvature = 200, narrow.time_step = 1e-6;
+        const auto in_float = yields.respond(narrow, {}).load,
+                   in_double = yields.respond(detail::lane_of(all, 0), {}).load;
+        REQUIRE(std::abs(static_cast<Real>(in_float.force.dot(narrow.normal)) -
+                         in_double.force.dot(wide.normal)) < 1e-4 * stiffness * 6e-5);
+    }
+    CHECK(sliding > 500);
+    CHECK(apart > 200);
+    CHECK(dented > 100);
+    CHECK(again > 50);
+}
+
+}  // namespace
+
+TEST_CASE("laws that yield: a pack answers as its contacts do, and loses nothing negative") {
+    lanes_answer_alone(LinearHysteretic{{.stiffness = 1e6, .restitution = 0.6, .friction = 0.5}}, 3e6);
+    // Most of these contacts yield, and few.
+    for (const Real pressure : {1e6, 3e6})
+        lanes_answer_alone(ElasticPlasticHertz{{.youngs = 1e8, .yield_pressure = pressure, .friction = 0.5}},
+                           1e5);
 }
