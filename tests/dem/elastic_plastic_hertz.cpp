@@ -22,8 +22,8 @@ ElasticPlasticHertz law(Real softening = 1, Real rest_damping = 0.02, Real frict
                                 .softening = softening,
                                 .rest_damping = rest_damping}};
 }
-ContactKinematics<Real> at(Real overlap, Real curvature = 100, Real approach = 0) {
-    return {Vec3(0, 0, 1), overlap, Vec3(0, 0, -approach), 100, curvature, 1e-7};
+ContactKinematics<Real> at(Real overlap, Real curvature = 100, Real approach = 0, Real come = 0) {
+    return {Vec3(0, 0, 1), overlap, Vec3(0, 0, -approach), 100, curvature, 1e-7, Vec3(0, 0, -come)};
 }
 
 /// The paper's formula, written anew: v_y = (pi / 2 E*)^2 sqrt(8 pi R^3 / 15 m) p_y^(5/2), and e.
@@ -64,7 +64,7 @@ TEST_CASE("force over overlap: Hertz, the plastic line, Hertz of a flatter conta
     Real deepest = 0, lost = 0;
     const auto go = [&](Real to) {
         CAPTURE(to / yield);
-        const auto [load, next] = hertz.respond(at(to, 1 / radius), memory);
+        const auto [load, next] = hertz.respond(at(to, 1 / radius, 0, 1), memory);
         deepest = std::max(deepest, to);
         const Real most = virgin(deepest), flatter = radius * elastic(deepest, radius) / most;
         const Real dent = deepest - std::pow(3 * most / (4 * youngs * std::sqrt(flatter)), 2.0 / 3);
@@ -265,6 +265,14 @@ TEST_CASE("an open contact: no force, memory cleared, what its tangential spring
     CHECK(memory.spring == Vec3::Zero());
     CHECK(memory.stiffness == 0);
     CHECK(memory.deepest == 0);
+}
+
+TEST_CASE("a contact that is found pressed has its dent from before") {
+    const Real deep = 10 * law().yield_overlap(0.01);
+    const auto found = law().respond(at(deep), Memory{});
+    CHECK(found.load.lost_normal == 0);
+    CHECK(found.memory.deepest == deep);
+    CHECK(law().respond(at(deep, 100, 0, deep), Memory{}).load.lost_normal > 0);
 }
 
 TEST_CASE("rigidity bounds the tangent of every branch") {

@@ -18,8 +18,8 @@ LinearHysteretic law(Real restitution = 0.6, Real friction = 0.5, Real rest_damp
     return LinearHysteretic{
         {.stiffness = 1e6, .restitution = restitution, .friction = friction, .rest_damping = rest_damping}};
 }
-ContactKinematics<Real> at(Real overlap, Real approach = 0, Real dt = 1e-6) {
-    return {Vec3(0, 0, 1), overlap, Vec3(0, 0, -approach), 100, 200, dt};
+ContactKinematics<Real> at(Real overlap, Real approach = 0, Real come = 0, Real dt = 1e-6) {
+    return {Vec3(0, 0, 1), overlap, Vec3(0, 0, -approach), 100, 200, dt, Vec3(0, 0, -come)};
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ TEST_CASE("force over overlap: loaded, unloaded in part, loaded again, beyond, u
         Memory memory{};
         Real deepest = 0, lost = 0;
         const auto go = [&](Real to) {
-            const auto [load, next] = spring.respond(at(to), memory);
+            const auto [load, next] = spring.respond(at(to, 0, 1), memory);
             deepest = std::max(deepest, to);
             const Real force = std::max(k2 * (to - (1 - square(e)) * deepest), 0.0);
             REQUIRE(load.force.z() == doctest::Approx(force).scale(100).epsilon(1e-13));
@@ -191,6 +191,17 @@ TEST_CASE("what stands still loses nothing, whatever its dent") {
         CHECK(load.lost_tangential == 0);
         CHECK(next.deepest == 2e-4);
     }
+}
+
+TEST_CASE("a contact that is found pressed has its dent from before; what it came in this step counts") {
+    const LinearHysteretic spring = law();
+    const auto found = spring.respond(at(1e-4), Memory{});
+    CHECK(found.load.force.z() == doctest::Approx(100));
+    CHECK(found.load.lost_normal == 0);
+    CHECK(found.memory.deepest == 1e-4);
+    const Real whole = 0.5e6 * 0.64 * 1e-8;
+    CHECK(spring.respond(at(1e-4, 0, 2e-4), Memory{}).load.lost_normal == doctest::Approx(whole));
+    CHECK(spring.respond(at(1e-4, 0, 0.5e-4), Memory{}).load.lost_normal == doctest::Approx(0.75 * whole));
 }
 
 TEST_CASE("the dashpot for rest: while loaded again only, no more than the branches leave room for") {

@@ -96,16 +96,15 @@ Real mismatch(const Law& law, int steps, Real depth, Real slip_speed, Real* lost
         const Real overlap = depth * (0.02 + s * s * hills);
         const Real approach = depth * w * (2 * s * c * hills + s * s * (-2.4 * std::sin(4 * w * t) + 0.3));
         const auto slip = [&](Real at) { return slip_speed * std::sin(w * at) * std::cos(2.3 * w * at); };
-        // The path begins in touch: its first point counts as pressed before, so that no step is a half one.
         const auto [load, next] = law.respond(
             {Vec3(0, 0, 1), overlap, Vec3(slip(t), 0, -approach), 0.01, 100, dt, Vec3(dt * slip(half), 0, 0)},
             memory);
-        if (n > 0) {
+        // The path begins in touch, found pressed: its first point is where the sums begin.
+        if (n > 0)
             work -= load.force.dot(Vec3(slip(t), 0, -approach)) * dt;
-            dissipated += load.lost_normal + load.lost_tangential;
-        } else {
-            work += load.stored + load.lost_normal, dissipated += load.lost_normal;
-        }
+        else
+            work += load.stored;
+        dissipated += load.lost_normal + load.lost_tangential;
         stored = load.stored;
         memory = next;
     }

@@ -210,6 +210,16 @@ struct NormalSpring {
     }
 };
 
+/// How far a contact had been pressed before this step [m], of laws that lose by yielding: the largest
+/// overlap that it remembers. A contact that remembers none has come as far as the way of this step; what
+/// overlaps more was found pressed, at the start of a run or as a bond broke, and its dent cost nobody any
+/// work.
+template <class Number>
+Number pressed_before(const ContactKinematics<Number>& contact, Number deepest) noexcept {
+    const Number came = max(-contact.travel.dot(contact.normal), Number(0));
+    return select(deepest > Number(0), deepest, max(contact.overlap - came, Number(0)));
+}
+
 /// The normal force of laws that lose by yielding, with the dashpot for rest beside it. `push` is the force
 /// of the branch, `loading` that of the virgin line at the largest overlap so far: they are equal on that
 /// line. Below it, while the contact is loaded again, the dashpot adds f_v = min(c v, push, loading - push),

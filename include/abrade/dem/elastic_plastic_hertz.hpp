@@ -41,12 +41,15 @@ namespace abrade {
 /// `flat_radius`: concrete is made of spheres, but its surface is flat. Where contacts of this law have the
 /// curvature of a sphere of that radius in them, it is taken out: 1/R = 1/r_i + 1/r_j - 1/flat_radius. Of two
 /// concrete spheres one then counts as flat. Contacts that are less curved than such a sphere are with planes
-/// and stay as they are. Stones with each other need a law without it: a table by materials (MaterialPairs).
+/// and stay as they are. A contact does not say what its two are, so other pairs need a law without
+/// `flat_radius`, in a table by materials (MaterialPairs): stones with each other, and planes that spheres
+/// smaller than the concrete's may touch.
 ///
 /// Range of validity: delta far below R, stones harder than what yields. p_y is no property of concrete that
 /// handbooks list: for ductile materials it is 1.6 (first yield) to 3 times (fully plastic) the yield stress
 /// (K. L. Johnson, Contact Mechanics, 1985, doi:10.1017/CBO9781139171731, 6.2 and 6.3); for concrete fit it
-/// to a measured restitution. A contact that opens loses its dent.
+/// to a measured restitution. A contact that opens loses its dent; one that is found pressed, at the start of
+/// a run or as a bond breaks, has its dent from before.
 /// Throws InputError for parameters out of their range.
 class ElasticPlasticHertz {
 public:
@@ -152,13 +155,14 @@ public:
         const Number push = loading * (share * root_share);
         const Number half_width = Number(root_yield_strain_) * radius * root * root_share;
 
-        const Number root_mass = rsqrt(contact.inverse_mass);
+        const Number root_mass = rsqrt(max(contact.inverse_mass, least));
         const Number dashpot = Number(dashpot_normal_) * sqrt(half_width) * root_mass;
         const auto normal = LoadingAgain<Number>::at(push, loading, dashpot, approach, contact.time_step);
         const Number unit = Number(yield_force_ * yield_strain_) * radius * radius * radius;
-        const Number dented = select(
-            deepest > memory.deepest,
-            unit * dent(max(memory.deepest * per_yield_overlap, Number(1)), max(x, Number(1))), nothing);
+        const Number pressed = pressed_before(contact, memory.deepest);
+        const Number dented =
+            select(deepest > pressed,
+                   unit * dent(max(pressed * per_yield_overlap, Number(1)), max(x, Number(1))), nothing);
 
         const Number begun = begun_share(select(touching, contact.overlap, far), approach, contact.time_step);
         const Number acting = select(begun < Number(1), Number(0.5) + begun, Number(1));

@@ -27,6 +27,8 @@ namespace abrade {
 /// it, whatever the mass of the partner. The limits keep the total force continuous, at both ends of the
 /// line.
 ///
+/// A contact that is found pressed, at the start of a run or as a bond breaks, has its dent from before.
+///
 /// Range of validity: delta far below the radius. A contact that opens loses its dent; one that is struck
 /// again before it opens (overlap below delta_0, but above 0) responds elastically up to delta_max.
 /// Throws InputError for parameters out of their range.
@@ -81,7 +83,7 @@ public:
         const Number nothing(0), far = Number(std::numeric_limits<float>::max());
         const Number approach = -contact.velocity.dot(contact.normal);
         const Vec3Of<Number> slip = contact.velocity + approach * contact.normal;
-        const Number root_mass = rsqrt(contact.inverse_mass);
+        const Number root_mass = rsqrt(max(contact.inverse_mass, Number(tiny<Number>)));
 
         const Number overlap = max(contact.overlap, nothing), deepest = max(memory.deepest, overlap);
         const Number loading = Number(params_.stiffness) * deepest;
@@ -90,8 +92,9 @@ public:
         const auto normal = LoadingAgain<Number>::at(push, loading, root_mass * Number(dashpot_normal_),
                                                      approach, contact.time_step);
         // A product, never negative where a difference of squares may round to less than 0.
-        const Number dented = Number(0.5 * dent_share_ * params_.stiffness) * (deepest - memory.deepest) *
-                              (deepest + memory.deepest);
+        const Number pressed = pressed_before(contact, memory.deepest);
+        const Number dented =
+            Number(0.5 * dent_share_ * params_.stiffness) * (deepest - pressed) * (deepest + pressed);
 
         // What does not touch must not send a pack into the rarer branches: deep, and held by any friction.
         const Number begun = begun_share(select(touching, contact.overlap, far), approach, contact.time_step);
