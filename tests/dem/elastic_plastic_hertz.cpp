@@ -256,6 +256,12 @@ TEST_CASE("a mass that falls on a plane comes to rest, and then loses nothing") 
     CHECK(end.lost + end.stored == doctest::Approx(dropped).epsilon(1e-3));
 }
 
+TEST_CASE("a contact that slides: friction mu f_n, its work is what is lost") {
+    const Sliding off = slide(law(0.01), 1e-4, 0.5);
+    CHECK(off.force < 1e-12);
+    CHECK(off.lost < 1e-12);
+}
+
 TEST_CASE("an open contact: no force, memory cleared, what its tangential spring held is lost once") {
     const auto [load, memory] = law().respond(at(-1e-6), Memory{Vec3(2e-6, 0, 0), 1e6, 1e-4});
     CHECK(load.force == Vec3::Zero());

@@ -221,6 +221,12 @@ TEST_CASE("the dashpot for rest: while loaded again only, no more than the branc
     CHECK(spring.respond(at(0.8e-4, 1e-3), dented).load.lost_normal == doctest::Approx(c * 1e-6 * 1e-6));
 }
 
+TEST_CASE("a contact that slides: friction mu f_n, its work is what is lost") {
+    const Sliding off = slide(law(), 1e-4, 0.5);
+    CHECK(off.force < 1e-12);
+    CHECK(off.lost < 1e-12);
+}
+
 TEST_CASE("an open contact: no force, memory cleared, what its tangential spring held is lost once") {
     const LinearHysteretic spring = law();
     const auto [load, memory] = spring.respond(at(-1e-6, -1), Memory{Vec3(2e-6, 0, 0), 1e-4});

@@ -112,6 +112,29 @@ Real mismatch(const Law& law, int steps, Real depth, Real slip_speed, Real* lost
     return std::abs(work - dissipated - stored);
 }
 
+/// A contact that slides at `overlap` [m] for 200 steps: largest departure of its friction from mu f_n, over
+/// mu f_n, and of what it lost from the work of that once it slides, over that work.
+struct Sliding {
+    Real force = 0, lost = 0;
+};
+template <class Law>
+Sliding slide(const Law& law, Real overlap, Real speed) {
+    typename Law::template Memory<Real> memory{};
+    const Real dt = 1e-5;
+    Sliding worst;
+    for (int n = 0; n < 200; ++n) {
+        const Vec3 slip(speed, 0, 0);
+        const auto [load, next] =
+            law.respond({Vec3(0, 0, 1), overlap, slip, 100, 100, dt, Vec3(dt * slip)}, memory);
+        memory = next;
+        if (n < 100) continue;
+        const Real limit = law.params().friction * load.force.z();
+        worst.force = std::max(worst.force, std::abs(load.force.x() / limit + 1));
+        worst.lost = std::max(worst.lost, std::abs(load.lost_tangential / (limit * speed * dt) - 1));
+    }
+    return worst;
+}
+
 struct Random {
     std::mt19937 engine{23};
     Real uniform(Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(engine); }

@@ -42,10 +42,13 @@ Real share_lost(const Law& law, Real sphere_diameter) {
 TEST_CASE("what concrete loses to an impact does not fall with the size of its spheres") {
     const LinearSpring dashpot{{.stiffness = 3e6, .restitution = 0.6, .friction = 0.5}};
     const LinearHysteretic hysteretic{{.stiffness = 3e6, .restitution = 0.6, .friction = 0.5}};
-    const Real coarse = share_lost(hysteretic, 0.04), fine = share_lost(hysteretic, 0.01);
-    const Real dashpot_coarse = share_lost(dashpot, 0.04), dashpot_fine = share_lost(dashpot, 0.01);
-    MESSAGE("share lost with spheres of 4 and 1 cm: hysteretic " << coarse << ", " << fine << "; dashpot "
-                                                                 << dashpot_coarse << ", " << dashpot_fine);
+    const Real coarse = share_lost(hysteretic, 0.04), middle = share_lost(hysteretic, 0.02),
+               fine = share_lost(hysteretic, 0.01);
+    const Real dashpot_coarse = share_lost(dashpot, 0.04), dashpot_middle = share_lost(dashpot, 0.02),
+               dashpot_fine = share_lost(dashpot, 0.01);
+    MESSAGE("share lost with spheres of 4, 2 and 1 cm: hysteretic "
+            << coarse << ", " << middle << ", " << fine << "; dashpot " << dashpot_coarse << ", "
+            << dashpot_middle << ", " << dashpot_fine);
     // The rest of 1 - e^2 = 0.64 goes into waves in the block: small spheres yield more.
     CHECK(coarse == doctest::Approx(0.58).epsilon(0.05));
     CHECK(fine > 0.7 * coarse);
@@ -62,8 +65,8 @@ TEST_CASE("concrete of large spheres or small, flat to an elastic-plastic contac
                                                .flat_radius = 0.5 * diameter}},
                           diameter);
     };
-    const Real coarse = share(0.04), fine = share(0.01);
-    MESSAGE("share lost with spheres of 4 and 1 cm: " << coarse << ", " << fine);
+    const Real coarse = share(0.04), middle = share(0.02), fine = share(0.01);
+    MESSAGE("share lost with spheres of 4, 2 and 1 cm: " << coarse << ", " << middle << ", " << fine);
     CHECK(fine == doctest::Approx(coarse).epsilon(0.1));
 }
 

@@ -158,11 +158,14 @@ public:
         const Number root_mass = rsqrt(max(contact.inverse_mass, least));
         const Number dashpot = Number(dashpot_normal_) * sqrt(half_width) * root_mass;
         const auto normal = LoadingAgain<Number>::at(push, loading, dashpot, approach, contact.time_step);
-        const Number unit = Number(yield_force_ * yield_strain_) * radius * radius * radius;
+        // Most contacts of a bed yield no further: two roots and a division less.
         const Number pressed = pressed_before(contact, memory.deepest);
-        const Number dented =
-            select(deepest > pressed,
-                   unit * dent(max(pressed * per_yield_overlap, Number(1)), max(x, Number(1))), nothing);
+        Number dented = nothing;
+        if (const auto yields = (deepest > pressed) & (x > Number(1)); any(yields)) {
+            const Number unit = Number(yield_force_ * yield_strain_) * radius * radius * radius;
+            const Number from = max(pressed * per_yield_overlap, Number(1));
+            dented = select(yields, unit * dent(from, max(x, Number(1))), nothing);
+        }
 
         const Number begun = begun_share(select(touching, contact.overlap, far), approach, contact.time_step);
         const Number acting = select(begun < Number(1), Number(0.5) + begun, Number(1));
