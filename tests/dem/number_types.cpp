@@ -13,6 +13,8 @@
 
 using namespace abrade;
 
+static_assert(AnswersPacks<LinearHysteretic> && AnswersPacks<ElasticPlasticHertz>);
+
 namespace {
 
 const LinearSpring law{{.stiffness = 1e6, .restitution = 0.6, .friction = 0.5}};
@@ -227,8 +229,8 @@ void lanes_answer_alone(const Law& yields, Real stiffness) {
         narrow.velocity = wide.velocity.template cast<float>();
         narrow.overlap = static_cast<float>(wide.overlap);
         narrow.inverse_mass = 100, narrow.curvature = 200, narrow.time_step = 1e-6;
-        const auto in_float = yields.respond(narrow, {}).load,
-                   in_double = yields.respond(detail::lane_of(all, 0), {}).load;
+        const auto in_float = yields.respond(narrow, {}).load;
+        const auto in_double = yields.respond(detail::lane_of(all, 0), {}).load;
         REQUIRE(std::abs(static_cast<Real>(in_float.force.dot(narrow.normal)) -
                          in_double.force.dot(wide.normal)) < 1e-4 * stiffness * 6e-5);
     }

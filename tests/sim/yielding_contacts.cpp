@@ -87,7 +87,7 @@ TEST_CASE("a heap comes to rest, asleep or awake, and then loses next to nothing
         CAPTURE(sleep_speed);
         auto sim = simulation(scene, law);
         std::vector<Real> lost;
-        sim.run({.end_time = 1.25, .observe_every = 0.25, .sleep_speed = sleep_speed}, [&](const auto& now) {
+        sim.run({.end_time = 2.5, .observe_every = 0.25, .sleep_speed = sleep_speed}, [&](const auto& now) {
             const Ledger& e = now.ledger();
             REQUIRE(e.residual_relative() < 1e-12);
             lost.push_back(e.lost_normal);
