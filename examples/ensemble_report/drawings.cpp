@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto seed_colour = "#8a8f94", mean_colour = "#0072b2", error_fill = "#b5d4ea",
+constexpr auto seed_colour = "#7b8187", mean_colour = "#0072b2", error_fill = "#b5d4ea",
                bracket_fill = "#fbe9d3", bar_colour = "#56b4e9";
 constexpr Real gap = Statistics::unknown;  // gnuplot lifts its pen
 
@@ -71,7 +71,7 @@ std::string error_bars(const char* direction) {
            mean_colour + "'";
 }
 std::string seed_points() {
-    return std::string("points pointtype 6 pointsize 0.9 linecolor '") + seed_colour + "'";
+    return std::string("points pointtype 6 pointsize 1.3 linewidth 1.2 linecolor '") + seed_colour + "'";
 }
 /// An unknown standard error is drawn as none: the point alone.
 Real drawn_error(const Statistics& s) { return std::isfinite(s.standard_error) ? s.standard_error : 0; }

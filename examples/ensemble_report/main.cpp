@@ -57,7 +57,7 @@ std::string with_unit(const Metric& m) { return m.unit.empty() ? m.title : m.tit
 std::string with_error(const Statistics& s, Real factor) {
     if (s.count == 0) return "none";
     const Real mean = factor * s.mean, error = factor * s.standard_error;
-    if (!std::isfinite(error)) return short_number(mean) + " (one run)";
+    if (!std::isfinite(error)) return short_number(mean) + " (one value)";
     if (error == 0) return short_number(mean) + " ± 0";
     const int place = 1 - static_cast<int>(std::floor(std::log10(error)));  // digits after the point
     if (place > 6 || place < -3) return short_number(mean) + " ± " + short_number(error, 2);
@@ -237,7 +237,7 @@ int evaluate(const fs::path& folder, const std::string& wanted) {
     for (const EnsembleCase& one : e.cases) {
         std::cout << one.name << ": " << one.count(&EnsembleRun::ok) << " of " << one.runs.size() << " runs, "
                   << metric.title << " " << with_error(one.of(metric.name), metric.factor)
-                  << (metric.unit.empty() ? "" : " " + metric.unit) << "\n";
+                  << (metric.unit.empty() || one.of(metric.name).count == 0 ? "" : " " + metric.unit) << "\n";
     }
     for (const EnsembleCase& one : e.cases)
         for (const EnsembleRun& run : one.runs)
