@@ -26,10 +26,9 @@ std::vector<Real> smoothed(const std::vector<Real>& values, std::size_t half) {
     return out;
 }
 
-std::vector<std::vector<Real>> smoothed_depths(const EnsembleCase& one, DepthLine EnsembleRun::*line,
-                                               std::size_t half) {
-    std::vector<std::vector<Real>> depths = one.depths(line);
-    for (auto& depth : depths) depth = smoothed(depth, half);
+std::vector<std::vector<Real>> smoothed_depths(const EnsembleCase& one, const DepthChart& chart) {
+    std::vector<std::vector<Real>> depths = one.depths(chart.line);
+    for (auto& depth : depths) depth = smoothed(depth, chart.half);
     return depths;
 }
 
@@ -38,7 +37,7 @@ void begin_fill(charts::Plot& plot, const std::string& colour, const std::string
 }
 
 void add_bracket(charts::Plot& plot, const DepthChart& chart) {
-    begin_fill(plot, bracket_fill, "physical bracket");
+    begin_fill(plot, bracket_fill, chart.bracket_title);
     plot.row({chart.from, chart.bracket.low, chart.bracket.high});
     plot.row({chart.to, chart.bracket.low, chart.bracket.high});
 }
@@ -84,7 +83,8 @@ std::string row_names(const std::vector<std::string>& names, charts::Layout& lay
         longest = std::max(longest, names[i].size());
         tics += (i == 0 ? "" : ", ") + gnuplot_text(names[i]) + " " + to_text(-static_cast<Real>(i));
     }
-    layout.left = std::clamp(40 + 9 * static_cast<int>(longest), 120, 620);
+    layout.left = std::clamp(40 + 11 * static_cast<int>(longest), 120, 700);
+    layout.width = std::max(layout.width, layout.left + 730);
     layout.height = layout.top + layout.bottom + 60 + 44 * static_cast<int>(names.size());
     return "set ytics (" + tics + ")\n";
 }
@@ -98,10 +98,9 @@ bool sweeps_one_number(const Ensemble& e) {
            });
 }
 
-void draw(const DepthChart& chart, const EnsembleCase& one, DepthLine EnsembleRun::*line,
-          const fs::path& picture) {
-    const std::vector<Real> place = one.places(line);
-    const auto depths = smoothed_depths(one, line, chart.half);
+void draw(const DepthChart& chart, const EnsembleCase& one, const fs::path& picture) {
+    const std::vector<Real> place = one.places(chart.line);
+    const auto depths = smoothed_depths(one, chart);
     const auto along = statistics_along(depths);
     charts::Plot plot;
     add_bracket(plot, chart);
@@ -118,15 +117,14 @@ void draw(const DepthChart& chart, const EnsembleCase& one, DepthLine EnsembleRu
     finish(plot, chart.title, chart.place, depth_axis, {}, "", picture);
 }
 
-void draw_means(const DepthChart& chart, const Ensemble& e, DepthLine EnsembleRun::*line,
+void draw_means(const DepthChart& chart, const std::vector<const EnsembleCase*>& cases,
                 const fs::path& picture) {
     charts::Plot plot;
     add_bracket(plot, chart);
     std::size_t index = 0;
-    for (const EnsembleCase& one : e.cases) {
-        Curve mean{.title = one.label(), .x = one.places(line), .y = {}};
-        for (const Statistics& s : statistics_along(smoothed_depths(one, line, chart.half)))
-            mean.y.push_back(s.mean);
+    for (const EnsembleCase* one : cases) {
+        Curve mean{.title = one->label(), .x = one->places(chart.line), .y = {}};
+        for (const Statistics& s : statistics_along(smoothed_depths(*one, chart))) mean.y.push_back(s.mean);
         plot.curve(mean, index++);
     }
     finish(plot, chart.title, chart.place, depth_axis, {}, "", picture);
@@ -207,7 +205,7 @@ void draw_tornado(const Ensemble& e, const Metric& metric, const fs::path& pictu
         plot.row({x, bottom, 0.5}), range.add(x);
     plot.begin("1:2:3:4:5:6",
                std::string("boxxyerror fillcolor '") + bar_colour + "' fillstyle solid noborder",
-               "value, less base");
+               "change from the base");
     const auto place = [](std::size_t row, std::size_t bar, std::size_t bars) {
         return 0.36 - static_cast<Real>(row) -
                0.72 * (static_cast<Real>(bar) + 0.5) / static_cast<Real>(bars);
@@ -222,7 +220,7 @@ void draw_tornado(const Ensemble& e, const Metric& metric, const fs::path& pictu
                 {s.mean, y, std::min(s.mean, base.mean), std::max(s.mean, base.mean), y - half, y + half});
             const Real error = drawn_error(s), side = s.mean < base.mean ? -1 : 1;
             range.add(s.mean - error), range.add(s.mean + error);
-            labels += "set label " + gnuplot_text(value) + " at " +
+            labels += "set label " + gnuplot_text(unquoted(value)) + " at " +
                       to_text(side < 0 ? std::min(s.mean - error, base.mean - base_error)
                                        : std::max(s.mean + error, base.mean + base_error)) +
                       ", " + to_text(y) + (side < 0 ? " right offset -1, 0" : " left offset 1, 0") +

@@ -20,21 +20,22 @@ struct Metric {
     Real factor = 1;  ///< from the unit of summary.json to this one
 };
 
-/// Depth of one case: each seed a thin line, their mean with a band of its standard error, and the physical
-/// bracket over the compared section [mm/m3]. `half` columns to each side are averaged first: single spheres
-/// are hit by chance.
+/// Depth along or across the channel with the physical bracket [mm/m3]. `half` columns to each side are
+/// averaged first: single spheres are hit by chance.
 struct DepthChart {
     std::string title;
     Axis place;
-    Real from = 0, to = 0;  ///< of the bracket [m]
+    DepthLine EnsembleRun::*line;
+    std::size_t half = 0;
     Bracket bracket{};
-    std::size_t half = 2;
+    std::string bracket_title;
+    Real from = 0, to = 0;  ///< of the bracket [m]
 };
-void draw(const DepthChart& chart, const EnsembleCase& one, DepthLine EnsembleRun::*line,
-          const std::filesystem::path& picture);
+/// One case: each seed a thin line, their mean with a band of its standard error.
+void draw(const DepthChart& chart, const EnsembleCase& one, const std::filesystem::path& picture);
 
-/// The means of all cases on one chart.
-void draw_means(const DepthChart& chart, const Ensemble& e, DepthLine EnsembleRun::*line,
+/// The means of several cases.
+void draw_means(const DepthChart& chart, const std::vector<const EnsembleCase*>& cases,
                 const std::filesystem::path& picture);
 
 /// Mean and standard error of a metric over the one number that was swept.

@@ -40,10 +40,23 @@ struct EnsembleRun {
     bool failed() const { return code && !error.empty(); }
 };
 
+/// A TOML text without its quotes.
+inline std::string unquoted(const std::string& value) {
+    const bool quoted = value.size() > 1 && (value.front() == '"' || value.front() == '\'');
+    return quoted ? value.substr(1, value.size() - 2) : value;
+}
+
+/// The part of a channel that its depth lines show.
+struct Reach {
+    Real length = 0, width = 0;               ///< of the channel [m]
+    Real compared_from = 0, compared_to = 0;  ///< section of the centre line [m]
+};
+
 struct EnsembleCase {
     std::string name;                                            ///< of its folder
     std::vector<std::pair<std::string, std::string>> overrides;  ///< key, value
     std::vector<EnsembleRun> runs{};                             ///< [seed]
+    Reach reach{};
 
     /// Of runs that are done and did not fail, one for each seed; else not a number.
     std::vector<Real> by_seed(const std::string& metric) const {
@@ -77,7 +90,8 @@ struct EnsembleCase {
     /// "contact.friction = 0.3, wear.acceleration = 25", or "as in the file".
     std::string label() const {
         std::string text;
-        for (const auto& [key, value] : overrides) text += (text.empty() ? "" : ", ") + key + " = " + value;
+        for (const auto& [key, value] : overrides)
+            text += (text.empty() ? "" : ", ") + key + " = " + unquoted(value);
         return text.empty() ? "as in the file" : text;
     }
 };
@@ -89,8 +103,6 @@ struct Ensemble {
     std::vector<std::string> metrics;  ///< names, in the order of summary.json
     std::vector<EnsembleCase> cases;
     std::string title;
-    Real compared_from = 0, compared_to = 0;  ///< section of the centre line [m]
-    Real length = 0, width = 0;               ///< of the channel [m]
 
     bool one_at_a_time() const { return mode == "one at a time"; }
     std::size_t count(bool (EnsembleRun::*is)() const) const {
@@ -154,7 +166,8 @@ inline std::vector<Real> numbers(const nlohmann::ordered_json& json) {
 }
 
 /// What the run left: its figures and depth lines, or why there are none.
-inline void read_run(const std::filesystem::path& folder, EnsembleRun& run, Ensemble& ensemble) {
+inline void read_run(const std::filesystem::path& folder, EnsembleRun& run, Reach& reach,
+                     Ensemble& ensemble) {
     if (!std::filesystem::exists(folder)) {
         run.error = "no folder came back from its host";
         return;
@@ -173,10 +186,8 @@ inline void read_run(const std::filesystem::path& folder, EnsembleRun& run, Ense
         ensemble.title = summary.at("title").get<std::string>();
         run.along = {numbers(profiles.at("x_m")), numbers(profiles.at("centre_depth_mm_per_m3"))};
         run.across = {numbers(profiles.at("y_m")), numbers(profiles.at("across_depth_mm_per_m3"))};
-        ensemble.compared_from = profiles.at("compared_from_m").get<Real>();
-        ensemble.compared_to = profiles.at("compared_to_m").get<Real>();
-        ensemble.length = profiles.at("length_m").get<Real>();
-        ensemble.width = profiles.at("width_m").get<Real>();
+        reach = {profiles.at("length_m").get<Real>(), profiles.at("width_m").get<Real>(),
+                 profiles.at("compared_from_m").get<Real>(), profiles.at("compared_to_m").get<Real>()};
     } catch (const nlohmann::json::exception& error) {
         run.error = std::string("its results cannot be read: ") + error.what();
     }
@@ -225,7 +236,7 @@ inline Ensemble read_ensemble(const std::filesystem::path& folder) {
             const auto found = codes.find(s * e.cases.size() + c + 1);
             if (found == codes.end() || found->second == 130) continue;  // ended by a signal, and not done
             run.code = found->second;
-            files::read_run(folder / run.folder, run, e);
+            files::read_run(folder / run.folder, run, one.reach, e);
         }
     return e;
 }

@@ -54,6 +54,7 @@ inline nlohmann::ordered_json to_json(const Ensemble& e, const EnsembleCase& one
         metrics[metric] = of_metric;
     }
     json["metrics"] = metrics;
+    json["compared_from_m"] = one.reach.compared_from, json["compared_to_m"] = one.reach.compared_to;
     json["profiles"] = {{"centre_depth_mm_per_m3", to_json(one, &EnsembleRun::along)},
                         {"across_depth_mm_per_m3", to_json(one, &EnsembleRun::across)}};
     return json;
@@ -71,9 +72,7 @@ inline void write_ensemble_json(const Ensemble& e, const std::filesystem::path& 
                                 {"one_at_a_time", e.one_at_a_time()},
                                 {"runs", e.runs()},
                                 {"ok", e.count(&EnsembleRun::ok)},
-                                {"failed", e.count(&EnsembleRun::failed)},
-                                {"compared_from_m", e.compared_from},
-                                {"compared_to_m", e.compared_to}};
+                                {"failed", e.count(&EnsembleRun::failed)}};
     json["cases"] = nlohmann::ordered_json::array();
     json["failed_runs"] = nlohmann::ordered_json::array();
     for (const EnsembleCase& one : e.cases) {

@@ -44,6 +44,7 @@ const std::array<Metric, 12> known_metrics{
      {"stones_fed", "stones fed"},
      {"wall_s", "wall time of a run", "s"}}};
 constexpr std::size_t metrics_beside = 4;  ///< columns of the table of cases
+constexpr std::size_t most_means = 7;      ///< curves that one chart can tell apart
 
 Metric metric_of(const std::string& name) {
     const auto found = std::find_if(known_metrics.begin(), known_metrics.end(),
@@ -117,53 +118,61 @@ ReportTable table_of_failures(const Ensemble& e) {
     return table;
 }
 
-/// The bracket for the mean width that wears in these cases.
-Bracket bracket_of(const std::vector<const EnsembleCase*>& cases) {
+/// A chart of depth for these cases: along the centre line, or across. The bracket is for the mean width that
+/// wears.
+DepthChart depth_chart(const std::vector<const EnsembleCase*>& cases, bool along) {
     std::vector<Real> widths;
-    for (const EnsembleCase* one : cases)
+    Reach reach = cases.front()->reach;
+    for (const EnsembleCase* one : cases) {
         for (const Real width : one->by_seed("worn_band_width_m")) widths.push_back(width);
-    const Real width = statistics(widths).mean;
-    return Bracket{}.per_width(width > 0 ? width : 1);
+        reach.length = std::max(reach.length, one->reach.length);
+        reach.width = std::max(reach.width, one->reach.width);
+    }
+    const Real mean = statistics(widths).mean, worn = mean > 0 ? mean : 1;
+    const Bracket bracket = Bracket{}.per_width(worn);
+    const std::string on_width = ", " + short_number(worn, 2) + " m wide";
+    if (along)
+        return {
+            .title = "Abrasion depth along the centre line",
+            .place = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = reach.length},
+            .line = &EnsembleRun::along,
+            .half = 2,
+            .bracket = bracket,
+            .bracket_title = "physical bracket" + on_width,
+            .from = reach.compared_from,
+            .to = reach.compared_to};
+    return {.title = "Abrasion depth across the channel, mean of the compared section",
+            .place = {.label = "across", .unit = "m", .min = -0.5 * reach.width, .max = 0.5 * reach.width},
+            .line = &EnsembleRun::across,
+            .half = 1,
+            .bracket = bracket,
+            .bracket_title = "physical bracket" + on_width,
+            .from = -0.5 * worn,
+            .to = 0.5 * worn};
 }
 
 void add_depth_charts(const Ensemble& e, const fs::path& charts_folder, Report& report) {
-    const DepthChart along{
-        .title = "Abrasion depth along the centre line",
-        .place = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = e.length},
-        .from = e.compared_from,
-        .to = e.compared_to};
-    const DepthChart across{
-        .title = "Abrasion depth across the channel, mean of the compared section",
-        .place = {.label = "across", .unit = "m", .min = -0.5 * e.width, .max = 0.5 * e.width},
-        .from = -0.5 * e.width,
-        .to = 0.5 * e.width,
-        .half = 1};
-    const std::string bracket = "The bracket is what physics allows on the mean width that wears.";
     std::vector<const EnsembleCase*> drawn;
     for (const EnsembleCase& one : e.cases)
         if (one.of("centre_depth_mm_per_m3").count > 0) drawn.push_back(&one);
-    const auto add = [&](const fs::path& picture, const std::string& caption) {
-        report.figures.push_back({picture, caption});
-    };
-    if (drawn.size() > 1 && e.cases.size() <= 7) {
-        for (DepthChart chart : {along, across}) {
-            chart.bracket = bracket_of(drawn);
-            const bool is_along = chart.half == along.half;
-            const fs::path picture = charts_folder / (is_along ? "centre_lines.png" : "across.png");
-            draw_means(chart, e, is_along ? &EnsembleRun::along : &EnsembleRun::across, picture);
-            add(picture, chart.title + ": the mean of each case. " + bracket);
+    if (drawn.size() > 1 && drawn.size() <= most_means)
+        for (const bool along : {true, false}) {
+            const DepthChart chart = depth_chart(drawn, along);
+            const fs::path picture = charts_folder / (along ? "centre_lines.png" : "across.png");
+            draw_means(chart, drawn, picture);
+            report.figures.push_back({picture, chart.title + ": the mean of each case."});
         }
-    }
     for (const EnsembleCase* one : drawn)
-        for (DepthChart chart : {along, across}) {
-            chart.bracket = bracket_of({one});
-            const bool is_along = chart.half == along.half;
+        for (const bool along : {true, false}) {
+            const DepthChart chart = depth_chart({one}, along);
             const fs::path picture =
-                charts_folder / ((is_along ? "centre_line_" : "across_") + one->name + ".png");
-            draw(chart, *one, is_along ? &EnsembleRun::along : &EnsembleRun::across, picture);
-            add(picture, (e.cases.size() == 1 ? "" : one->label() + ": ") + "running mean of " +
-                             std::to_string(2 * chart.half + 1) + " columns, for " +
-                             std::to_string(one->depths(&EnsembleRun::along).size()) + " seeds. " + bracket);
+                charts_folder / ((along ? "centre_line_" : "across_") + one->name + ".png");
+            draw(chart, *one, picture);
+            report.figures.push_back(
+                {picture, chart.title + (e.cases.size() == 1 ? "" : "; " + one->label()) +
+                              ". Running mean of " + std::to_string(2 * chart.half + 1) + " columns, " +
+                              std::to_string(one->depths(chart.line).size()) +
+                              " seeds. The bracket is what physics allows on the width that wears."});
         }
 }
 
