@@ -33,11 +33,20 @@ struct ReportFigure {
     std::string caption{};
 };
 
+/// A table of its own; the first column names the rows.
+struct ReportTable {
+    std::string title{};
+    std::vector<std::string> columns{};
+    std::vector<std::vector<std::string>> rows{};
+    bool numbers = true;  ///< to the right, but for the first column
+};
+
 /// What a report says. Any text may hold any character.
 struct Report {
     std::string title{};
     std::string explanation{};  ///< one paragraph: what was run, and what it shows
     std::vector<ReportRow> summary{};
+    std::vector<ReportTable> tables{};
     std::vector<ReportFigure> figures{};
     std::vector<Parameter> parameters{};
     std::vector<std::string> notes{};
@@ -158,6 +167,21 @@ inline std::string table(const std::vector<ReportRow>& rows) {
     return html + "</tbody></table>\n";
 }
 
+inline std::string table(const ReportTable& t) {
+    const std::string kind = t.numbers ? "value" : "text";
+    std::string html = "<h2>" + html_text(t.title) + "</h2>\n<table><thead><tr>";
+    for (const std::string& name : t.columns)
+        html += (&name == &t.columns.front() ? "<th>" : "<th class=\"" + kind + "\">") + html_text(name) +
+                "</th>";
+    html += "</tr></thead><tbody>\n";
+    for (const auto& row : t.rows) {
+        html += "<tr>";
+        for (const std::string& text : row) html += cell(&text == &row.front() ? "key" : kind, text);
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table>\n";
+}
+
 inline std::string parameter_table(const std::vector<Parameter>& parameters) {
     std::string html =
         "<table><thead><tr><th>Parameter</th><th "
@@ -199,6 +223,7 @@ inline std::string to_html(const Report& r) {
         html += "</ul>\n";
     }
     if (!r.summary.empty()) html += "<h2>Summary</h2>\n" + report::table(r.summary);
+    for (const ReportTable& one : r.tables) html += report::table(one);
     if (!r.figures.empty()) html += "<h2>Pictures</h2>\n";
     for (const ReportFigure& figure : r.figures) html += report::picture(figure);
     if (!r.parameters.empty()) html += "<h2>Parameters</h2>\n" + report::parameter_table(r.parameters);

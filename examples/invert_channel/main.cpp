@@ -1,7 +1,7 @@
 // The main job: gravel and water down a concrete channel, and what they wear off it.
 //
 //   examples/run invert_channel [FILE.toml] [--fluid NAME] [--set section.key=value]... [--out FOLDER]
-//   [--threads N]
+//   [--threads N] [--check]
 //
 // config       what the TOML file says, checked
 // fluids       which waters there are; fluid_NAME.cpp: one of them
@@ -9,9 +9,11 @@
 // channel      from the configuration to a simulation, and from a simulation to results
 // recorder     what is written while it runs
 // pictures     what is drawn when it is done
+// profiles     the worn bed along the centre and across, for examples/ensemble
 
 #include "fluids.hpp"
 #include "pictures.hpp"
+#include "profiles.hpp"
 
 #include "../common/gnuplot.hpp"
 #include "../common/measured_points.hpp"
@@ -38,6 +40,7 @@ struct Options {
     std::string fluid;
     std::filesystem::path out = "out/invert_channel";
     int threads = 0;
+    bool check = false;
 };
 
 void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::filesystem::path& path) {
@@ -124,6 +127,7 @@ int run(const Options& options) {
     const ChannelConfig config = read_channel_config(options.file, options.overrides);
     require_gnuplot();
     if (!config.comparison.measured.empty()) read_measured_points(config.comparison.measured);
+    if (options.check) return 0;
     OutputFolder folder(options.out);
     for (const auto& left : folder.leftovers())
         std::cerr << "note: " << left.string()
@@ -141,6 +145,7 @@ int run(const Options& options) {
     std::string unfinished;  // what was computed is kept, whatever happens to its pictures
     try {
         write_summary(config, results, folder.path("summary.json"));
+        write_profiles(config, results, folder.path("profiles.json"));
         write_report(config, results, folder);
     } catch (const std::exception& error) {
         unfinished = error.what();
@@ -191,6 +196,7 @@ int main(int argc, char** argv) {
     app.add_option("--out", options.out, "folder of the results")->capture_default_str();
     app.add_option("--threads", options.threads, "0: OMP_NUM_THREADS or all cores")
         ->check(CLI::Range(0, 1024));
+    app.add_flag("--check", options.check, "reads and checks the configuration, and runs nothing");
     H5dont_atexit();  // files are closed here; after a full disk HDF5's own clean-up at exit would crash
     try {
         app.parse(argc, argv);
