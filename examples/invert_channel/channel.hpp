@@ -56,6 +56,7 @@ inline void compare_centre(const ChannelConfig& c, const Lattice& lattice, Chann
         for (Index j = 0; j < r.across; ++j) {
             const Real y = lattice.sites[static_cast<std::size_t>(lattice.site(i, j, 0))].centre.y();
             const Real d = r.depth_m[static_cast<std::size_t>(i * r.across + j)];
+            if (i == 0) r.y_m.push_back(y);
             if (std::abs(y) <= c.comparison.half_width) depth += d, ++columns;
             if (compared) across[static_cast<std::size_t>(j)] += d, worn += d;
         }

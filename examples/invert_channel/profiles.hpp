@@ -3,7 +3,6 @@
 
 #include "results.hpp"
 
-#include <abrade/geometry/lattice.hpp>
 #include <abrade/io/file_error.hpp>
 
 #include <nlohmann/json.hpp>
@@ -15,17 +14,12 @@
 
 namespace abrade::examples {
 
-/// Abrasion depth across the channel: the mean over the compared section, at each column of the lattice.
-struct CrossProfile {
-    std::vector<Real> y;             ///< [across] from the right wall on [m]
-    std::vector<Real> depth_per_m3;  ///< [across] per converted sediment [mm/m3]; not a number before any
-};
-
-inline CrossProfile cross_profile(const ChannelConfig& c, const ChannelResults& r) {
-    const Lattice lattice = invert_lattice(c.invert, c.lattice);
+/// Abrasion depth across the channel [mm per m3 of converted sediment]: the mean over the compared section,
+/// at each column of the lattice. Not a number before any sediment has passed.
+inline std::vector<Real> cross_profile(const ChannelConfig& c, const ChannelResults& r) {
     const Real per_m3 =
         r.converted_sediment_m3 > 0 ? 1e3 / r.converted_sediment_m3 : std::numeric_limits<Real>::quiet_NaN();
-    CrossProfile profile;
+    std::vector<Real> profile;
     for (Index j = 0; j < r.across; ++j) {
         Real depth = 0;
         Index compared = 0;
@@ -34,8 +28,7 @@ inline CrossProfile cross_profile(const ChannelConfig& c, const ChannelResults& 
             if (x < c.comparison.from || x > c.comparison.to) continue;
             depth += r.depth_m[static_cast<std::size_t>(i * r.across + j)], ++compared;
         }
-        profile.y.push_back(lattice.sites[static_cast<std::size_t>(lattice.site(0, j, 0))].centre.y());
-        profile.depth_per_m3.push_back(compared > 0 ? depth / compared * per_m3 : 0);
+        profile.push_back(compared > 0 ? depth / compared * per_m3 : 0);
     }
     return profile;
 }
@@ -44,15 +37,14 @@ inline CrossProfile cross_profile(const ChannelConfig& c, const ChannelResults& 
 /// Throws FileError.
 inline void write_profiles(const ChannelConfig& c, const ChannelResults& r,
                            const std::filesystem::path& path) {
-    const CrossProfile across = cross_profile(c, r);
     const nlohmann::ordered_json profiles{{"length_m", c.invert.length},
                                           {"width_m", c.invert.width},
                                           {"compared_from_m", c.comparison.from},
                                           {"compared_to_m", c.comparison.to},
                                           {"x_m", r.x_m},
                                           {"centre_depth_mm_per_m3", r.centre_depth_per_m3},
-                                          {"y_m", across.y},
-                                          {"across_depth_mm_per_m3", across.depth_per_m3}};
+                                          {"y_m", r.y_m},
+                                          {"across_depth_mm_per_m3", cross_profile(c, r)}};
     std::ofstream file(path);
     file << profiles.dump() << "\n";
     if (!file.flush()) throw FileError("cannot write '" + path.string() + "'");

@@ -65,7 +65,7 @@ struct ChannelResults {
 
     std::vector<Real> depth_m;  ///< [along x across] abrasion depth
     Index along = 0, across = 0;
-    std::vector<Real> x_m;                  ///< [along] of the columns
+    std::vector<Real> x_m, y_m;             ///< [along], [across] of the columns
     std::vector<Real> centre_depth_per_m3;  ///< [along] [mm/m3]
     std::vector<DrawnSphere> spheres;
     LedgerHistory ledger;

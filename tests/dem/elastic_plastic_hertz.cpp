@@ -314,7 +314,7 @@ TEST_CASE("parameters that make no sense are refused, with the rule") {
     refused(&Params::softening, 1.1);
     CHECK_THROWS_WITH_AS(ElasticPlasticHertz({.youngs = 2.7e10}),
                          "ElasticPlasticHertz.yield_pressure must be finite and > 0, got 0 Pa; fit it to a "
-                         "measured restitution; concrete is near 1e8 Pa",
+                         "measured restitution",
                          InputError);
     CHECK_THROWS_WITH_AS(ElasticPlasticHertz({.youngs = 2.7e10, .yield_pressure = 1e8, .softening = 2}),
                          "ElasticPlasticHertz.softening must be in (0, 1], got 2; 1 takes the moduli as they "

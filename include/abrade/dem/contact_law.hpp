@@ -226,11 +226,11 @@ Number pressed_before(const ContactKinematics<Number>& contact, Number deepest) 
 /// v > 0 the speed of approach. Nothing is added on the virgin line nor while the contact unloads, so an
 /// impact never meets the dashpot; at both ends of the branch the force is continuous.
 template <class Number>
-struct LoadingAgain {
+struct Reloading {
     Number force;  ///< [N]
     Number lost;   ///< to the dashpot, over the step [J], >= 0
 
-    static LoadingAgain at(Number push, Number loading, Number dashpot, Number approach, Real dt) noexcept {
+    static Reloading at(Number push, Number loading, Number dashpot, Number approach, Real dt) noexcept {
         const Number speed = max(approach, Number(0)), room = max(min(push, loading - push), Number(0));
         const Number damping = min(dashpot * speed, room);
         return {push + damping, damping * speed * Number(dt)};

@@ -28,7 +28,7 @@ namespace abrade {
 /// HertzMindlin's incremental one does
 /// mu friction [-], m effective mass [kg], zeta damping ratio for rest [-]
 /// What the dent cost is lost while delta_m grows; a dashpot for rest acts while a contact is loaded again
-/// (LoadingAgain), so that an impact never meets it.
+/// (Reloading), so that an impact never meets it.
 ///
 /// A normal impact at speed v [m/s] loses nothing up to the yield speed v_y; beyond it, with r = v_y / v,
 ///   v_y = (pi / 2 E*)^2 sqrt(8 pi R^3 / 15 m) p_y^(5/2)
@@ -73,7 +73,7 @@ public:
                              "give that of the material; softening makes the run's softer");
             require_poisson(poisson, "ElasticPlasticHertz.poisson");
             require_positive(yield_pressure, "ElasticPlasticHertz.yield_pressure", "Pa",
-                             "fit it to a measured restitution; concrete is near 1e8 Pa");
+                             "fit it to a measured restitution");
             require_not_negative(friction, "ElasticPlasticHertz.friction", "", "0 slides freely");
             require_not_negative(youngs_other, "ElasticPlasticHertz.youngs_other", "Pa",
                                  "0 means the same material");
@@ -157,7 +157,7 @@ public:
 
         const Number root_mass = rsqrt(max(contact.inverse_mass, least));
         const Number dashpot = Number(dashpot_normal_) * sqrt(half_width) * root_mass;
-        const auto normal = LoadingAgain<Number>::at(push, loading, dashpot, approach, contact.time_step);
+        const auto normal = Reloading<Number>::at(push, loading, dashpot, approach, contact.time_step);
         // Most contacts of a bed yield no further: two roots and a division less.
         const Number pressed = pressed_before(contact, memory.deepest);
         Number dented = nothing;

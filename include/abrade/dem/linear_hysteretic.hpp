@@ -89,8 +89,8 @@ public:
         const Number loading = Number(params_.stiffness) * deepest;
         // From delta_max down: exact on the line of loading, where a dent and an overlap would round.
         const Number push = max(loading - Number(unloading_) * (deepest - overlap), nothing);
-        const auto normal = LoadingAgain<Number>::at(push, loading, root_mass * Number(dashpot_normal_),
-                                                     approach, contact.time_step);
+        const auto normal = Reloading<Number>::at(push, loading, root_mass * Number(dashpot_normal_),
+                                                  approach, contact.time_step);
         // A product, never negative where a difference of squares may round to less than 0.
         const Number pressed = pressed_before(contact, memory.deepest);
         const Number dented =
