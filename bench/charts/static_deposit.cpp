@@ -43,8 +43,9 @@ void draw_rates(const std::filesystem::path& folder) {
                   << 1e9 * (h.worn.back() - worn_at(h, rest_from)) << ", " << h.unchanged_since() << ", "
                   << h.kinetic.back() << ", " << h.asleep << std::endl;
     };
-    add("cubic lattice, springs; stones and concrete may sleep",
-        lie({.slab = Slab::cubic, .wake_force = 1}, springs, end_time));
+    add("cubic lattice that stands",
+        lie({.slab = Slab::cubic, .sleep_speed = 0, .level = ConcreteLevel::quasi_static}, springs,
+            end_time));
     add("cubic lattice, springs that resist twisting",
         lie({.slab = Slab::cubic, .sleep_speed = 0}, twist_springs, end_time));
     add("cubic lattice, springs; stones may sleep", lie({.slab = Slab::cubic}, springs, end_time));

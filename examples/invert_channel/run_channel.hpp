@@ -56,8 +56,7 @@ ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path&
                      .safety = config.safety,
                      .observe_every = config.output_every,
                      .skin = config.skin,
-                     .wake_force = config.wake_force,
-                     .wake_radius = config.wake_radius,
+
                      .stop = stop},
                     watch);
         } catch (const RunError& error) {

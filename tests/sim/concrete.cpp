@@ -23,7 +23,9 @@ SubParticleAbrasion abrasion(Real beta) {
 
 Scene slab(Index layers = 3, Real side = 0.1) {
     Scene scene;
-    scene.concrete = ConcreteBlock{flat_lattice(side, side, {.layers = layers})};
+    scene.concrete = ConcreteBlock{.lattice = flat_lattice(side, side, {.layers = layers}),
+                                   .worn_out = WornOut::grain,
+                                   .overflow = DropOverflow{}};
     return scene;
 }
 

@@ -23,7 +23,7 @@ struct Setting {
     Slab slab = Slab::hexagonal;
     Real rolling_friction = 0.1;  ///< [-]
     Real sleep_speed = 2e-3;      ///< of stones [m/s]; 0: none sleeps
-    Real wake_force = 0;          ///< of concrete [N]; 0: all is awake
+    ConcreteLevel level = ConcreteLevel::dynamic;
 };
 
 /// Four spheres at the corners of a tetrahedron, with the volume of a sphere of diameter `size` [m].
@@ -42,9 +42,9 @@ inline Scene scene(const Setting& setting) {
     constexpr LatticeSize size{.sphere_diameter = 0.04, .layers = 3};
     const Real side = (setting.per_side + 0.25) * apart;
     Scene all;
-    all.concrete =
-        ConcreteBlock{.lattice = setting.slab == Slab::cubic ? flat_lattice(side, side, size)
-                                                             : hexagonal_lattice(side, side, size)};
+    all.concrete = ConcreteBlock{.lattice = setting.slab == Slab::cubic ? flat_lattice(side, side, size)
+                                                                        : hexagonal_lattice(side, side, size),
+                                 .level = setting.level};
     for (const Vec3& inward : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
         all.add_wall(-0.5 * side * inward, inward);
     std::mt19937_64 random(11);
@@ -86,7 +86,6 @@ struct History {
     std::vector<Real> time, worn, kinetic;  ///< [s], [m3], [J]
     Index asleep = 0, broken = 0;           ///< stones, bonds, at the end
     Real residual = 0;                      ///< of the ledger, relative, at the end [-]
-    Real awake = 1;                         ///< share of the concrete, mean over all steps [-]
 
     /// Since when the worn volume has been what it is at the end, to the last bit [s].
     Real unchanged_since() const {
@@ -100,16 +99,13 @@ template <class Bond>
 History lie(const Setting& setting, const Bond& bond, Real end_time) {
     auto sim = simulation(setting, bond);
     History h;
-    sim.run({.end_time = end_time,
-             .observe_every = 0.05,
-             .sleep_speed = setting.sleep_speed,
-             .wake_force = setting.wake_force},
+    sim.run({.end_time = end_time, .observe_every = 0.05, .sleep_speed = setting.sleep_speed},
             [&](const auto& now) {
                 h.time.push_back(now.time()), h.worn.push_back(now.concrete().worn_volume());
                 h.kinetic.push_back(now.ledger().kinetic);
             });
     h.asleep = sim.world().state().sleep.count, h.broken = sim.bonds_broken();
-    h.residual = sim.ledger().residual_relative(), h.awake = sim.awake_fraction_mean();
+    h.residual = sim.ledger().residual_relative();
     return h;
 }
 

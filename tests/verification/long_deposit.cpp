@@ -31,8 +31,12 @@ TEST_CASE("a static deposit does not wear: springs on a hexagonal lattice, nobod
 TEST_CASE("a static deposit does not wear: beams on a cubic lattice, stones asleep") {
     check_rest({.slab = Slab::cubic}, beams);
 }
-TEST_CASE("a static deposit does not wear: springs on a cubic lattice, stones and concrete asleep") {
-    check_rest({.slab = Slab::cubic, .wake_force = 1}, springs);
+TEST_CASE("a static deposit does not wear: standing concrete, stones asleep") {
+    for (const Slab slab : {Slab::cubic, Slab::hexagonal})
+        check_rest({.slab = slab, .level = ConcreteLevel::quasi_static}, springs);
+}
+TEST_CASE("a static deposit does not wear: standing concrete, nobody asleep") {
+    check_rest({.slab = Slab::cubic, .sleep_speed = 0, .level = ConcreteLevel::quasi_static}, springs);
 }
 TEST_CASE("a static deposit does not wear: springs that resist twisting on a cubic lattice, nobody asleep") {
     check_rest({.slab = Slab::cubic, .sleep_speed = 0}, twist_springs);

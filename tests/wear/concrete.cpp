@@ -1,4 +1,4 @@
-// The record of wear: capped, overflow apart, depth sums up to volume.
+// The record of wear: capped, overflow apart, depth sums up to volume. Where overflow goes: overflow.cpp.
 #include <abrade/geometry/surface_lattice.hpp>
 #include <abrade/wear/concrete.hpp>
 
@@ -31,7 +31,7 @@ std::vector<Vec3> thrown_spheres() {
 }  // namespace
 
 TEST_CASE("a site wears until it is fully fractured; the rest is overflow") {
-    Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}));
+    Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}), FractureVolume::cell, DropOverflow{});
     const Real cell = c.lattice().sites[7].cell_volume;
     CHECK(cell == doctest::Approx(8e-6).scale(0));
     c.wear(7, 0.75 * cell);
@@ -48,7 +48,7 @@ TEST_CASE("a site wears until it is fully fractured; the rest is overflow") {
 }
 
 TEST_CASE("nothing is lost between worn volume and overflow, however small the pieces") {
-    Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}));
+    Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}), FractureVolume::cell, DropOverflow{});
     Real given = 0;
     for (int n = 0; n < 300'000; ++n) {
         const Real piece = 1e-10 * (1 + n % 7);
@@ -74,7 +74,7 @@ TEST_CASE("depth times area is the volume lost, for every kind of lattice") {
     for (const auto& kind : kinds)
         for (const FractureVolume volume : {FractureVolume::cell, FractureVolume::sphere}) {
             CAPTURE(kind.first);
-            Concrete c(kind.second, volume);
+            Concrete c(kind.second, volume, DropOverflow{});
             REQUIRE(c.sites() > 40);
             const auto conserves = [&] {
                 return lost_by_depth(c) ==
@@ -121,7 +121,7 @@ TEST_CASE("depth of a column whose top sphere is gone is one layer") {
 }
 
 TEST_CASE("V_omega as the sphere: it is full sooner") {
-    Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}), FractureVolume::sphere);
+    Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}), FractureVolume::sphere, DropOverflow{});
     const Real sphere = pi / 6 * 8e-6;
     CHECK(c.capacity(0) == doctest::Approx(sphere).scale(0));
     c.wear(0, 8e-6);
@@ -153,6 +153,21 @@ TEST_CASE("what one collision wears: wear in consecutive steps, and the largest 
     CHECK(c.largest_collision_share() == doctest::Approx(2.5).epsilon(1e-12));
 }
 
+TEST_CASE("what one collision wears counts its excess, wherever that goes and while it waits") {
+    for (const Overflow& overflow : {Overflow(FillCrater{}), Overflow(SpreadOverPatch{0.1, 0.1}),
+                                     Overflow(SpreadByEpoch{0.1, 1}), Overflow(DropOverflow{})}) {
+        Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}), FractureVolume::cell, overflow);
+        for (int n = 0; n < 20; ++n) {
+            c.wear(3, 0.2 * c.capacity(3), 1e-5 * n, 1e-5);
+            c.settle(1e-5 * n);
+        }
+        CHECK(c.largest_collision_share() == doctest::Approx(4).epsilon(1e-12).scale(0));
+        c.settle(std::numeric_limits<Real>::infinity());
+        // Sites that settle wears have not been struck.
+        CHECK(c.largest_collision_share() == doctest::Approx(4).epsilon(1e-12).scale(0));
+    }
+}
+
 TEST_CASE("a collision that wears without a step is one of its own; V_omega is the yardstick") {
     Concrete c(flat_lattice(0.1, 0.1, {.layers = 2}), FractureVolume::sphere);
     for (int n = 0; n < 3; ++n) c.wear(1, 0.25 * c.capacity(1));
@@ -164,5 +179,9 @@ TEST_CASE("no concrete at all is no special case") {
     CHECK(none.sites() == 0);
     CHECK(none.worn_volume() == 0);
     CHECK(none.depth().empty());
+    CHECK(none.waiting_volume() == 0);
     CHECK(none.largest_collision_share() == 0);
+    CHECK(!none.unsettled());
+    CHECK(!none.worn_through());
+    CHECK(Concrete().settle(1).empty());
 }

@@ -38,14 +38,13 @@ struct Unworn {
 };
 
 /// Bonds between single-sphere bodies. A broken bond stays in the network as a frictional contact for as
-/// long as both of its spheres are part of the standing concrete. Bonds of which neither end can move may
-/// rest: they keep what they remember, and nobody looks at them.
+/// long as both of its spheres are part of the concrete.
 template <BondLaw Law>
 class Network {
 public:
     struct Bond {
         BondedPair members;  ///< as built, for good
-        BondedPair spheres;  ///< lasting indices, while it does not rest
+        BondedPair spheres;  ///< lasting indices
         BondedPair bodies;
         SlotPair slots;
         Real rest_length = 0;        ///< [m]
@@ -55,7 +54,6 @@ public:
         Real stored = 0;             ///< when last evaluated [J]; in packs until `unpack`
         SeenEnds<Law, Real> before{};
         typename Law::Memory memory{};
-        bool rests = false;
         bool dropped = false;  ///< the contact law has taken over, or a body is gone
 
         bool broken() const noexcept { return static_cast<bool>(memory.broken); }
@@ -83,7 +81,7 @@ public:
             bond.effective_inertia =
                 1 / (particles.inverse_inertia[a].maxCoeff() + particles.inverse_inertia[b].maxCoeff());
         }
-        resting_stored_ = 0, changed_ = true;
+        changed_ = true;
         first_bond_.assign({0, size()}), breaks_.assign(1, {});
     }
 
@@ -107,7 +105,7 @@ public:
         each_bond([&](const Bond& bond) { looked_after_.push_back(in_order_of(bond.spheres)); });
         std::sort(looked_after_.begin(), looked_after_.end());
     }
-    /// Calls `visit(bond)` for each bond that does not rest.
+    /// Calls `visit(bond)` for each bond.
     void each_bond(auto&& visit) const {
         for (const Index number : active_) visit(bonds_[at(number)]);
     }
@@ -175,28 +173,10 @@ public:
         return ties_.take_loose();
     }
 
-    /// Lets bonds rest of which no end `moves(body)`.
-    void let_rest(auto&& moves) {
-        unpack();
-        changed_ |= std::erase_if(active_, [&](Index number) {
-                        Bond& bond = bonds_[at(number)];
-                        if (moves(bond.bodies.first) || moves(bond.bodies.second)) return false;
-                        resting_stored_ += bond.stored;
-                        bond.before = {}, bond.rests = true;
-                        return true;
-                    }) > 0;
+    /// Cuts the ties of a member that is to go.
+    void sever(Index member) {
+        for (const Ties::End& end : ties_.of(member)) ties_.cut(end.tie, bonds_[at(end.tie)].members);
     }
-    /// Wakes a resting bond between spheres that stand where it left them.
-    void wake(Index number, const BondedPair& spheres, const Particles& particles) {
-        Bond& bond = bonds_[at(number)];
-        bond.spheres = spheres;
-        bond.bodies = {particles.body[at(spheres.first)], particles.body[at(spheres.second)]};
-        bond.rests = false;
-        resting_stored_ -= bond.stored;
-        active_.push_back(number);
-        changed_ = true;
-    }
-    Real resting_stored() const noexcept { return resting_stored_; }  ///< elastic energy of those at rest [J]
 
     /// Drops broken bonds that are open, as contacts too, and have a loose end: the contact law takes over.
     /// Drops bonds whose body is gone. `moved` says where the spheres are now, `centre` where they stand.
@@ -241,7 +221,6 @@ public:
         return std::binary_search(looked_after_.begin(), looked_after_.end(), in_order_of(pair));
     }
 
-    /// Of bonds that do not rest.
     Index size() const noexcept { return static_cast<Index>(active_.size()); }
     std::span<const Index> active() const noexcept { return active_; }  ///< their numbers
     std::span<const Bond> bonds() const noexcept { return bonds_; }     ///< [number] all, dropped ones too

@@ -57,10 +57,6 @@ template <class P>
             sums.notice(detail::quad(place), velocity, after.rim);
             if (state.pace[slot] == Pace::beside_sleeper)
                 sums.stirs |= state.sleep.is_fast(speed_squared(motion));
-        } else if (slot < state.dormancy.anchor_at.size()) {
-            if (const Index anchor = state.dormancy.anchor_at[slot]; anchor >= 0)
-                sums.stirs_concrete |= state.dormancy.anchors[static_cast<std::size_t>(anchor)].note(
-                    load, state.dormancy.wake_force);
         }
         if (move.keeps_loads) continue;
         detail::quad(load, 0) = Quad{}, detail::quad(load, 1) = Quad{Quad::Native{0, 0, 0, mass}};

@@ -29,8 +29,9 @@ struct FeedParams {
     Box region{};  ///< stones are placed inside it, whole in x and y, lifted where concrete is in the way [m]
     /// Height of the ground at (x, y) that region.z counts from [m]; none: 0.
     std::function<Real(Real, Real)> bed{};
-    Vec3 velocity = Vec3::Zero();  ///< [m/s]
-    Real start = 0;                ///< [s]
+    Vec3 velocity = Vec3::Zero();                      ///< [m/s]
+    Real start = 0;                                    ///< [s]
+    Real end = std::numeric_limits<Real>::infinity();  ///< no stone is due after it [s]
     std::uint32_t seed = 1;
 
     void validate() const {
@@ -38,6 +39,9 @@ struct FeedParams {
         require_positive(density, "Feed.density", "kg/m3", "stone has 2500 to 2800");
         require_finite(velocity, "Feed.velocity", "m/s");
         require_finite(start, "Feed.start", "s");
+        require(end > start,
+                {"Feed.end", "after Feed.start (" + to_text(start) + " s)", "s", "leave it out to feed on"},
+                end);
         require(!classes.empty(),
                 {"Feed.classes", "at least one stone class", "", "or leave Scene.feed empty"}, 0);
         const auto name = [](std::size_t n) { return "Feed.classes[" + std::to_string(n) + "]"; };
@@ -93,7 +97,7 @@ public:
     }
     template <class Added, class Above>
     void supply(Particles& particles, std::span<const Plane> walls, Real t, Added&& added, Above&& above) {
-        const Real due = params_.volume_rate * std::max(0.0, t - params_.start);
+        const Real due = params_.volume_rate * std::max(0.0, std::min(t, params_.end) - params_.start);
         while (supplied_ + templates_[next_].volume <= due) {
             const auto state = free_place(particles, walls, above);
             if (!state) return;

@@ -63,7 +63,7 @@ Fragment join(const State<P>& state, std::span<const Index> bodies, Real density
 template <class P>
 std::vector<Fragment> join_pieces(State<P>& state, std::vector<char>& gone) {
     const auto at = [](Index i) { return static_cast<std::size_t>(i); };
-    std::vector<char> pressed(state.dormancy.body_of.size(), 0);
+    std::vector<char> pressed(state.sites.body_of.size(), 0);
     state.network.each_bond([&](const auto& bond) {
         if (bond.broken()) pressed[at(bond.members.first)] = pressed[at(bond.members.second)] = 1;
     });
@@ -77,16 +77,13 @@ std::vector<Fragment> join_pieces(State<P>& state, std::vector<char>& gone) {
             return false;
         });
     std::vector<Fragment> fragments;
-    const auto waits = [&](Index site) {
-        const auto& asleep = state.dormancy.loosened;
-        return pressed[at(site)] != 0 || std::find(asleep.begin(), asleep.end(), site) != asleep.end();
-    };
+    const auto waits = [&](Index site) { return pressed[at(site)] != 0; };
     std::erase_if(state.pieces, [&](const Ties::Piece& piece) {
         if (std::any_of(piece.begin(), piece.end(), waits)) return false;
         for (const Ties::Piece& part : state.network.ties().parts(piece)) {
             std::vector<Index> bodies;
             for (const Index site : part)
-                if (const Index body = state.dormancy.body_of[at(site)]; body >= 0 && !gone[at(body)])
+                if (const Index body = state.sites.body_of[at(site)]; body >= 0 && !gone[at(body)])
                     bodies.push_back(body);
             if (bodies.size() < 2) continue;
             fragments.push_back(join(state, bodies, state.scene.concrete->density));

@@ -1,10 +1,10 @@
 #pragma once
 // The lists of near pairs and of candidates: how long they last, and what happens when they are renewed.
 
-#include <abrade/sim/dormant_concrete.hpp>
 #include <abrade/sim/fragments.hpp>
 #include <abrade/sim/period.hpp>
 #include <abrade/sim/sleep.hpp>
+#include <abrade/sim/standing_concrete.hpp>
 
 #include <chrono>
 #include <numeric>
@@ -27,7 +27,7 @@ public:
     /// Makes the lists good for the places of now. Steps are of dt.
     void freshen(State<P>& state, Real t, Real dt) {
         const bool traffic = state.feed || state.scene.outlet;
-        if ((traffic && age_ >= longest_life) || state.loosened || state.dormancy.calls())
+        if ((traffic && age_ >= longest_life) || state.loosened)
             renew(state, t, dt);
         else if (2 * moved_ > inner_skin_ && !refine(state, dt))
             renew(state, t, dt);
@@ -40,28 +40,24 @@ public:
         const auto start = std::chrono::steady_clock::now();
         state.land();
         wrap(state);
-        Dormancy& dormancy = state.dormancy;
-        const bool dormant = dormancy.on() || dormancy.begun;
-        const bool periodic = !state.scene.periodic().period.isZero();
-        if (periodic && !need_) need_.emplace(state.particles, state.scene.feed);  // with all that may wake
-        if (dormant && !dormancy.begun && state.store.spheres() == 0) begin_dormancy(state);
-        dormancy.begun |= dormant;
         const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
-        if (state.feed || has_broken_bonds || dormant) state.publish_places();
-        const Departure departure = departing(state, dt);
+        if (state.feed || has_broken_bonds || state.sites.stand) state.publish_places();
+        choose_skin(state, dt);
+        detail::SiteMarks near(state.sites.marks);
+        if (state.sites.stand) mark_near(state, 0, list_skin_, near);
+        const Departure departure = departing(state, dt, near);
         state.accounts.left_stored +=
             state.contacts.keep(state.policies.contact, state.store, state.scene.walls, departure.moved);
         if (departure.any) remove(state, departure);
         if (has_broken_bonds || (P::has_bonds && departure.any))
             state.accounts.left_stored +=
                 state.network.prune(state.particles, departure.moved, state.particles.centre);
+        const Index known = state.particles.bodies();
         supply(state, t, dt);
         for (const Fragment& fragment : departure.fragments) add_fragment(state, fragment);
-        choose_skin(state, dt, departure.any);
-        if (dormant) dormancy.look_ahead(age_), wake_concrete(state, list_skin_);
+        if (state.sites.stand) mark_near(state, known, list_skin_, near), stand_by(state, near);
         grow_columns(state);
         state.store.arrange(state.particles, departure.moved, list_skin_, state.scene.periodic());
-        if (dormant) hold_or_free(state);
         const auto [smallest, largest] =
             std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
         if (largest != state.particles.radius.end())
@@ -110,27 +106,16 @@ private:
     };
 
     /// As wide as speeds ask for, and no wider than the period of space has room for.
-    void choose_skin(const State<P>& state, Real dt, bool departed) {
-        const Real fastest = std::sqrt(fastest2(state));
+    void choose_skin(const State<P>& state, Real dt) {
+        const Real fed = state.feed ? state.feed->params().velocity.norm() : 0;
+        const Real fastest = std::max(std::sqrt(fastest2(state)), fed);
         list_skin_ = std::max(skin_, 2 * shortest_life * dt * fastest);
         const Vec3 period = state.scene.periodic().period;
         if (period.isZero()) return;
-        // What is dormant may come back: it counts as it did.
-        if ((departed || state.feed) && !state.dormancy.begun)
-            need_.emplace(state.particles, state.scene.feed);
-        const Real room = need_->widest_skin(period);
-        list_skin_ = std::min(list_skin_, room);
+        const PeriodNeed need(state.particles, state.scene.feed,
+                              state.sites.stand ? state.concrete.lattice().radius : 0);
+        list_skin_ = std::min(list_skin_, need.widest_skin(period));
         outrun_ = list_skin_ < 8 * dt * fastest;  // what `refine` asks for
-    }
-
-    /// The lines of concrete, as `particles` say who moves; what does not turns with its gears.
-    static void hold_or_free(State<P>& state) {
-        for (Index b = 0; b < state.particles.bodies(); ++b)
-            if (const Index site = state.particles.site[at(b)]; site >= 0) {
-                SphereMotion& motion = state.store.lines.motion[at(state.first_slot_of(b))];
-                motion.inverse_mass = state.particles.inverse_mass[at(b)];
-                if (motion.inverse_mass == 0) motion.rim = state.dormancy.gears.rim(site);
-            }
     }
 
     static Real fastest2(const State<P>& state) {
@@ -208,13 +193,18 @@ private:
         }
     }
 
-    Departure departing(State<P>& state, Real dt) const {
+    Departure departing(State<P>& state, Real dt, const detail::SiteMarks& near) const {
         Departure d;
         const Particles& p = state.particles;
         d.gone.assign(at(p.bodies()), 0);
         d.moved.resize(at(state.store.spheres()));
         std::iota(d.moved.begin(), d.moved.end(), 0);
-        if (state.dormancy.due && state.dormancy.on()) retire(state, 2 * list_skin_, d.gone);
+        if (state.sites.stand) retire(state, near, d.gone);
+        for (const Index site : std::exchange(state.worn_away, {}))
+            if (const Index body = state.sites.body_of[at(site)]; body >= 0) {
+                if (p.inverse_mass[at(body)] > 0) leave(state, body, state.store.position_of(p, body), dt);
+                d.gone[at(body)] = 1;
+            }
         if constexpr (P::has_bonds)
             if (!state.pieces.empty()) {
                 d.fragments = join_pieces(state, d.gone);
@@ -263,7 +253,7 @@ private:
     static void remove(State<P>& state, const Departure& departure) {
         for (std::size_t b = 0; b < departure.gone.size(); ++b)
             if (departure.gone[b] && state.particles.site[b] >= 0)
-                state.dormancy.body_of[at(state.particles.site[b])] = -1;
+                state.sites.body_of[at(state.particles.site[b])] = -1;
         state.particles.remove(departure.gone);
         state.note_sites();
         const auto compact = [&](auto& column) {
@@ -288,7 +278,7 @@ private:
                     state.accounts.fed_kinetic += state.particles.kinetic_energy(body);
                     state.accounts.fed_potential += state.potential_energy(body, before);
                 },
-                [&](const Vec3& x, Real reach) { return height_above_dormant(state, x, reach); });
+                [&](const Vec3& x, Real reach) { return height_above_standing(state, x, reach); });
     }
 
     /// Of bodies that have just come.
@@ -308,7 +298,6 @@ private:
         std::vector<SphereStore::ImageRequest> requests;
         if constexpr (P::has_bonds) {
             state.network.arrange(state.store);
-            if (state.dormancy.begun) find_anchors(state);
             state.network.each_bond_by_slab([&](const auto& bond, Index slab) {
                 for (const Index sphere : {bond.spheres.first, bond.spheres.second})
                     if (const auto image = image_for(state.store, sphere, slab)) requests.push_back(*image);
@@ -341,7 +330,6 @@ private:
     Real skin_ = 0, list_skin_ = 0;       ///< asked for, of the present list [m]
     Real inner_skin_ = 0, moved_ = 0;     ///< of the candidates; how far anything may have come since [m]
     Real seconds_ = 0, inner_life_ = 32;  ///< [s], [steps]
-    std::optional<PeriodNeed> need_;      ///< of the bodies that are there
     bool outrun_ = false;
     Index age_ = 0;               ///< steps since the last renewal
     std::vector<Vec3> built_at_;  ///< [slot] where the list was made [m]

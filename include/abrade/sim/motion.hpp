@@ -16,9 +16,8 @@ struct MotionSums {
     Real drag = 0, drag_input = 0, buoyancy = 0;  ///< [J]
     Real fastest2 = 0;                            ///< of spheres' centres [m2/s2]
     Quad low{{1e300, 1e300, 1e300, 1e300}}, high{{-1e300, -1e300, -1e300, -1e300}};  ///< of positions [m]
-    Quad finite{};                ///< sum of velocities: not finite where one is not
-    bool stirs = false;           ///< one beside a sleeper has become fast
-    bool stirs_concrete = false;  ///< a load has reached an anchor
+    Quad finite{};       ///< sum of velocities: not finite where one is not
+    bool stirs = false;  ///< one beside a sleeper has become fast
 
     /// What the fluid did over a `way` [m] and for `time` [s].
     void add(const FluidLoad& fluid, const Vec3& way, Real time) noexcept {
@@ -38,7 +37,7 @@ struct MotionSums {
         drag += o.drag, drag_input += o.drag_input, buoyancy += o.buoyancy;
         fastest2 = std::max(fastest2, o.fastest2);
         low = least(low, o.low), high = most(high, o.high), finite = finite + o.finite;
-        stirs |= o.stirs, stirs_concrete |= o.stirs_concrete;
+        stirs |= o.stirs;
         return *this;
     }
     Real interaction_work() const noexcept {

@@ -18,7 +18,8 @@ namespace abrade {
 struct PeriodNeed {
     Real two_radii = 0, reach = 0;  ///< r_a + r_b; R [m]
 
-    PeriodNeed(const Particles& particles, const std::optional<FeedParams>& feed) {
+    /// `standing` [m] is the radius of spheres that stand and may be no bodies, 0: there are none.
+    PeriodNeed(const Particles& particles, const std::optional<FeedParams>& feed, Real standing = 0) {
         auto add = [this, first = Real(0)](Real radius, Real far) mutable {
             if (first > 0) two_radii = std::max(two_radii, first + radius);
             first = std::max(first, radius), reach = std::max(reach, far);
@@ -31,6 +32,7 @@ struct PeriodNeed {
                 far = std::max(far, particles.offset[s].norm() + particles.radius[s]);
             add(radius, far);
         }
+        if (standing > 0) add(standing, standing);
         if (feed)
             for (const StoneClass& stones : feed->classes) {
                 const Clump clump = make_stone(stones.shape, stones.size);

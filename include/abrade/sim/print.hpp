@@ -23,9 +23,8 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
         << sim.stable_.limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
         << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().census().near << "\n";
     if (sim.concrete().sites() > 0)
-        out << "concrete " << sim.concrete().sites() << " spheres, " << percent(sim.awake_fraction_mean())
-            << " awake, " << sim.bonds_broken() << " bonds broken, worn volume "
-            << short_text(sim.concrete().worn_volume()) << " m3\n";
+        out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken()
+            << " bonds broken, worn volume " << short_text(sim.concrete().worn_volume()) << " m3\n";
     if (const Real share = sim.concrete().largest_collision_share(); share > 1) {
         out << "warning  one collision wore " << short_text(share)
             << " times its sphere's cell: the result depends on the time acceleration";

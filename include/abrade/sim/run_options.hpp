@@ -37,12 +37,6 @@ struct RunOptions {
     /// How long they must have been that slow [s]. 0: until a hundredth of gravity would have made them
     /// faster, 200 sleep_speed / g, and twice as long as their diameter d takes to topple, 2 sqrt(d/g).
     Real sleep_after = 0;
-    /// Concrete that no load reaches is no body and takes no steps: spheres farther than `wake_radius` bonds
-    /// from what may touch a moving body, where the load of bonds changes by less than this [N]. A thousandth
-    /// to a hundredth of a bond's strength is a good choice (docs/dormant_concrete.md). Its own weight counts
-    /// as held until it wakes. 0: all is awake.
-    Real wake_force = 0;
-    Index wake_radius = 2;  ///< [bonds]
     /// Asked now and then, while a fluid settles too; true ends the run cleanly.
     std::function<bool()> stop{};
 };

@@ -15,13 +15,22 @@ namespace abrade {
 /// bonds that they still have, or as one rigid clump. A clump no longer breaks and is no concrete.
 enum class Fragments { bonded, clumps };
 
+/// How the spheres of concrete answer what presses on them. `dynamic`: they move on their bonds.
+/// `quasi_static`: they stand, and are let go as grains where equilibrium says that bonds no longer hold
+/// them. `rigid`: they stand whatever presses. What stands is no body until something that moves comes near.
+enum class ConcreteLevel { dynamic, quasi_static, rigid };
+
 /// A body of bonded spheres. Its deepest layer is held fixed, as if cast on rock.
 struct ConcreteBlock {
     Lattice lattice{};
     Real density = 2400;  ///< of the spheres [kg/m3]
     FractureVolume fracture_volume = FractureVolume::cell;
-    Index material = 0;  ///< number in a table of laws (MaterialPairs)
-    Fragments fragments = Fragments::bonded;
+    Index material = 0;                       ///< number in a table of laws (MaterialPairs)
+    Fragments fragments = Fragments::bonded;  ///< of dynamic concrete; else pieces go on sphere by sphere
+    ConcreteLevel level = ConcreteLevel::dynamic;
+    Index cluster = 0;  ///< of quasi-static concrete: bonds about a loaded sphere within which all give way
+    WornOut worn_out = WornOut::fines;
+    Overflow overflow = FillCrater{};
 };
 
 /// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.
@@ -116,6 +125,20 @@ struct Scene {
                 {"Scene.concrete.lattice", "of at least one sphere", "spheres", "make it by flat_lattice()"},
                 0);
             concrete->lattice.validate("Scene.concrete.lattice");
+            require(concrete->cluster >= 0 && concrete->cluster <= 4,
+                    {"Scene.concrete.cluster", "from 0 to 4", "bonds",
+                     "0 lets the loaded sphere alone give way; each bond more costs much"},
+                    concrete->cluster);
+            const auto spheres = static_cast<Index>(concrete->lattice.sites.size());
+            require(concrete->cluster < spheres,
+                    {"Scene.concrete.cluster", "less than the block's spheres, " + std::to_string(spheres), "bonds",
+                     "take a smaller cluster"},
+                    concrete->cluster);
+            require(concrete->level == ConcreteLevel::dynamic || concrete->fragments == Fragments::bonded,
+                    {"Scene.concrete.fragments", "Fragments::bonded where concrete stands", "",
+                     "clumps are for ConcreteLevel::dynamic"},
+                    1);
+            abrade::validate(concrete->overflow);
         }
         if (feed) feed->validate();
         for (int a = 0; a < 3; ++a) {

@@ -106,8 +106,7 @@ public:
     Index steps() const noexcept { return step_; }
     Real time_step() const noexcept { return time_step_; }                   ///< [s]
     const StableStep& stable_time_step() const noexcept { return stable_; }  ///< of dense surroundings
-    /// What contacts and bonds allow as they stand, and a first touch of each body; concrete that sleeps
-    /// counts as if it were awake.
+    /// What contacts and bonds allow as they stand, and a first touch of each body.
     StableStep stable_step_now() const { return stable_now(std::numeric_limits<Real>::infinity()); }
     Index times_shortened() const noexcept { return shortened_; }  ///< the step, for contacts as they stood
     bool stopped() const noexcept { return stopped_; }             ///< by RunOptions::stop
@@ -118,9 +117,14 @@ public:
     const Concrete& concrete() const { return world().concrete(); }
     /// Where the sphere of a site of the concrete is, awake or not; where it was built if it left [m].
     const Vec3& concrete_place(Index site) const { return world().state().place_of(site); }
-    Index bonds_broken() const { return world().state().broken_tension + world().state().broken_shear; }
-    /// Of the concrete that could move, the share that did not sleep, over all steps so far [-].
-    Real awake_fraction_mean() const { return world().awake_fraction(); }
+    Index bonds_broken() const {
+        const auto& state = world().state();
+        const Index standing =
+            state.standing ? state.standing->broken_tension() + state.standing->broken_shear() : 0;
+        return state.broken_tension + state.broken_shear + standing;
+    }
+    /// Spheres of standing concrete that came loose as grains.
+    Index spheres_let_go() const { return world().state().let_go_count; }
     /// The time acceleration at which the largest collision so far would have worn half of its sphere's cell
     /// [-], from where on the map of docs/convergence.md loses wear to overflow; infinite where nothing wore.
     /// More stones may bring a larger collision.
@@ -186,17 +190,21 @@ private:
         };
         plan();
         show();
-        while (n < steps && !stopped_) {
+        while (n < steps && !stopped_ && !concrete().worn_through()) {
             do_step(begun + n * time_step_);
             const bool last = ++n == steps;
             if (last) time_ = options.end_time;
             if (step_ % steps_between_checks == 0 && options.stop && options.stop()) stopped_ = true;
-            if (last || stopped_ ||
+            if (last || stopped_ || concrete().worn_through() ||
                 (options.observe_every > 0 && time_ >= next_observation - 0.5 * time_step_)) {
                 next_observation += options.observe_every;
                 show();
             }
-            if (step_ % steps_between_snapshots == 0 && !last && shorten(options)) plan();
+            const bool look = step_ % steps_between_snapshots == 0 && !last;
+            bool changed =
+                (look || world_->state().let_go_count > 0) && !last && follow_grains(options, look);
+            if (look) changed |= shorten(options);
+            if (changed) plan();
         }
         wall_seconds_ = wall_before + seconds_since(clock_start);
     }
@@ -211,10 +219,25 @@ private:
         return true;
     }
 
+    /// Grains of standing concrete are lighter than stones: the step is theirs while there are any.
+    bool follow_grains(const RunOptions& options, bool look) {
+        if (options.time_step > 0 || !world_->state().sites.stand) return false;
+        if (!look && has_grains_) return false;
+        const std::vector<Kind>& kind = particles().kind;
+        const bool grains = std::find(kind.begin(), kind.end(), Kind::grain) != kind.end();
+        if (std::exchange(has_grains_, grains) == grains) return false;
+        time_step_ = usual_step(options);
+        return true;
+    }
+    Real usual_step(const RunOptions& options) const noexcept {
+        return options.safety * (has_grains_ ? std::min(stable_.seconds, stable_loose_) : stable_.seconds);
+    }
+
     StableStep stable_now(Real most) const {
         StableStep step = StableStepNow(world().state()).of_all(most);
-        const Dormancy& dormancy = world_->state().dormancy;
-        if (dormancy.on() || dormancy.begun) step.lower(stable_concrete_.seconds, stable_concrete_.limit);
+        const std::vector<Real>& inverse_mass = particles().inverse_mass;
+        if (std::all_of(inverse_mass.begin(), inverse_mass.end(), [](Real one) { return one == 0; }))
+            step.lower(stable_.seconds, stable_.limit);  // of what is still to be fed
         return step;
     }
 
@@ -243,9 +266,6 @@ private:
         require_not_negative(options.skin, "RunOptions.skin", "m");
         require_not_negative(options.sleep_speed, "RunOptions.sleep_speed", "m/s");
         require_not_negative(options.sleep_after, "RunOptions.sleep_after", "s");
-        require_not_negative(options.wake_force, "RunOptions.wake_force", "N");
-        require(options.wake_radius >= 0, {"RunOptions.wake_radius", ">= 0", "bonds", "the default is 2"},
-                options.wake_radius);
         require(options.sleep_speed == 0 || options.sleep_after > 0 || !scene_.gravity.isZero(),
                 {"RunOptions.sleep_after", "> 0 where bodies may sleep and there is no gravity", "s",
                  "say how long a body is slow before it sleeps"},
@@ -256,7 +276,6 @@ private:
         world_->set_skin(skin);
         world_->set_free_flight(options.free_flight);
         world_->set_sleep(options.sleep_speed, options.sleep_after);
-        world_->set_wake(options.wake_force, options.wake_radius);
         stopped_ = false;
         settle_fluid(options);
         if (!opened_) open();
@@ -272,7 +291,7 @@ private:
             }
             time_step_ = options.time_step;
         } else {
-            time_step_ = options.safety * stable_.seconds;
+            time_step_ = usual_step(options);
             shorten(options);
         }
         if (!std::isfinite(time_step_)) {  // nothing moves
@@ -285,14 +304,19 @@ private:
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
         world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_}));
-        const Particles& all = world_->particles();  // before any of the concrete sleeps
+        const Particles& all = world_->particles();
         stable_ = stable_step(contact_, bond_, all, world_->network(), world_->scene().feed);
-        stable_concrete_ = stable_step(contact_, bond_, all, world_->network(), std::nullopt, true);
         who_limits_ = stable_.limit;
         if (stable_.body >= 0) who_limits_ += ", " + TroubleText(*world_, 0).name_of(stable_.body);
-        period_need_.emplace(all, world_->scene().feed);
+        const Lattice& lattice = world_->concrete().lattice();
+        const bool stands = world_->state().sites.stand;
+        period_need_.emplace(all, world_->scene().feed, stands ? lattice.radius : 0);
         smallest_radius_ =
             all.radius.empty() ? 0.01 : *std::min_element(all.radius.begin(), all.radius.end());
+        if (!stands) return;
+        smallest_radius_ = std::min(smallest_radius_, lattice.radius);
+        const Real mass = scene_.concrete->density * 4.0 / 3 * pi * cube(lattice.radius);
+        stable_loose_ = contact_.stable_dt(mass, lattice.radius);
     }
 
     /// One that begins earlier than the solids comes up to them, unless it is stopped on its way.
@@ -381,14 +405,15 @@ private:
     [[no_unique_address]] D drag_;
     std::optional<World> world_;
     Ledger ledger_;
-    StableStep stable_, stable_concrete_;  ///< of the scene as it began
+    StableStep stable_;                                          ///< of the scene as it began
+    Real stable_loose_ = std::numeric_limits<Real>::infinity();  ///< of a grain that was let go [s]
     std::string who_limits_;
     std::optional<PeriodNeed> period_need_;
     Real smallest_radius_ = 0;  ///< of a sphere of the scene [m]
     Snapshot last_good_;
     Real time_ = 0, time_step_ = 0;
     Index step_ = 0, remembered_ = 0, shortened_ = 0;
-    bool opened_ = false, stopped_ = false;
+    bool opened_ = false, stopped_ = false, has_grains_ = false;
     Real wall_seconds_ = 0;
 };
 

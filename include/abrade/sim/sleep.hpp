@@ -97,12 +97,11 @@ void put_to_sleep(State<P>& state, Index body) {
 
 }  // namespace detail
 
-/// Marks the slots of those who rest, where anybody is asleep or concrete may stand still: two that do have
-/// no mass that a dashpot could be set from.
+/// Marks the slots of those who rest, where anybody is asleep.
 template <class P>
 void mark_resting(State<P>& state) {
     state.sleep.rests.clear();
-    if (state.sleep.count == 0 && !state.dormancy.begun) return;
+    if (state.sleep.count == 0) return;
     for (Index slot = 0; slot < state.store.phantom(); ++slot) {
         const Index body = state.body_in(slot);
         state.sleep.rests.push_back(state.sleep.asleep(body) ||
@@ -191,24 +190,6 @@ bool fall_asleep(State<P>& state, const Move& half, Real interval, MotionSums& s
     }
     if (fell) state.store.refresh_images();
     return fell;
-}
-
-/// Whether all that is awake, too, has been found slow enough to sleep at the last look, what sleeps in
-/// trains of gears apart. What lies on a train can drive it without end, and would then never come to rest
-/// itself.
-template <class P>
-bool all_quiet(const State<P>& state) noexcept {
-    const Particles& p = state.particles;
-    for (std::size_t b = 0; b < p.kind.size(); ++b) {
-        if (p.inverse_mass[b] == 0) continue;
-        if (p.kind[b] == Kind::concrete) {
-            if (state.dormancy.quiet[static_cast<std::size_t>(p.site[b])] == 0) return false;
-        } else if (b >= state.sleep.bodies.size() ||
-                   !(state.sleep.bodies[b].asleep || state.sleep.bodies[b].slow_for > 0)) {
-            return false;
-        }
-    }
-    return true;
 }
 
 /// Wakes those who must, and whom they touch: those who lost support, and those whom a fast body may meet

@@ -2,13 +2,14 @@
 // What a simulation consists of: policies, scene, bodies, contacts, bonds, concrete, supply, accounts.
 
 #include <abrade/bond/network.hpp>
+#include <abrade/bond/standing_bonds.hpp>
 #include <abrade/dem/contact_list.hpp>
-#include <abrade/sim/dormancy.hpp>
 #include <abrade/sim/ledger.hpp>
 #include <abrade/sim/materials.hpp>
 #include <abrade/sim/pace.hpp>
 #include <abrade/sim/policies.hpp>
 #include <abrade/sim/scene.hpp>
+#include <abrade/sim/site_bodies.hpp>
 
 namespace abrade {
 
@@ -39,7 +40,12 @@ struct State {
     ContactList<PairLaw<decltype(P::contact)>> contacts;
     Network<decltype(P::bond)> network;
     Concrete concrete;
-    Dormancy dormancy;
+    SiteBodies sites;
+    std::optional<StandingBonds<decltype(P::bond)>> standing;  ///< of quasi-static concrete
+    std::vector<Press> presses;                                ///< on it, beyond what it bears for certain
+    std::vector<Index> weakened;                               ///< sites whose strength has fallen by a step
+    std::vector<Index> worn_away;                              ///< sites whose bodies are to be taken out
+    Index let_go_count = 0;           ///< spheres of standing concrete that came loose
     std::vector<Ties::Piece> pieces;  ///< that came loose and are to go on as clumps
     std::optional<Feed> feed;
     Ledger accounts;  ///< works and losses up to the velocities that the lines hold
@@ -74,12 +80,23 @@ struct State {
         return sleep.asleep(first) ? second : first;
     }
 
-    /// What is left of the strength of a body of concrete, for bonds.
+    /// Whether wear is written down and changes nothing.
+    bool is_frozen() const noexcept {
+        return scene.concrete && scene.concrete->worn_out == WornOut::recorded;
+    }
+    /// What is left of the strength of a site's sphere.
+    auto strength_of_site() const noexcept {
+        return [this](Index site) -> Real {
+            if constexpr (P::has_wear)
+                return policies.wear.strength_left(is_frozen() ? 0 : concrete.fracture(site));
+            else
+                return site >= 0 ? 1 : 0;
+        };
+    }
+    /// The same of a body of concrete, for bonds.
     auto strength_left() const noexcept {
         if constexpr (P::has_wear)
-            return [this](Index body) {
-                return policies.wear.strength_left(concrete.fracture(particles.site[at(body)]));
-            };
+            return [this](Index body) { return strength_of_site()(particles.site[at(body)]); };
         else
             return Unworn{};
     }
@@ -124,7 +141,7 @@ struct State {
         pace_if_alone.resize(at(store.spheres()));
         parallel_for(store.spheres(), [&](Index slot) {
             const Index body = particles.body[at(store.sphere_of(slot))];
-            const bool bonded = P::has_bonds && particles.kind[at(body)] == Kind::concrete;
+            const bool bonded = P::has_bonds && !sites.stand && particles.kind[at(body)] == Kind::concrete;
             const bool flies = flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded;
             pace_if_alone[at(slot)] = flies ? Pace::flying : Pace::every_step;
         });
@@ -193,23 +210,46 @@ struct State {
                 if (piece.size() > 1 && scene.concrete->fragments == Fragments::clumps)
                     pieces.push_back(piece);
                 for (const Index site : piece) {
+                    if (concrete.gone(site)) continue;  // worn away
                     concrete.set_gone(site);
-                    --dormancy.may_wake;
-                    const Index body = dormancy.body_of[at(site)];
-                    if (body >= 0 && particles.inverse_mass[at(body)] > 0)
-                        particles.kind[at(body)] = Kind::grain, --dormancy.awake;
-                    else
-                        dormancy.loosened.push_back(site);
+                    if (const Index body = sites.body_of[at(site)]; body >= 0)
+                        particles.kind[at(body)] = Kind::grain;
                     loosened = true;
                 }
             }
         }
     }
 
+    /// The sphere of a site is worn out and vanishes.
+    void wear_away(Index site) {
+        if constexpr (P::has_bonds)
+            if (!sites.stand) network.sever(site), pattern_changed = true;
+        concrete.set_gone(site);
+        if (sites.body_of[at(site)] >= 0) worn_away.push_back(site);
+        loosened = true;
+    }
+
+    /// The sphere of a site that stands is free from now on: a grain.
+    void let_go(Index site) {
+        if (concrete.gone(site)) return;
+        const Index body = body_at(site);
+        const Real mass = particles.mass[at(body)],
+                   inertia = 0.4 * mass * square(particles.radius[at(particles.first_sphere[at(body)])]);
+        particles.kind[at(body)] = Kind::grain;
+        particles.inverse_mass[at(body)] = 1 / mass;
+        particles.inverse_inertia[at(body)].setConstant(1 / inertia);
+        if (const Index sphere = particles.first_sphere[at(body)]; sphere < store.spheres())
+            store.lines.motion[at(store.slot_of(sphere))].inverse_mass = 1 / mass;
+        accounts.fed_potential += potential_energy(body, particles.position[at(body)]);
+        concrete.set_gone(site);
+        ++let_go_count;
+        loosened = true;
+    }
+
     /// Bonded concrete that is sound cannot come to touch its like: its neighbours look after that.
     bool keeps_its_place(Index body) const noexcept {
         const Kind kind = particles.kind[at(body)];
-        if (kind == Kind::fixed) return true;
+        if (kind == Kind::fixed || (kind == Kind::concrete && sites.stand)) return true;
         if constexpr (P::has_bonds)
             return kind == Kind::concrete && !network.ties().damaged(particles.site[at(body)]);
         return kind == Kind::concrete;
@@ -217,63 +257,100 @@ struct State {
 
     /// Where a site's sphere stands, a body or not; where it was built if it is gone and no body [m].
     const Vec3& place_of(Index site) const noexcept {
-        const Index body = dormancy.body_of[at(site)];
-        if (body >= 0) return particles.position[at(body)];
-        return concrete.gone(site) ? concrete.lattice().sites[at(site)].centre : dormancy.place[at(site)];
+        const Index body = sites.body_of[at(site)];
+        return body >= 0 ? particles.position[at(body)] : concrete.lattice().sites[at(site)].centre;
+    }
+
+    /// The body of a site that stands, made where there is none.
+    Index body_at(Index site) {
+        if (sites.body_of[at(site)] < 0) {
+            const Index next_id = particles.next_id;
+            sites.body_of[at(site)] = particles.add(
+                sites.sphere, scene.concrete->density,
+                {.position = place_of(site), .material = scene.concrete->material}, Kind::fixed);
+            particles.kind.back() = Kind::concrete;
+            particles.site.back() = particles.id.back() =
+                site;  // as if it had been built: concrete comes first
+            particles.next_id = next_id;
+        }
+        return sites.body_of[at(site)];
     }
 
     /// Writes down which bodies the sites of the concrete are.
     void note_sites() {
         for (Index b = 0; b < particles.bodies(); ++b)
-            if (particles.site[at(b)] >= 0) dormancy.body_of[at(particles.site[at(b)])] = b;
+            if (particles.site[at(b)] >= 0) sites.body_of[at(particles.site[at(b)])] = b;
     }
 
 private:
     void add_concrete(ConcreteBlock& block) {
         const Lattice& lattice = block.lattice;
-        const Clump sphere = make_clump("concrete", {{Vec3::Zero(), lattice.radius}});
-        for (Index s = 0; s < static_cast<Index>(lattice.sites.size()); ++s) {
-            const LatticeSite& site = lattice.sites[at(s)];
+        const auto count = static_cast<Index>(lattice.sites.size());
+        sites.stand = block.level != ConcreteLevel::dynamic;
+        sites.sphere = make_clump("concrete", {{Vec3::Zero(), lattice.radius}});
+        sites.body_of.assign(at(count), -1), sites.marks.assign(at(count), 0);
+        std::vector<Vec3> centre;
+        for (const LatticeSite& site : lattice.sites) {
+            centre.push_back(site.centre);
             // What a wall passes through stands in that wall: set free, it would be shot out of it.
             const bool in_wall = std::any_of(scene.walls.begin(), scene.walls.end(), [&](const Plane& wall) {
                 return wall.distance(site.centre) < (1 - 1e-6) * lattice.radius;
             });
-            // Without bonds there is nothing to hold the spheres together: they stand as a rigid bed.
-            const bool held = !P::has_bonds || in_wall || site.held;
-            const Index body =
-                particles.add(sphere, block.density, {.position = site.centre, .material = block.material},
-                              held ? Kind::fixed : Kind::concrete);
-            particles.site[at(body)] = s;
+            sites.held.push_back(in_wall || site.held);
         }
-        if constexpr (P::has_bonds) {
-            std::vector<BondedPair> bonded;
-            for (const auto& [i, j] : lattice.bonds)
-                if (particles.inverse_mass[at(i)] + particles.inverse_mass[at(j)] > 0)
-                    bonded.push_back({i, j});
-            network.build(particles, std::move(bonded));
-        }
-        know_sites(block, sphere);
-        concrete = Concrete(std::move(block.lattice), block.fracture_volume);
+        sites.grid = PointGrid(centre, 2 * lattice.radius);
+        if (sites.stand)
+            stand(block, centre);
+        else
+            set_moving(block);
+        concrete = Concrete(std::move(block.lattice), block.fracture_volume, block.overflow, block.worn_out);
+        if (sites.stand) return;
         pattern_changed = true;  // a packing may have spheres that nothing ties
         free_loose_concrete();
     }
 
-    /// All of them are awake to begin with.
-    void know_sites(const ConcreteBlock& block, const Clump& sphere) {
-        const std::size_t sites = block.lattice.sites.size();
-        dormancy.sphere = sphere;
-        dormancy.body_of.resize(sites), dormancy.quiet.assign(sites, 0), dormancy.marks.assign(sites, 0);
-        note_sites();
-        for (Index s = 0; s < static_cast<Index>(sites); ++s) {
-            const auto body = at(dormancy.body_of[at(s)]);
-            dormancy.place.push_back(particles.position[body]);
-            dormancy.held.push_back(particles.kind[body] == Kind::fixed);
-            if (particles.kind[body] == Kind::fixed) continue;
-            dormancy.inverse_mass = particles.inverse_mass[body];
-            dormancy.inverse_inertia = particles.inverse_inertia[body];
-            ++dormancy.awake, ++dormancy.may_wake;
+    static std::vector<BondedPair> pairs_of(const Lattice& lattice, auto&& wanted) {
+        std::vector<BondedPair> bonded;
+        for (const auto& [i, j] : lattice.bonds)
+            if (wanted(i, j)) bonded.push_back({i, j});
+        return bonded;
+    }
+
+    void set_moving(const ConcreteBlock& block) {
+        for (Index s = 0; s < static_cast<Index>(block.lattice.sites.size()); ++s) {
+            // Without bonds there is nothing to hold the spheres together: they stand as a rigid bed.
+            const bool held = !P::has_bonds || sites.held[at(s)];
+            const Index body =
+                particles.add(sites.sphere, block.density,
+                              {.position = block.lattice.sites[at(s)].centre, .material = block.material},
+                              held ? Kind::fixed : Kind::concrete);
+            particles.site[at(body)] = s, sites.body_of[at(s)] = body;
         }
-        dormancy.sites = PointGrid(dormancy.place, 4 * block.lattice.radius);
+        if constexpr (P::has_bonds)
+            network.build(particles, pairs_of(block.lattice, [&](Index i, Index j) {
+                              return particles.inverse_mass[at(i)] + particles.inverse_mass[at(j)] > 0;
+                          }));
+    }
+
+    void stand(const ConcreteBlock& block, std::span<const Vec3> centre) {
+        const Lattice& lattice = block.lattice;
+        particles.next_id = static_cast<Index>(centre.size());
+        if (block.level == ConcreteLevel::rigid) return;
+        require(P::has_bonds,
+                {"Scene.concrete.level: quasi_static without a bond law, bonds", "needed", "",
+                 "fill the bond slot, or take ConcreteLevel::rigid"},
+                0);
+        if constexpr (P::has_bonds)
+            standing.emplace(policies.bond,
+                             typename decltype(standing)::value_type::Setup{
+                                 .centre = centre,
+                                 .radius = lattice.radius,
+                                 .held = sites.held,
+                                 .weight = block.density * sites.sphere.volume * scene.gravity,
+                                 .cluster = block.cluster},
+                             pairs_of(lattice, [&](Index i, Index j) {
+                                 return !sites.held[at(i)] || !sites.held[at(j)];
+                             }));
     }
 };
 

@@ -44,14 +44,12 @@ public:
     void step(Real t, Real dt, bool timed) {
         if (dt != time_step_) change_step(dt);
         now_ = t;
-        const bool anybody_sleeps = state_.sleep.speed > 0 || state_.dormancy.on();
-        if (anybody_sleeps && ++unlooked_ >= Sleep::steps_between_looks) look();
+        if (state_.sleep.speed > 0 && ++unlooked_ >= Sleep::steps_between_looks) look();
         if (!evaluated_) make_ready(dt);
         const Move move{whole_ ? 0.5 * dt : dt, dt, false, now_, ahead_in_fluid()};
         pass(!evaluated_, &move, timed);
         kicked_ += move.kick, last_kick_ = move.kick, led_here_ = dt, now_ = t + dt;
         evaluated_ = whole_ = false;
-        awake_ += state_.dormancy.awake, may_wake_ += state_.dormancy.may_wake;
     }
 
     /// Writes the present state into `particles()` and the ledger. What moves is left as it is.
@@ -68,10 +66,8 @@ public:
         ledger_ = state_.accounts;
         book(ledger_, sums.motion);
         ledger_.kinetic = sums.kinetic, ledger_.potential = sums.potential;
-        ledger_.kinetic += state_.dormancy.turning(state_.dormancy.gears.rims_squared());
-        ledger_.potential += state_.dormancy.potential;
         ledger_.stored_contacts = stored_contacts_ + at_rest();
-        ledger_.stored_bonds = stored_bonds_ + state_.network.resting_stored();
+        ledger_.stored_bonds = stored_bonds_;
         count_passed();
         return ledger_;
     }
@@ -93,21 +89,6 @@ public:
         sleep.toppling = after > 0 || gravity == 0 ? 0 : 2 / std::sqrt(gravity);
         if (speed == 0) rouse_all(state_);
     }
-    /// As RunOptions says.
-    void set_wake(Real force, Index radius) {
-        Dormancy& dormancy = state_.dormancy;
-        dormancy.wake_force = force, dormancy.wake_radius = radius;
-        if constexpr (P::has_bonds && !CarriesMoments<decltype(P::bond)>)
-            if (dormancy.on() && !dormancy.gears.built())
-                dormancy.gears.build(state_.network.ties(), state_.concrete.lattice().sites);
-        if constexpr (P::has_bonds) {
-            const Real r = state_.concrete.lattice().radius;
-            const Real stiffness = state_.policies.bond.rigidity(r, 2 * r).normal;
-            dormancy.quiet_speed = force * std::sqrt(dormancy.inverse_mass / stiffness);
-        }
-    }
-    /// Of the concrete that stands and could move, over all steps so far [-]; 1 where there is none.
-    Real awake_fraction() const noexcept { return may_wake_ > 0 ? awake_ / may_wake_ : 1; }
     Trouble take_trouble() noexcept { return std::exchange(trouble_, {}); }
 
     const State<P>& state() const noexcept { return state_; }
@@ -141,6 +122,8 @@ private:
         BondSums bonds;
         MotionSums motion;
         StepSeconds seconds;
+        std::vector<Press> presses;   ///< on standing concrete
+        std::vector<Index> weakened;  ///< sites
     };
     struct Published {
         MotionSums motion;
@@ -163,6 +146,7 @@ private:
 
     /// Before forces are evaluated, once for each time.
     void make_ready(Real dt) {
+        settle_concrete(state_, now_);
         state_.free_loose_concrete();
         lists_.freshen(state_, now_, dt);
     }
@@ -183,19 +167,13 @@ private:
     /// Sees who falls asleep. Forces are those of now, so nothing is lost or won in between.
     void look() {
         catch_up();
-        if (state_.dormancy.on()) {
-            MotionSums of_concrete;
-            quieten(state_, to_present(), 2 * lists_.skin(), of_concrete);
-            book(state_.accounts, of_concrete);
-        }
         MotionSums sums;
         const Real stored = at_rest();
-        if (state_.sleep.speed > 0 && fall_asleep(state_, to_present(), unlooked_ * time_step_, sums)) {
+        if (fall_asleep(state_, to_present(), unlooked_ * time_step_, sums)) {
             book(state_.accounts, sums);
             lists_.repack(state_);
             stored_contacts_ += stored - at_rest();
         }
-        if (state_.dormancy.on()) hold_gears(all_quiet(state_));
         unlooked_ = 0;
     }
     /// Stored in contacts that are not evaluated [J].
@@ -227,29 +205,29 @@ private:
             Stopwatch watch{timed};
             for (Index slab = slabs.first_slab(c); slab < slabs.first_slab(c + 1); ++slab) {
                 if (evaluate) evaluate_slab(slab, step, sums, watch);
-                if (slab > slabs.first_slab(c)) finish_slab(slab, move, sums.motion);
+                if (slab > slabs.first_slab(c)) finish_slab(slab, evaluate, move, sums);
                 watch.lap(sums.seconds.motion);
             }
         });
         parallel_tasks(slabs.chunks(), [&](Index c) {
             Stopwatch watch{timed};
-            finish_slab(slabs.first_slab(c), move, parts_[at(c)].motion);
+            finish_slab(slabs.first_slab(c), evaluate, move, parts_[at(c)]);
             watch.lap(parts_[at(c)].seconds.motion);
         });
         PassSums all;
         for (const PassSums& part : parts_) {
             all.contacts += part.contacts, all.bonds += part.bonds, all.motion += part.motion;
             timed_ += part.seconds;
+            state_.presses.insert(state_.presses.end(), part.presses.begin(), part.presses.end());
+            state_.weakened.insert(state_.weakened.end(), part.weakened.begin(), part.weakened.end());
         }
         if (evaluate) book(all.contacts, all.bonds), kicked_ = 0;
         report_overlap(move ? *move : Move{});
         if (move) {
             book(state_.accounts, all.motion);
-            turn_gears(move->kick);
             FreeFlight& flight = state_.flight;
             flight.note(move->kick, move->drift);
             state_.sleep.stirred |= all.motion.stirs;
-            state_.dormancy.stirred |= all.motion.stirs_concrete;
             const Real way =
                 move->drift * std::max(std::sqrt(all.motion.fastest2),
                                        flight.fastest + flight.kicks * state_.scene.gravity.norm());
@@ -273,16 +251,20 @@ private:
     }
 
     /// Loads of a slab are complete: concrete takes its wear, bodies move.
-    void finish_slab(Index slab, const Move* move, MotionSums& sums) noexcept {
+    void finish_slab(Index slab, bool evaluated, const Move* move, PassSums& sums) {
         SphereStore& store = state_.store;
         for (const SphereImage& image : store.images_of(slab))
             if (!flies(image)) store.collect(image);
         const Index first = store.first_slot(slab), last = store.first_slot(slab + 1);
+        if constexpr (P::has_bonds)
+            if (evaluated && state_.standing)
+                for (Index slot = first; slot < store.first_clump_slot(slab); ++slot)
+                    note_press(slot, sums.presses);
         if constexpr (P::has_wear)
-            for (Index slot = first; slot < last; ++slot) take_wear(slot);
+            for (Index slot = first; slot < last; ++slot) take_wear(slot, sums.weakened);
         if (!move) return;
-        sums += move_spheres(state_, first, store.first_clump_slot(slab), *move);
-        move_clumps(state_, store.clumps_of(slab), *move, sums);
+        sums.motion += move_spheres(state_, first, store.first_clump_slot(slab), *move);
+        move_clumps(state_, store.clumps_of(slab), *move, sums.motion);
         for (const SphereImage& image : store.images_of(slab))
             if (!flies(image)) store.refresh(image);
     }
@@ -292,29 +274,29 @@ private:
         return state_.pace[at(image.owner)] == Pace::flying;
     }
 
-    void take_wear(Index slot) noexcept {
+    void take_wear(Index slot, std::vector<Index>& weakened) {
         SphereLoad& load = state_.store.lines.load[at(slot)];
         if (!(load.worn > 0)) return;
         const Index site = state_.particles.site[at(body_in(slot))];
-        if (site >= 0) state_.concrete.wear(site, load.worn, now_, led_here_);
+        if (site >= 0) {
+            const Real before = state_.concrete.fracture(site);
+            state_.concrete.wear(site, load.worn, now_, led_here_);
+            constexpr Real per_step = 1 / StandingBonds<decltype(P::bond)>::strength_step;
+            if (state_.standing &&
+                std::floor(per_step * before) != std::floor(per_step * state_.concrete.fracture(site)))
+                weakened.push_back(site);
+        }
         load.worn = 0;
     }
 
-    /// Has gears that sleep stand, or lets them turn again.
-    void hold_gears(bool still) {
-        Dormancy& dormancy = state_.dormancy;
-        state_.accounts.lost_asleep += dormancy.turning(dormancy.gears.hold(still, state_.store.lines));
-        if (still) state_.store.refresh_images();
-    }
-    /// What stands still turns with its gears, kicked by what acts on anchors.
-    void turn_gears(Real kick) {
-        Dormancy& dormancy = state_.dormancy;
-        if (!dormancy.gears.turn_anchors()) return;
-        state_.accounts.interaction_work += dormancy.gears.turn(
-            kick, dormancy.inverse_mass,
-            [&](Index anchor) -> Vec3 { return dormancy.anchors[at(anchor)].lever_now(); },
-            state_.store.lines);
-        state_.store.refresh_images();
+    /// Of what presses on a standing sphere, what is more than it bears for certain.
+    void note_press(Index slot, std::vector<Press>& presses) const {
+        const SphereLoad& load = state_.store.lines.load[at(slot)];
+        const Real load2 = load.force.squaredNorm() + load.lever.squaredNorm();
+        if (!(load2 > 0) || state_.store.lines.motion[at(slot)].inverse_mass > 0) return;
+        const Index site = state_.particles.site[at(body_in(slot))];
+        if (site >= 0 && load2 > state_.standing->safe_squared(site))
+            presses.push_back({site, {load.force, load.lever}});
     }
 
     void book(const ContactSums& contacts, const BondSums& bonds) {
@@ -383,7 +365,6 @@ private:
     Real stored_contacts_ = 0, stored_bonds_ = 0;  ///< in what is evaluated [J]
     Real stored_at_rest_ = 0;                      ///< [J]
     Index unlooked_ = 0;                           ///< steps since the last look at who falls asleep
-    Real awake_ = 0, may_wake_ = 0;                ///< spheres of concrete, summed over steps
     bool too_deep_ = false;                        ///< some contact may be, as of the last evaluation
     Trouble trouble_;
     StepSeconds timed_;
