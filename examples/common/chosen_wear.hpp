@@ -7,6 +7,7 @@
 #include <abrade/wear/sklar_dietrich.hpp>
 #include <abrade/wear/sub_particle.hpp>
 
+#include <string>
 #include <variant>
 
 namespace abrade::examples {
@@ -14,16 +15,23 @@ namespace abrade::examples {
 /// A law of one's own may be made of others.
 struct ChosenWear {
     static constexpr std::string_view name = "ChosenWear";
-    using Params = NoParams;
+    struct Params {
+        Real acceleration = 1;  ///< beta of the law chosen [-]
+        void validate() const {}
+        void visit(auto&& f) const { f("acceleration", acceleration, "-"); }
+    };
     std::variant<NoWear, SubParticleAbrasion, Archard, Finnie, SklarDietrich, Ishibashi> law;
 
-    explicit ChosenWear(Params) {}
+    explicit ChosenWear(Params params) : params_(params) {}
     template <class Wear>
     requires(!std::same_as<Wear, ChosenWear> && !std::same_as<Wear, Params>) ChosenWear(const Wear& one)
-        : law(one) {}
-    const Params& params() const noexcept {
-        static constexpr Params none{};
-        return none;
+        : law(one) {
+        if constexpr (AcceleratedWear<Wear>) params_.acceleration = one.params().acceleration;
+    }
+    const Params& params() const noexcept { return params_; }
+    /// Of the law chosen.
+    std::string chosen() const {
+        return std::visit([](const auto& one) { return std::string(one.name); }, law);
     }
     template <class Number>
     WearIncrement<Number> increment(const ContactKinematics<Number>& contact,
@@ -33,7 +41,10 @@ struct ChosenWear {
     Real strength_left(Real fracture) const noexcept {
         return std::visit([&](const auto& one) { return one.strength_left(fracture); }, law);
     }
+
+private:
+    Params params_;
 };
-static_assert(WearLaw<ChosenWear>);
+static_assert(AcceleratedWear<ChosenWear>);
 
 }  // namespace abrade::examples

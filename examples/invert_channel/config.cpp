@@ -3,11 +3,26 @@
 
 #include "../common/toml_reader.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace abrade::examples {
 
 namespace {
+
+constexpr std::array<std::string_view, 3> levels{"static", "rigid", "dynamic"},
+    worn_outs{"fines", "grain", "recorded"}, contact_laws{"hysteretic", "linear", "elastic_plastic"};
+constexpr std::array<std::string_view, 4> overflows{"crater", "patch", "epoch", "drop"},
+    wear_laws{"sub_particle", "archard", "ishibashi", "none"};
+
+/// Throws InputError where a key is given that the choice made does not use.
+void refuse(const TomlReader& in, std::initializer_list<const char*> keys, const std::string& choice) {
+    for (const char* key : keys)
+        if (in.has(key))
+            fail(
+                {in.where(key) + ": " + key, "left out: " + choice + " has no use for it", "", "take it out"},
+                "a value");
+}
 
 void read_channel(TomlReader& in, ChannelConfig& c) {
     c.invert.length =
@@ -42,9 +57,33 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
     require(layers <= 1000, {in.where("concrete.layers") + ": concrete.layers", "at most 1000"},
             static_cast<Real>(layers));
     c.lattice.layers = static_cast<Index>(layers);
-    c.concrete_density =
+    c.concrete.density =
         in.number("concrete.density",
                   {.unit = "kg/m3", .fallback = 2400, .help = "of the spheres", .bound = Bound::positive});
+    const auto level =
+        in.choice("concrete.level", levels,
+                  {.fallback = "static",
+                   .help = "static: spheres stand, bonds are checked by equilibrium; rigid: they stand "
+                           "whatever presses; dynamic: they move on their bonds"});
+    c.concrete.level = level == "static"  ? ConcreteLevel::quasi_static
+                       : level == "rigid" ? ConcreteLevel::rigid
+                                          : ConcreteLevel::dynamic;
+    c.concrete.cluster = static_cast<Index>(
+        in.integer("concrete.cluster", {.fallback = 0,
+                                        .help = "bonds about a loaded sphere within which all give way",
+                                        .bound = Bound::not_negative}));
+    require(c.concrete.cluster == 0 || level == "static",
+            {in.where("concrete.cluster") + ": concrete.cluster", "0 unless concrete.level is \"static\"",
+             "bonds", "leave it out"},
+            c.concrete.cluster);
+    const auto worn_out =
+        in.choice("concrete.worn_out", worn_outs,
+                  {.fallback = "fines",
+                   .help = "fines: a fully worn sphere vanishes; grain: it stays as a loose grain; recorded: "
+                           "wear is written down on a bed that stays as it is"});
+    c.concrete.worn_out = worn_out == "fines"   ? WornOut::fines
+                          : worn_out == "grain" ? WornOut::grain
+                                                : WornOut::recorded;
     c.bond.tensile =
         in.number("concrete.tensile",
                   {.unit = "Pa", .fallback = 2.7e6, .help = "strength sigma_t0", .bound = Bound::positive});
@@ -66,22 +105,13 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
                                                     .help = "share of critical damping of a bond",
                                                     .assumption = "not in the text",
                                                     .bound = Bound::not_negative});
-    c.wake_force =
-        in.number("concrete.wake_force",
-                  {.unit = "N",
-                   .fallback = 10,
-                   .help = "load that wakes sleeping concrete, 0: all is awake; a bond holds 848 N",
-                   .bound = Bound::not_negative});
-    c.wake_radius = static_cast<Index>(in.integer(
-        "concrete.wake_radius",
-        {.fallback = 2, .help = "bonds about what stones may touch", .bound = Bound::not_negative}));
     static constexpr std::array<std::string_view, 2> volumes{"cell", "sphere"};
-    c.fracture_volume = in.choice("concrete.fracture_volume", volumes,
-                                  {.fallback = "cell",
-                                   .help = "V_omega: the lattice's cell or the sphere",
-                                   .assumption = "not in the text"}) == "cell"
-                            ? FractureVolume::cell
-                            : FractureVolume::sphere;
+    c.concrete.fracture_volume = in.choice("concrete.fracture_volume", volumes,
+                                           {.fallback = "cell",
+                                            .help = "V_omega: the lattice's cell or the sphere",
+                                            .assumption = "not in the text"}) == "cell"
+                                     ? FractureVolume::cell
+                                     : FractureVolume::sphere;
     static constexpr std::array<std::string_view, 2> joins{"mean", "minimum"}, areas{"circle", "square"};
     c.bond.join = in.choice("concrete.join", joins,
                             {.fallback = "mean",
@@ -98,21 +128,123 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
 }
 
 void read_contact(TomlReader& in, ChannelConfig& c) {
-    c.contact.stiffness = in.number(
+    c.contact_law = in.choice("contact.law", contact_laws,
+                              {.fallback = "hysteretic",
+                               .help = "hysteretic: loses by a dent, whatever the masses; linear: by a "
+                                       "dashpot; elastic_plastic: Hertz that yields"});
+    const Real friction = in.number("contact.friction", {.fallback = 0.5,
+                                                         .help = "Coulomb coefficient",
+                                                         .assumption = "not in the text",
+                                                         .bound = Bound::not_negative});
+    const std::string chosen = "contact.law = \"" + c.contact_law + "\"";
+    if (c.contact_law == "elastic_plastic") {
+        refuse(in, {"contact.stiffness", "contact.restitution", "contact.tangential_ratio"}, chosen);
+        ElasticPlasticHertz::Params law;
+        law.friction = friction, law.flat_radius = 0.5 * c.lattice.sphere_diameter;
+        law.youngs = in.number("contact.youngs", {.unit = "Pa",
+                                                  .fallback = 3e10,
+                                                  .help = "modulus of stones and concrete",
+                                                  .assumption = "usual for concrete",
+                                                  .bound = Bound::positive});
+        law.poisson = law.poisson_other =
+            in.number("contact.poisson", {.fallback = 0.2, .help = "", .assumption = "usual for concrete"});
+        law.yield_pressure = in.number("contact.yield_pressure",
+                                       {.unit = "Pa",
+                                        .help = "at which the concrete yields; fit it to a restitution",
+                                        .assumption = "not in the text",
+                                        .bound = Bound::positive});
+        law.softening =
+            in.number("contact.softening", {.fallback = 1e-3,
+                                            .help = "share of the modulus that the run has",
+                                            .assumption = "softer for a longer step; yield speed is kept",
+                                            .bound = Bound::positive});
+        c.contact = law;
+        return;
+    }
+    refuse(in, {"contact.youngs", "contact.poisson", "contact.yield_pressure", "contact.softening"}, chosen);
+    const Real stiffness = in.number(
         "contact.stiffness",
         {.unit = "N/m", .help = "normal spring", .assumption = "not in the text", .bound = Bound::positive});
-    c.contact.restitution =
+    const Real restitution =
         in.number("contact.restitution",
                   {.fallback = 0.6, .help = "of a normal impact", .assumption = "not in the text"});
-    c.contact.friction = in.number("contact.friction", {.fallback = 0.5,
-                                                        .help = "Coulomb coefficient",
-                                                        .assumption = "not in the text",
-                                                        .bound = Bound::not_negative});
-    c.contact.tangential_ratio =
-        in.number("contact.tangential_ratio", {.fallback = 2.0 / 7,
-                                               .help = "tangential over normal spring",
-                                               .assumption = "not in the text",
-                                               .bound = Bound::positive});
+    const Real ratio = in.number("contact.tangential_ratio", {.fallback = 2.0 / 7,
+                                                              .help = "tangential over normal spring",
+                                                              .assumption = "not in the text",
+                                                              .bound = Bound::positive});
+    const auto fill = [&](auto law) {
+        law.stiffness = stiffness, law.restitution = restitution, law.friction = friction;
+        law.tangential_ratio = ratio;
+        c.contact = law;
+    };
+    c.contact_law == "linear" ? fill(LinearSpring::Params{}) : fill(LinearHysteretic::Params{});
+}
+
+void read_wear(TomlReader& in, ChannelConfig& c) {
+    const auto law = in.choice("wear.law", wear_laws,
+                               {.fallback = "sub_particle", .help = "by which energy wears concrete"});
+    const std::string chosen = "wear.law = \"" + std::string(law) + "\"";
+    const auto acceleration = [&] {
+        return in.number(
+            "wear.acceleration",
+            {.fallback = 4800, .help = "beta, represented over simulated time", .bound = Bound::positive});
+    };
+    const auto wanted = [&](const char* key, const char* unit, const char* help) {
+        return in.number(key, {.unit = unit, .help = help, .bound = Bound::not_negative});
+    };
+    if (law != "sub_particle") refuse(in, {"wear.normal_weight", "wear.tangential_weight"}, chosen);
+    if (law != "archard") refuse(in, {"wear.hardness"}, chosen);
+    if (law != "ishibashi") refuse(in, {"wear.impact", "wear.friction"}, chosen);
+    if (law == "sub_particle") {
+        SubParticleAbrasion::Params wear;
+        wear.coefficient =
+            in.number("wear.coefficient",
+                      {.unit = "m3/J", .fallback = 1.1e-7, .help = "Cw", .bound = Bound::not_negative});
+        wear.acceleration = acceleration();
+        wear.normal_weight = in.number(
+            "wear.normal_weight",
+            {.fallback = 1, .help = "of impact losses; 1 is the paper", .bound = Bound::not_negative});
+        wear.tangential_weight = in.number(
+            "wear.tangential_weight",
+            {.fallback = 1, .help = "of sliding losses; 1 is the paper", .bound = Bound::not_negative});
+        c.wear = SubParticleAbrasion{wear};
+    } else if (law == "archard") {
+        const Real coefficient = wanted("wear.coefficient", "-", "Archard's k");
+        const Real hardness = wanted("wear.hardness", "Pa", "of the concrete");
+        c.wear = Archard{{.coefficient = coefficient, .hardness = hardness, .acceleration = acceleration()}};
+    } else if (law == "ishibashi") {
+        refuse(in, {"wear.coefficient"}, chosen);
+        const Real impact = wanted("wear.impact", "m3/J", "per energy of impact"),
+                   friction = wanted("wear.friction", "m3/J", "per work of friction");
+        c.wear = Ishibashi{{.impact = impact, .friction = friction, .acceleration = acceleration()}};
+    } else {
+        refuse(in, {"wear.coefficient", "wear.acceleration"}, chosen);
+        c.wear = NoWear{};
+    }
+
+    const auto overflow =
+        in.choice("wear.overflow", overflows,
+                  {.fallback = "crater",
+                   .help = "where wear goes beyond its cell: nearest cells, a patch, the mean of an epoch, "
+                           "or nowhere"});
+    const std::string way = "wear.overflow = \"" + std::string(overflow) + "\"";
+    if (overflow != "patch") refuse(in, {"wear.overflow_width"}, way);
+    if (overflow != "epoch") refuse(in, {"wear.overflow_every"}, way);
+    if (overflow == "patch") {
+        SpreadOverPatch patch;
+        patch.length = wanted("wear.overflow_length", "m", "of the patch, along the channel");
+        patch.width = wanted("wear.overflow_width", "m", "of the patch, across");
+        c.concrete.overflow = patch;
+    } else if (overflow == "epoch") {
+        SpreadByEpoch epoch;
+        epoch.length = wanted("wear.overflow_length", "m", "of the strips whose mean is worn");
+        epoch.every = wanted("wear.overflow_every", "s", "between two changes of the bed");
+        c.concrete.overflow = epoch;
+    } else {
+        refuse(in, {"wear.overflow_length"}, way);
+        overflow == "crater" ? void(c.concrete.overflow = FillCrater{})
+                             : void(c.concrete.overflow = DropOverflow{});
+    }
 }
 
 void read_water(TomlReader& in, ChannelConfig& c) {
@@ -138,7 +270,8 @@ void read_water(TomlReader& in, ChannelConfig& c) {
 
 void read_fluid(TomlReader& in, ChannelConfig& c) {
     std::vector<std::string_view> names;
-    for (const ChannelFluid& one : channel_fluids) names.push_back(one.name);
+    for (const ChannelEngine& one : channel_engines)
+        if (std::find(names.begin(), names.end(), one.fluid) == names.end()) names.push_back(one.fluid);
     c.fluid.model = in.choice(
         "fluid.model", names,
         {.fallback = "uniform",
@@ -231,7 +364,18 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
             {in.where("sediment.feed_from") + ": sediment.feed_from",
              "upstream of sediment.feed_to (" + to_text(to) + " m)", "m"},
             from);
-    feed.region = {{from, -half, 0.002}, {to, half, 0.02}};
+    const Real height = in.number("sediment.feed_height", {.unit = "m",
+                                                           .fallback = 0.02,
+                                                           .help = "over the bed up to which stones enter",
+                                                           .assumption = "not in the text",
+                                                           .bound = Bound::positive});
+    const Real until = in.number(
+        "sediment.feed_until",
+        {.unit = "s", .fallback = 0, .help = "end of the supply, 0: none", .bound = Bound::not_negative});
+    require(height > 0.002,
+            {in.where("sediment.feed_height") + ": sediment.feed_height", "above 0.002 m", "m"}, height);
+    if (until > 0) feed.end = until;
+    feed.region = {{from, -half, 0.002}, {to, half, height}};
     feed.velocity = {speed, 0, 0};
     feed.bed = [invert = c.invert](Real, Real y) { return invert.bed_height(y); };
     feed.seed = static_cast<std::uint32_t>(in.integer(
@@ -249,6 +393,17 @@ void read_comparison(TomlReader& in, ChannelConfig& c) {
                                          .help = "of the strip that counts as the centre line",
                                          .assumption = "not in the text",
                                          .bound = Bound::positive});
+    compare.gauges = in.numbers("compare.gauges", {.unit = "m",
+                                                   .fallback = std::vector<Real>{compare.from, compare.to},
+                                                   .help = "where the volume that has passed is recorded",
+                                                   .bound = Bound::not_negative});
+    compare.converted = in.numbers("compare.converted",
+                                   {.unit = "m3",
+                                    .fallback = std::vector<Real>{},
+                                    .help = "converted sediment at which the bed is kept, as it has passed "
+                                            "compare.from and compare.to; the last ends the run",
+                                    .bound = Bound::positive});
+    std::sort(compare.converted.begin(), compare.converted.end());
     compare.measured =
         in.file("compare.measured",
                 {.fallback = "", .help = "CSV of measured points of your own: x [m], depth [mm/m3]"});
@@ -260,6 +415,7 @@ void read_comparison(TomlReader& in, ChannelConfig& c) {
     };
     inside("compare.gauge", compare.gauge), inside("compare.from", compare.from),
         inside("compare.to", compare.to);
+    for (const Real x : compare.gauges) inside("compare.gauges", x);
     require(compare.to > compare.from,
             {in.where("compare.to") + ": compare.to",
              "downstream of compare.from (" + to_text(compare.from) + " m)", "m"},
@@ -267,6 +423,14 @@ void read_comparison(TomlReader& in, ChannelConfig& c) {
 }
 
 }  // namespace
+
+std::string name_of(ConcreteLevel level) {
+    return level == ConcreteLevel::quasi_static ? "static"
+           : level == ConcreteLevel::rigid      ? "rigid"
+                                                : "dynamic";
+}
+std::string name_of(WornOut worn_out) { return std::string(worn_outs[static_cast<std::size_t>(worn_out)]); }
+std::string name_of(const Overflow& overflow) { return std::string(overflows[overflow.index()]); }
 
 ChannelConfig read_channel_config(const std::filesystem::path& file,
                                   const std::vector<std::string>& overrides) {
@@ -285,24 +449,15 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
                          {.fallback = 0.8, .help = "share of the stable step", .bound = Bound::positive});
     c.skin = in.number(
         "run.skin",
-        {.unit = "m", .fallback = 0.006, .help = "of the neighbour list", .bound = Bound::positive});
+        {.unit = "m", .fallback = 0.012, .help = "of the neighbour list", .bound = Bound::positive});
     read_channel(in, c);
     read_concrete(in, c);
     read_contact(in, c);
     read_water(in, c);
     read_fluid(in, c);
+    find_engine(c.fluid.model, c.contact_law);
     read_sediment(in, c);
-    c.wear.coefficient = in.number(
-        "wear.coefficient", {.unit = "m3/J", .fallback = 1.1e-7, .help = "Cw", .bound = Bound::not_negative});
-    c.wear.acceleration = in.number(
-        "wear.acceleration",
-        {.fallback = 4800, .help = "beta, represented over simulated time", .bound = Bound::positive});
-    c.wear.normal_weight =
-        in.number("wear.normal_weight",
-                  {.fallback = 1, .help = "of impact losses; 1 is the paper", .bound = Bound::not_negative});
-    c.wear.tangential_weight =
-        in.number("wear.tangential_weight",
-                  {.fallback = 1, .help = "of sliding losses; 1 is the paper", .bound = Bound::not_negative});
+    read_wear(in, c);
     read_comparison(in, c);
     in.reject_unknown();
     c.parameters = in.parameters();
@@ -317,8 +472,8 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
     };
     check("channel", [&] { c.invert.validate(); });
     check("concrete", [&] { MohrCoulomb{c.bond}, check_size(c.lattice, c.invert.length, c.invert.width); });
-    check("contact", [&] { LinearSpring{c.contact}; });
-    check("wear", [&] { SubParticleAbrasion{c.wear}; });
+    check("contact", [&] { std::visit([](const auto& params) { params.validate(); }, c.contact); });
+    check("wear", [&] { validate(c.concrete.overflow); });
     check("water", [&] { UniformFlow{c.water}; });
     check("sediment", [&] { c.feed.validate(); });
     return c;

@@ -1,18 +1,20 @@
 #pragma once
 // What the TOML file of the invert channel says, checked and in the library's own terms.
 
+#include "../common/chosen_wear.hpp"
 #include "../common/parameter.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/coupling/drag.hpp>
+#include <abrade/dem/elastic_plastic_hertz.hpp>
+#include <abrade/dem/linear_hysteretic.hpp>
 #include <abrade/dem/linear_spring.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
-#include <abrade/sim/feed.hpp>
-#include <abrade/wear/concrete.hpp>
-#include <abrade/wear/sub_particle.hpp>
+#include <abrade/sim/scene.hpp>
 
 #include <filesystem>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace abrade::examples {
@@ -22,6 +24,8 @@ struct Comparison {
     Real gauge = 0;                  ///< x where passing sediment is counted [m]
     Real from = 0, to = 0;           ///< section of the centre line [m]
     Real half_width = 0;             ///< of the strip that counts as the centre [m]
+    std::vector<Real> gauges;        ///< x where the volume that has passed is recorded [m]
+    std::vector<Real> converted;     ///< volumes at which the bed is kept; the last ends the run [m3]
     std::filesystem::path measured;  ///< CSV of the user's own points, or empty
 };
 
@@ -38,13 +42,11 @@ struct ChannelConfig {
     std::string source;  ///< the TOML file
     Invert invert;
     LatticeSize lattice;
-    Real concrete_density = 0;  ///< [kg/m3]
-    FractureVolume fracture_volume = FractureVolume::cell;
-    Real wake_force = 0;    ///< [N]
-    Index wake_radius = 0;  ///< [bonds]
-    LinearSpring::Params contact;
+    ConcreteBlock concrete;   ///< but for its lattice
+    std::string contact_law;  ///< as in the file
+    std::variant<LinearHysteretic::Params, LinearSpring::Params, ElasticPlasticHertz::Params> contact;
     MohrCoulomb::Params bond;
-    SubParticleAbrasion::Params wear;
+    ChosenWear wear{ChosenWear::Params{}};
     UniformFlow::Params water;
     WaterChoice fluid;
     CliftGauvin::Params drag;
@@ -53,6 +55,11 @@ struct ChannelConfig {
     Real end_time = 0, output_every = 0, time_step = 0, safety = 0, skin = 0;
     std::vector<Parameter> parameters;  ///< all that was read, for the report
 };
+
+/// The name of a level, of what becomes of worn-out spheres, of a way that excess goes; as in the file.
+std::string name_of(ConcreteLevel level);
+std::string name_of(WornOut worn_out);
+std::string name_of(const Overflow& overflow);
 
 /// Reads and checks a file; `overrides` are "section.key=value". Throws InputError.
 ChannelConfig read_channel_config(const std::filesystem::path& file,

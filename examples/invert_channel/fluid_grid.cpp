@@ -119,9 +119,10 @@ ChannelRun run_in_grid_water(const ChannelConfig& config, const std::filesystem:
     const UniformFlow uniform{config.water};
     ChannelWater water;
     water.manning_depth_m = uniform.depth(), water.manning_speed_m_per_s = uniform.mean_velocity();
-    ChannelRun run = run_channel(config, stem, grid_channel(config), [&](const Flow& flow, bool first) {
-        first ? measure(config, flow, water) : look_at_the_end(flow, water);
-    });
+    ChannelRun run =
+        run_channel<LinearHysteretic>(config, stem, grid_channel(config), [&](const Flow& flow, bool first) {
+            first ? measure(config, flow, water) : look_at_the_end(flow, water);
+        });
     run.results.water = std::move(water);
     return run;
 }

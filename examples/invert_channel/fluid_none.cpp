@@ -5,7 +5,7 @@
 namespace abrade::examples {
 
 ChannelRun run_without_fluid(const ChannelConfig& config, const std::filesystem::path& stem) {
-    return run_channel(config, stem, NoFluid{}, [](const NoFluid&, bool) {});
+    return run_channel<LinearHysteretic>(config, stem, NoFluid{}, [](const NoFluid&, bool) {});
 }
 
 }  // namespace abrade::examples

@@ -1,19 +1,11 @@
-// Steady uniform flow: prescribed, from Manning's formula.
+// Steady uniform flow and contacts that lose by a dent.
 
-#include "run_channel.hpp"
+#include "uniform.hpp"
 
 namespace abrade::examples {
 
 ChannelRun run_in_uniform_flow(const ChannelConfig& config, const std::filesystem::path& stem) {
-    ChannelWater water;
-    ChannelRun run = run_channel(config, stem, UniformFlow{config.water}, [&](const UniformFlow& flow, bool) {
-        water.depth_m = water.manning_depth_m = flow.depth();
-        water.speed_m_per_s = water.manning_speed_m_per_s = flow.mean_velocity();
-        water.froude = flow.froude(), water.bed_shear_Pa = flow.bed_shear();
-        water.surface_x = {0, config.invert.length}, water.surface_z = {flow.depth(), flow.depth()};
-    });
-    run.results.water = std::move(water);
-    return run;
+    return run_uniform<LinearHysteretic>(config, stem);
 }
 
 }  // namespace abrade::examples

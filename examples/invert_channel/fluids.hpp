@@ -1,5 +1,6 @@
 #pragma once
-// The fluids that a channel can be run with. One more is a file fluid_NAME.cpp and a line here.
+// The engines that a channel can be run with, by fluid and contact law. One more is a file fluid_NAME.cpp and
+// a line here.
 
 #include "config.hpp"
 #include "results.hpp"
@@ -30,16 +31,34 @@ struct ChannelRun {
 /// Runs to the end, or until a user stops it; writes series at `stem`.
 ChannelRun run_without_fluid(const ChannelConfig& config, const std::filesystem::path& stem);
 ChannelRun run_in_uniform_flow(const ChannelConfig& config, const std::filesystem::path& stem);
+ChannelRun run_in_uniform_flow_linear(const ChannelConfig& config, const std::filesystem::path& stem);
+ChannelRun run_in_uniform_flow_elastic_plastic(const ChannelConfig& config,
+                                               const std::filesystem::path& stem);
 ChannelRun run_in_shallow_water(const ChannelConfig& config, const std::filesystem::path& stem);
 ChannelRun run_in_grid_water(const ChannelConfig& config, const std::filesystem::path& stem);
 
-struct ChannelFluid {
-    std::string_view name;  ///< in the TOML file
+struct ChannelEngine {
+    std::string_view fluid, contact;  ///< in the TOML file
     ChannelRun (*run)(const ChannelConfig&, const std::filesystem::path&);
 };
-inline constexpr std::array<ChannelFluid, 4> channel_fluids{{{"none", run_without_fluid},
-                                                             {"uniform", run_in_uniform_flow},
-                                                             {"shallow", run_in_shallow_water},
-                                                             {"grid", run_in_grid_water}}};
+inline constexpr std::array<ChannelEngine, 6> channel_engines{
+    {{"none", "hysteretic", run_without_fluid},
+     {"uniform", "hysteretic", run_in_uniform_flow},
+     {"uniform", "linear", run_in_uniform_flow_linear},
+     {"uniform", "elastic_plastic", run_in_uniform_flow_elastic_plastic},
+     {"shallow", "hysteretic", run_in_shallow_water},
+     {"grid", "hysteretic", run_in_grid_water}}};
+
+/// Throws InputError where none was compiled for these two.
+inline const ChannelEngine& find_engine(std::string_view fluid, std::string_view contact) {
+    std::string all;
+    for (const ChannelEngine& one : channel_engines) {
+        if (one.fluid == fluid && one.contact == contact) return one;
+        all += (all.empty() ? "" : ", ") + std::string(one.fluid) + " with " + std::string(one.contact);
+    }
+    fail({"fluid.model with contact.law", "a pair that an engine was compiled for: " + all, "",
+          "take one of these, or add a line to channel_engines"},
+         std::string(fluid) + " with " + std::string(contact));
+}
 
 }  // namespace abrade::examples

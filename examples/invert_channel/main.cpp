@@ -4,9 +4,10 @@
 //   [--threads N] [--check]
 //
 // config       what the TOML file says, checked
-// fluids       which waters there are; fluid_NAME.cpp: one of them
+// fluids       which engines there are, by fluid and contact law; fluid_NAME.cpp: one of them
 // run_channel  a run with one of them
 // channel      from the configuration to a simulation, and from a simulation to results
+// bed          what has passed along the channel, and the bed when enough had
 // recorder     what is written while it runs
 // pictures     what is drawn when it is done
 // profiles     the worn bed along the centre and across, for examples/ensemble
@@ -61,23 +62,28 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"stones", r.stones},
         {"stones_fed", r.stones_fed},
         {"concrete_spheres", r.concrete_spheres},
-        {"awake_fraction_mean", r.awake_fraction_mean},
         {"bonds_broken", r.bonds_broken},
+        {"spheres_let_go", r.spheres_let_go},
+        {"worn_through", r.worn_through},
         {"sediment_fed_m3", r.sediment_fed_m3},
         {"sediment_passed_m3", r.sediment_passed_m3},
         {"converted_sediment_m3", r.converted_sediment_m3},
         {"worn_volume_m3", r.worn_volume_m3},
         {"worn_volume_from_energy_m3", r.worn_volume_from_energy_m3},
         {"overflow_volume_m3", r.overflow_volume_m3},
+        {"waiting_volume_m3", r.waiting_volume_m3},
         {"detached_volume_m3", r.detached_volume_m3},
         {"largest_collision_share", r.largest_collision_share},
         {"largest_safe_beta", r.largest_safe_beta},
-        {"centre_depth_mm_per_m3", r.centre_depth_mm_per_m3},
-        {"max_depth_mm", r.max_depth_mm},
+        {"centre_depth_mm_per_m3", r.bed.centre_mean_per_m3},
+        {"max_depth_mm", 1e3 * r.bed.max_depth_m},
         {"mean_depth_mm", r.mean_depth_mm},
-        {"worn_band_width_m", r.worn_band_width_m},
+        {"worn_band_width_m", r.bed.band_width_m},
         {"energy_lost_normal_J", r.energy_lost_normal_J},
         {"energy_lost_sliding_J", r.energy_lost_sliding_J},
+        {"impact_share",
+         r.energy_lost_normal_J / std::max(r.energy_lost_normal_J + r.energy_lost_sliding_J, 1e-300)},
+        {"restitution_at_1_m_per_s", r.restitution_at_1_m_per_s},
         {"ledger_residual_relative", r.ledger_residual_relative},
         {"integration_residue_J", r.integration_residue_J},
         {"mean_stone_speed_m_per_s", r.mean_stone_speed_m_per_s},
@@ -87,7 +93,20 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
           {"motion_and_fluid", r.wall_motion_s},
           {"lists", r.wall_lists_s},
           {"changing_fluid", r.wall_fluid_s}}},
-        {"policies", {{"fluid", r.fluid}, {"contact", r.contact}, {"bond", r.bond}, {"wear", r.wear}}}};
+        {"policies", {{"fluid", r.fluid}, {"contact", r.contact}, {"bond", r.bond}, {"wear", r.wear}}},
+        {"concrete_level", name_of(c.concrete.level)},
+        {"cluster", c.concrete.cluster},
+        {"worn_out", name_of(c.concrete.worn_out)},
+        {"overflow", name_of(c.concrete.overflow)},
+        {"validity", validity(c, r)},
+        {"passed_volume", {{"x_m", r.passed.x_m}, {"time_s", r.passed.time_s}, {"m3", r.passed.passed_m3}}}};
+    for (const Milestone& one : r.milestones)
+        summary["milestones"].push_back({{"converted_m3", one.converted_m3},
+                                         {"past_m", one.past_m},
+                                         {"time_s", one.time_s},
+                                         {"centre_depth_mm_per_m3", one.bed.centre_mean_per_m3},
+                                         {"max_depth_mm", 1e3 * one.bed.max_depth_m},
+                                         {"worn_band_width_m", one.bed.band_width_m}});
     if (r.water) {
         summary["water_depth_m"] = r.water->depth_m;
         summary["water_speed_m_per_s"] = r.water->speed_m_per_s;
@@ -133,9 +152,8 @@ int run(const Options& options) {
         std::cerr << "note: " << left.string()
                   << " was left by a run that was killed; delete it if you do not need it\n";
 
-    const auto fluid = std::find_if(channel_fluids.begin(), channel_fluids.end(),
-                                    [&](const ChannelFluid& one) { return one.name == config.fluid.model; });
-    const ChannelRun run = fluid->run(config, folder.path("series"));
+    const ChannelEngine& engine = find_engine(config.fluid.model, config.contact_law);
+    const ChannelRun run = engine.run(config, folder.path("series"));
     if (run.code != 0) {
         std::cerr << "error: " << run.went_wrong << "\n";
         keep_failed_run(run, folder);
@@ -156,7 +174,10 @@ int run(const Options& options) {
     if (results.stopped)
         std::cout << "stopped early, at " << short_text(results.simulated_s) << " s of "
                   << short_text(config.end_time) << " s\n";
-    const Real due = config.feed.volume_rate * results.simulated_s;
+    if (results.worn_through)
+        std::cout << "the concrete is worn through, at " << short_text(results.simulated_s) << " s of "
+                  << short_text(config.end_time) << " s: give it more concrete.layers\n";
+    const Real due = config.feed.volume_rate * std::min(results.simulated_s, config.feed.end);
     Real largest = 0;  // stones are fed whole
     for (const StoneClass& stones : config.feed.classes)
         largest = std::max(largest, pi / 6 * cube(stones.size));
@@ -168,8 +189,8 @@ int run(const Options& options) {
                   << short_text(100 * results.water->off_manning())
                   << " % off Manning's depth or speed; let it settle for longer (fluid.settle)\n";
     std::cout << "worn " << short_text(1e6 * results.worn_volume_m3) << " cm3; ";
-    if (std::isfinite(results.centre_depth_mm_per_m3))
-        std::cout << "at the centre " << short_text(results.centre_depth_mm_per_m3)
+    if (std::isfinite(results.bed.centre_mean_per_m3))
+        std::cout << "at the centre " << short_text(results.bed.centre_mean_per_m3)
                   << " mm per m3 of sediment\n";
     else
         std::cout << "no sediment has passed the gauge yet\n";

@@ -83,8 +83,9 @@ void draw_water(const ChannelConfig& c, const ChannelWater& water, const fs::pat
     draw(map, picture);
 }
 
-void draw_depth_map(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
-    ColourMap map{.title = "Abrasion depth",
+void draw_depth_map(const ChannelConfig& c, const ChannelResults& r, const BedDepth& bed,
+                    const std::string& title, const fs::path& picture) {
+    ColourMap map{.title = title,
                   .x = along_channel(c),
                   .y = across_channel(c),
                   .colour = {.label = "abrasion depth", .unit = "mm", .min = 0.0},
@@ -92,7 +93,7 @@ void draw_depth_map(const ChannelConfig& c, const ChannelResults& r, const fs::p
                   .values = {}};
     for (Index j = 0; j < r.across; ++j)
         for (Index i = 0; i < r.along; ++i)
-            map.values.push_back(1e3 * r.depth_m[static_cast<std::size_t>(i * r.across + j)]);
+            map.values.push_back(1e3 * bed.depth_m[static_cast<std::size_t>(i * r.across + j)]);
     if (*std::max_element(map.values.begin(), map.values.end()) <= 0) map.colour.max = 1.0;
     map.equal_aspect = c.invert.length < 4;
     draw(map, picture);
@@ -109,9 +110,9 @@ std::vector<Real> smoothed(const std::vector<Real>& values, std::size_t half) {
 }
 
 void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
-    const Real width = r.worn_band_width_m > 0 ? r.worn_band_width_m : 1;
+    const Real width = r.bed.band_width_m > 0 ? r.bed.band_width_m : 1;
     const Bracket bracket = Bracket{}.per_width(width);
-    const Real from = c.comparison.from, to = c.comparison.to, mean = r.centre_depth_mm_per_m3;
+    const Real from = c.comparison.from, to = c.comparison.to, mean = r.bed.centre_mean_per_m3;
     LineChart chart{
         .title = "Abrasion depth at the centre line per volume of sediment passed",
         .x = along_channel(c),
@@ -122,7 +123,13 @@ void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs:
                    .low = {bracket.low, bracket.low},
                    .high = {bracket.high, bracket.high}}}};
     if (std::isfinite(mean)) {
-        chart.curves.push_back({.title = "simulation", .x = r.x_m, .y = smoothed(r.centre_depth_per_m3, 2)});
+        std::vector<Real> shown = smoothed(r.bed.centre_depth_per_m3, 2);
+        shown.resize(static_cast<std::size_t>(
+            std::find_if(shown.begin(), shown.end(), [](Real d) { return !std::isfinite(d); }) -
+            shown.begin()));  // nothing has passed what is downstream
+        chart.curves.push_back({.title = "simulation",
+                                .x = {r.bed.x_m.begin(), r.bed.x_m.begin() + std::ssize(shown)},
+                                .y = shown});
         chart.curves.push_back({.title = "mean of the compared section",
                                 .x = {from, to},
                                 .y = {mean, mean},
@@ -139,6 +146,43 @@ void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs:
             points.x.push_back(p.x), points.y.push_back(p.depth);
         chart.curves.push_back(std::move(points));
     }
+    draw(chart, picture);
+}
+
+/// Mean depth across the compared section, and where stones run.
+void draw_cross_section(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
+    std::vector<Real> depth, stones;
+    const Real worn = std::max(*std::max_element(r.bed.across_depth_m.begin(), r.bed.across_depth_m.end()),
+                               1e-300),
+               most = std::max(*std::max_element(r.stones_across.begin(), r.stones_across.end()), 1e-300);
+    for (const Real one : r.bed.across_depth_m) depth.push_back(one / worn);
+    for (const Real one : r.stones_across) stones.push_back(one / most);
+    draw(LineChart{.title = "Across the compared section: depth (largest " + short_number(1e3 * worn, 3) +
+                            " mm) and where stones run",
+                   .x = across_channel(c),
+                   .y = {.label = "share of the largest", .unit = "-", .min = 0.0},
+                   .curves = {{.title = "mean abrasion depth", .x = r.bed.y_m, .y = depth},
+                              {.title = "volume of stones x time",
+                               .x = r.bed.y_m,
+                               .y = smoothed(stones, 1),
+                               .style = CurveStyle::dashed}}},
+         picture);
+}
+
+void draw_passed(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
+    LineChart chart{.title = "Solid volume that has passed",
+                    .x = {.label = "time", .unit = "s", .min = 0.0},
+                    .y = {.label = "volume of stones", .unit = "m3", .min = 0.0},
+                    .curves = {}};
+    std::vector<Real> fed;
+    for (const Real t : r.passed.time_s)
+        fed.push_back(c.feed.volume_rate * std::clamp(t - c.feed.start, 0.0, c.feed.end - c.feed.start));
+    chart.curves.push_back(
+        {.title = "due to be fed", .x = r.passed.time_s, .y = fed, .style = CurveStyle::dashed});
+    for (std::size_t g = 0; g < r.passed.x_m.size(); ++g)
+        chart.curves.push_back({.title = "past x = " + short_number(r.passed.x_m[g]) + " m",
+                                .x = r.passed.time_s,
+                                .y = r.passed.passed_m3[g]});
     draw(chart, picture);
 }
 
@@ -183,18 +227,20 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
         row("their mean speed", r.mean_stone_speed_m_per_s, "m/s"),
         row("concrete spheres", r.concrete_spheres, ""),
         row("bonds broken", r.bonds_broken, ""),
+        row("spheres let go by their bonds", r.spheres_let_go, ""),
+        row("restitution at 1 m/s", r.restitution_at_1_m_per_s, ""),
         row("sediment past the gauge", r.sediment_passed_m3, "m3"),
         row("converted sediment (times beta)", r.converted_sediment_m3, "m3"),
         row("worn volume", 1e6 * r.worn_volume_m3, "cm3"),
         row("worn volume from the energy lost", 1e6 * r.worn_volume_from_energy_m3, "cm3"),
-        row("overflow: hit spheres already fully fractured", 1e6 * r.overflow_volume_m3, "cm3"),
+        row("overflow: worn off nothing", 1e6 * r.overflow_volume_m3, "cm3"),
         row("sound concrete that went with loosened spheres", 1e6 * r.detached_volume_m3, "cm3"),
         row("largest share of a cell that one collision wore", r.largest_collision_share, ""),
         row("largest safe beta", r.largest_safe_beta, "", "nothing was worn"),
-        row("depth at the centre per converted sediment", r.centre_depth_mm_per_m3, "mm/m3"),
-        row("greatest depth", r.max_depth_mm, "mm"),
+        row("depth at the centre per converted sediment", r.bed.centre_mean_per_m3, "mm/m3"),
+        row("greatest depth", 1e3 * r.bed.max_depth_m, "mm"),
         row("mean depth", r.mean_depth_mm, "mm"),
-        row("width of the worn band (90 % of the volume)", r.worn_band_width_m, "m"),
+        row("width of the worn band (90 % of the volume)", r.bed.band_width_m, "m"),
         row("energy lost in impacts on concrete", r.energy_lost_normal_J, "J"),
         row("energy lost in sliding on concrete", r.energy_lost_sliding_J, "J"),
         row("ledger residual, relative", r.ledger_residual_relative, ""),
@@ -214,12 +260,27 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
 
 }  // namespace
 
+std::string validity(const ChannelConfig& c, const ChannelResults& r) {
+    if (c.concrete.worn_out == WornOut::recorded)
+        return "Wear was recorded on a frozen bed: neither stones nor water feel it. Depths beyond a share "
+               "of "
+               "the water's depth are outside the model's validity.";
+    if (const Real beta = c.wear.params().acceleration; beta > r.largest_safe_beta)
+        return "Warning: one collision wore " + short_number(r.largest_collision_share, 2) +
+               " times its sphere's cell: beta = " + short_number(beta) + " is above the safe " +
+               short_number(r.largest_safe_beta, 2) + ", so the bed may depend on it (docs/convergence.md).";
+    return "No collision wore more than half of its cell: beta was safe.";
+}
+
 void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputFolder& folder) {
     const fs::path side = folder.path("side_view.png"), plan = folder.path("plan_view.png"),
                    depth = folder.path("abrasion_depth.png"), centre = folder.path("centre_line.png"),
+                   section = folder.path("cross_section.png"), passed = folder.path("passed.png"),
                    ledger = folder.path("ledger.png");
     draw_snapshot(c, r, side, plan);
-    draw_depth_map(c, r, depth);
+    draw_depth_map(c, r, r.bed, "Abrasion depth", depth);
+    draw_cross_section(c, r, section);
+    draw_passed(c, r, passed);
     draw_centre_line(c, r, centre);
     draw_ledger(r, ledger);
     const bool flows = r.water && !r.water->depth_map.empty();
@@ -234,17 +295,18 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
                     : flows  ? "water that runs down a channel"
                              : "steady uniform water at the upstream end of a channel") +
         " whose invert is made of bonded concrete spheres. "
-        "Half of the energy that stones lose in contact with a sphere wears it (sub-particle abrasion), and "
-        "what is worn holds less. "
-        "The ledger follows every joule; worn volume is the energy lost times a constant, to round-off.";
+        "Level of the concrete: " +
+        name_of(c.concrete.level) + "; worn-out spheres: " + name_of(c.concrete.worn_out) +
+        "; wear beyond a cell: " + name_of(c.concrete.overflow) + ". Contacts: " + r.contact +
+        ", wear: " + r.wear +
+        ". The ledger follows every joule; worn volume is the energy lost times a constant, to round-off. " +
+        validity(c, r);
     if (r.stopped)
         report.explanation +=
             " The run was stopped by the user before its end: figures are of the part that was computed.";
-    if (r.largest_collision_share > 1)
+    if (r.worn_through)
         report.explanation +=
-            " Warning: one collision wore " + short_number(r.largest_collision_share, 2) +
-            " times its sphere's cell, so the result depends on beta = " + short_number(c.wear.acceleration) +
-            "; take at most " + short_number(r.largest_safe_beta, 2) + ".";
+            " The concrete was worn through before the end of the run: give it more layers.";
     report.summary = summary_rows(r);
     report.figures = {
         {side,
@@ -260,9 +322,25 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
              " mm/m3 (all stones sliding at mu = 0.3) on a strip 1 m wide, divided by the width that wears "
              "here." +
              (c.comparison.measured.empty() ? " No measured points were given (compare.measured)." : "")},
+        {section,
+         "Across the compared section: mean abrasion depth, and the volume of stones summed over time, each "
+         "as "
+         "a share of its largest."},
+        {passed, "Solid volume that has passed, against what was due to be fed."},
         {ledger,
          "Energy over time. The integration residue is the integrator's error in energy, shown and not "
          "hidden in a loss."}};
+    for (std::size_t n = 0; n < r.milestones.size(); ++n) {
+        const Milestone& one = r.milestones[n];
+        const fs::path picture = folder.path("milestone_" + std::to_string(n + 1) + ".png");
+        const std::string when =
+            short_number(one.converted_m3) + " m3 have passed x = " + short_number(one.past_m) + " m";
+        draw_depth_map(c, r, one.bed, "Abrasion depth as " + when, picture);
+        report.figures.push_back({picture, "Abrasion depth in plan as " + when + ", at " +
+                                               short_number(one.time_s) + " s. At the centre " +
+                                               short_number(one.bed.centre_mean_per_m3) +
+                                               " mm/m3 over what has passed each place."});
+    }
     if (flows)
         report.figures.push_back(
             {folder.path("water.png"),

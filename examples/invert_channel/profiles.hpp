@@ -14,22 +14,13 @@
 
 namespace abrade::examples {
 
-/// Abrasion depth across the channel [mm per m3 of converted sediment]: the mean over the compared section,
-/// at each column of the lattice. Not a number before any sediment has passed.
-inline std::vector<Real> cross_profile(const ChannelConfig& c, const ChannelResults& r) {
+/// Abrasion depth across the channel per volume past the gauge [mm/m3]: the mean over the compared section.
+/// Not a number before any sediment has passed.
+inline std::vector<Real> cross_profile(const ChannelResults& r) {
     const Real per_m3 =
         r.converted_sediment_m3 > 0 ? 1e3 / r.converted_sediment_m3 : std::numeric_limits<Real>::quiet_NaN();
     std::vector<Real> profile;
-    for (Index j = 0; j < r.across; ++j) {
-        Real depth = 0;
-        Index compared = 0;
-        for (Index i = 0; i < r.along; ++i) {
-            const Real x = r.x_m[static_cast<std::size_t>(i)];
-            if (x < c.comparison.from || x > c.comparison.to) continue;
-            depth += r.depth_m[static_cast<std::size_t>(i * r.across + j)], ++compared;
-        }
-        profile.push_back(compared > 0 ? depth / compared * per_m3 : 0);
-    }
+    for (const Real depth : r.bed.across_depth_m) profile.push_back(depth * per_m3);
     return profile;
 }
 
@@ -41,10 +32,11 @@ inline void write_profiles(const ChannelConfig& c, const ChannelResults& r,
                                           {"width_m", c.invert.width},
                                           {"compared_from_m", c.comparison.from},
                                           {"compared_to_m", c.comparison.to},
-                                          {"x_m", r.x_m},
-                                          {"centre_depth_mm_per_m3", r.centre_depth_per_m3},
-                                          {"y_m", r.y_m},
-                                          {"across_depth_mm_per_m3", cross_profile(c, r)}};
+                                          {"x_m", r.bed.x_m},
+                                          {"centre_depth_mm_per_m3", r.bed.centre_depth_per_m3},
+                                          {"y_m", r.bed.y_m},
+                                          {"across_depth_mm_per_m3", cross_profile(r)},
+                                          {"stones_across", r.stones_across}};
     std::ofstream file(path);
     file << profiles.dump() << "\n";
     if (!file.flush()) throw FileError("cannot write '" + path.string() + "'");

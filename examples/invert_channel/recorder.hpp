@@ -12,12 +12,15 @@ namespace abrade::examples {
 
 class Recorder {
 public:
-    explicit Recorder(const std::filesystem::path& stem) : series_(stem) {}
+    /// Writes the bodies at most every `every` [s].
+    Recorder(const std::filesystem::path& stem, Real every) : series_(stem), every_(every) {}
 
     template <class Sim>
     void operator()(const Sim& sim) {
         if (!history_.time.empty() && sim.time() <= history_.time.back()) return;  // a stop on an output time
         record_ledger(sim.ledger(), sim.time());
+        if (sim.time() < next_ - 0.5 * sim.time_step()) return;
+        next_ += every_;
         write_stones(sim.particles(), sim.time());
         write_concrete(sim);
     }
@@ -81,6 +84,7 @@ private:
     }
 
     SeriesWriter series_;
+    Real every_, next_ = 0;  ///< [s]
     LedgerHistory history_;
 };
 

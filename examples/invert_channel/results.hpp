@@ -44,8 +44,31 @@ struct ChannelWater {
     static constexpr Real settled_within = 0.1;
 };
 
+/// Abrasion depth, in plan and per volume of converted sediment.
+struct BedDepth {
+    std::vector<Real> depth_m;              ///< [along x across]
+    std::vector<Real> x_m, y_m;             ///< [along], [across] of the columns
+    std::vector<Real> centre_depth_per_m3;  ///< [along] over what has passed there; NaN: nothing has [mm/m3]
+    std::vector<Real> across_depth_m;       ///< [across] mean over the compared section
+    Real centre_mean_per_m3 = 0;            ///< over the compared section [mm/m3]
+    Real max_depth_m = 0, band_width_m = 0;
+};
+
+/// The bed as a converted volume had passed a place.
+struct Milestone {
+    Real converted_m3 = 0, past_m = 0, time_s = 0;
+    BedDepth bed;
+};
+
+/// Solid volume that has passed places over time.
+struct PassedHistory {
+    std::vector<Real> x_m, time_s;
+    std::vector<std::vector<Real>> passed_m3;  ///< [x][time]
+};
+
 struct ChannelResults {
     bool stopped = false;  ///< by Ctrl-C
+    bool worn_through = false;
     Real wall_s = 0, simulated_s = 0, represented_h = 0, time_step_s = 0, stable_time_step_s = 0;
     Index steps = 0, stones = 0, stones_fed = 0, concrete_spheres = 0, bonds_broken = 0;
     int threads = 1;
@@ -53,20 +76,22 @@ struct ChannelResults {
     Real worn_volume_m3 = 0, worn_volume_from_energy_m3 = 0, overflow_volume_m3 = 0, detached_volume_m3 = 0;
     Real largest_collision_share = 0;  ///< of a cell's volume that one collision wore
     Real largest_safe_beta = 0;        ///< at which that would have been 1; infinite where nothing wore
-    Real centre_depth_mm_per_m3 = 0;   ///< not a number until sediment has passed the gauge
-    Real max_depth_mm = 0, mean_depth_mm = 0, worn_band_width_m = 0;
+    Real mean_depth_mm = 0;
     Real energy_lost_normal_J = 0, energy_lost_sliding_J = 0;  ///< in contacts with concrete
     Real ledger_residual_relative = 0, integration_residue_J = 0;
     Real mean_stone_speed_m_per_s = 0;
-    Real awake_fraction_mean = 1;  ///< of the concrete that could move
+    Real waiting_volume_m3 = 0;         ///< told to wear, its epoch has not ended
+    Index spheres_let_go = 0;           ///< that bonds no longer held
+    Real restitution_at_1_m_per_s = 0;  ///< of the middle stone on concrete
     Real wall_contacts_s = 0, wall_bonds_s = 0, wall_motion_s = 0, wall_lists_s = 0, wall_fluid_s = 0;
     std::optional<ChannelWater> water;
     std::string fluid, contact, bond, wear;  ///< names of the policies
 
-    std::vector<Real> depth_m;  ///< [along x across] abrasion depth
+    BedDepth bed;
     Index along = 0, across = 0;
-    std::vector<Real> x_m, y_m;             ///< [along], [across] of the columns
-    std::vector<Real> centre_depth_per_m3;  ///< [along] [mm/m3]
+    std::vector<Real> stones_across;  ///< [across] share of their volume x time in the compared section [-]
+    PassedHistory passed;
+    std::vector<Milestone> milestones;
     std::vector<DrawnSphere> spheres;
     LedgerHistory ledger;
 };

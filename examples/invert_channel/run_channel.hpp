@@ -27,16 +27,20 @@ inline Index cells_along(const ChannelConfig& c, Real length) {
     return static_cast<Index>(std::ceil(length / c.fluid.spacing - 1e-9));
 }
 
+/// Between two looks at what has passed, at most [s].
+constexpr Real look_every = 0.05;
+
 /// `look_at(fluid, first)` sees the water as the stones begin, and at the end.
-template <FluidModel Fluid, class LookAt>
+template <ContactLaw Contact, FluidModel Fluid, class LookAt>
 ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path& stem, Fluid fluid,
                        LookAt&& look_at) {
     ChannelRun run;
-    auto sim = make_simulation(config, std::move(fluid));
+    auto sim = make_simulation<Contact>(config, std::move(fluid));
     const Interrupt interrupt;
     LedgerHistory history;
+    BedRecord bed(config);
     {
-        Recorder recorder(stem);
+        Recorder recorder(stem, config.output_every);
         Progress progress("invert channel", config.end_time);
         const auto stop = [&] {
             std::string note = std::to_string(sim.feed()->supplied_stones()) + " stones fed";
@@ -44,19 +48,19 @@ ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path&
                 if (sim.fluid_model().time() < 0)
                     note = "water settles for " + short_text(-sim.fluid_model().time()) + " s";
             progress.update(sim.time(), note);
-            return interrupt.requested();
+            return interrupt.requested() || bed.done();
         };
         const auto watch = [&](const auto& now) {
             if (now.steps() == 0) look_at(now.fluid_model(), true);
+            bed(now);
             recorder(now);
         };
         try {
             sim.run({.end_time = config.end_time,
                      .time_step = config.time_step,
                      .safety = config.safety,
-                     .observe_every = config.output_every,
+                     .observe_every = std::min(config.output_every, look_every),
                      .skin = config.skin,
-
                      .stop = stop},
                     watch);
         } catch (const RunError& error) {
@@ -83,7 +87,8 @@ ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path&
         return run;
     }
     look_at(sim.fluid_model(), false);
-    run.results = make_results(config, sim, std::move(history));
+    run.results = make_results(config, sim, std::move(history), bed);
+    run.results.stopped = interrupt.requested();
     std::ostringstream printed;
     printed << sim;
     run.printed = printed.str();

@@ -232,7 +232,9 @@ TEST_CASE("how wear scales (wear04)") {
 TEST_CASE("worn volume and fracture never fall and are never negative, in any law") {
     const auto check = [](const ChosenWear& wear) {
         Scene scene;
-        scene.concrete = ConcreteBlock{flat_lattice(0.2, 0.2, {.layers = 1})};
+        scene.concrete = ConcreteBlock{.lattice = flat_lattice(0.2, 0.2, {.layers = 1}),
+                                       .worn_out = WornOut::grain,
+                                       .overflow = DropOverflow{}};
         scene.add_wall({-0.1, 0, 0}, {1, 0, 0}).add_wall({0.1, 0, 0}, {-1, 0, 0});
         scene.add_wall({0, -0.1, 0}, {0, 1, 0}).add_wall({0, 0.1, 0}, {0, -1, 0});
         std::mt19937 random(3);

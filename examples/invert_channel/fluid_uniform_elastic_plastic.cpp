@@ -1,0 +1,12 @@
+// Steady uniform flow and contacts that yield.
+
+#include "uniform.hpp"
+
+namespace abrade::examples {
+
+ChannelRun run_in_uniform_flow_elastic_plastic(const ChannelConfig& config,
+                                               const std::filesystem::path& stem) {
+    return run_uniform<ElasticPlasticHertz>(config, stem);
+}
+
+}  // namespace abrade::examples

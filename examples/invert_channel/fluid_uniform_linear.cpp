@@ -1,0 +1,11 @@
+// Steady uniform flow and contacts that lose by a dashpot.
+
+#include "uniform.hpp"
+
+namespace abrade::examples {
+
+ChannelRun run_in_uniform_flow_linear(const ChannelConfig& config, const std::filesystem::path& stem) {
+    return run_uniform<LinearSpring>(config, stem);
+}
+
+}  // namespace abrade::examples
