@@ -92,7 +92,7 @@ TEST_CASE(
     "heights") {
     for (const Real radius : {0.02, 0.04})
         for (const Real speed : {1.0, 3.0}) {
-            Scene scene = slab(1, 0.02);  // one sphere, at (0, 0, -0.01)
+            Scene scene = slab(2, 0.02);  // one sphere, at (0, 0, -0.01)
             scene.gravity.setZero();
             scene.add_sphere(radius, {.position = {0, 0, radius + 1.3e-4}, .velocity = {0, 0, -speed}});
             auto sim = simulate(std::move(scene)).contact(stones).wear(abrasion(10));
@@ -119,7 +119,7 @@ TEST_CASE("beta speeds up wear, never the motion") {
 TEST_CASE("a run without acceleration tells at which one a collision wears more than a cell") {
     // Head-on on one rigid sphere, where what is lost is known.
     const auto strike = [](Real beta) {
-        Scene scene = slab(1, 0.02);
+        Scene scene = slab(2, 0.02);
         scene.gravity.setZero();
         scene.add_sphere(0.02, {.position = {0, 0, 0.0201}, .velocity = {0, 0, -2}});
         auto sim = simulate(std::move(scene)).contact(stones).wear(abrasion(beta));
@@ -127,7 +127,7 @@ TEST_CASE("a run without acceleration tells at which one a collision wears more 
         return sim;
     };
     const auto slow = strike(1);
-    const Real lost = 0.5 * slow.particles().mass[1] * square(2.0) * 0.75;
+    const Real lost = 0.5 * slow.particles().mass.back() * square(2.0) * 0.75;
     const Real safe = slow.largest_safe_acceleration();
     const Real whole = safe / Concrete::safe_collision_share;  // where a collision wears one cell
     CHECK(whole == doctest::Approx(8e-6 / (coefficient * 0.5 * lost)).epsilon(1e-3).scale(0));

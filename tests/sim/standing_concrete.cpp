@@ -330,13 +330,13 @@ TEST_CASE("bits do not depend on the number of threads") {
     const auto run = [](int threads) {
         set_thread_count(threads);
         Scene scene;
-        scene.concrete = ConcreteBlock{.lattice = flat_lattice(3.2, 0.2, {.sphere_diameter = d, .layers = 3}),
+        scene.concrete = ConcreteBlock{.lattice = flat_lattice(3.2, 0.6, {.sphere_diameter = d, .layers = 3}),
                                        .level = ConcreteLevel::quasi_static};
-        for (const Vec3& wall : {Vec3(1.6, 0, 0), Vec3(-1.6, 0, 0), Vec3(0, 0.1, 0), Vec3(0, -0.1, 0)})
+        for (const Vec3& wall : {Vec3(1.6, 0, 0), Vec3(-1.6, 0, 0), Vec3(0, 0.3, 0), Vec3(0, -0.3, 0)})
             scene.add_wall(wall, -wall);
-        for (int n = 0; n < 128; ++n)
+        for (int n = 0; n < 384; ++n)
             scene.add_sphere(n % 2 ? 0.02 : 0.015,
-                             {.position = {0.098 * (n % 32) - 1.52, 0.046 * (n / 32) - 0.069, 0.025},
+                             {.position = {0.098 * (n % 32) - 1.52, 0.046 * (n / 32) - 0.253, 0.025},
                               .velocity = {n % 3 - 1.0, 0.1 * (n % 5), -2}});
         auto sim = simulate(scene)
                        .contact(law)

@@ -31,7 +31,7 @@ std::vector<Real> fractures(const Concrete& c) {
     for (Index s = 0; s < c.sites(); ++s) all.push_back(c.fracture(s));
     return all;
 }
-/// The sum over sites with gamma_f = 1 would do for cells of one size; these are of any.
+/// Volume that is fractured in the sites that count [m3].
 Real fractured_from(const Concrete& c, const std::function<bool(const LatticeSite&)>& counts) {
     Real volume = 0;
     for (Index s = 0; s < c.sites(); ++s)
@@ -58,9 +58,13 @@ Lattice thrown_spheres() {
     return lattice_of(all, 0.01, 1.44e-2, 0.2, 0.02);
 }
 
-const std::vector<std::pair<std::string, Lattice>>& lattices() {
+struct Body {
+    std::string name;
+    Lattice lattice;
+};
+const std::vector<Body>& lattices() {
     const auto plane = [](Real x, Real y) { return -0.02 + 0.2 * x - 0.1 * y; };
-    static const std::vector<std::pair<std::string, Lattice>> all{
+    static const std::vector<Body> all{
         {"flat", flat_lattice(0.4, 0.3, {.layers = 6})},
         {"invert", invert_lattice({.length = 0.3, .width = 0.9, .arc_radius = 0.5}, {.layers = 4})},
         {"hexagonal", hexagonal_lattice(0.3, 0.25, {.layers = 8})},
@@ -69,10 +73,14 @@ const std::vector<std::pair<std::string, Lattice>>& lattices() {
     return all;
 }
 
-const std::pair<std::string, Overflow> ways[] = {{"crater", FillCrater{}},
-                                                 {"patch", SpreadOverPatch{0.09, 0.07}},
-                                                 {"epochs", SpreadByEpoch{0.1, 0.3}},
-                                                 {"drop", DropOverflow{}}};
+struct Way {
+    std::string name;
+    Overflow overflow;
+};
+const Way ways[] = {{"crater", FillCrater{}},
+                    {"patch", SpreadOverPatch{0.09, 0.07}},
+                    {"epochs", SpreadByEpoch{0.1, 0.3}},
+                    {"drop", DropOverflow{}}};
 
 /// A site, a volume [m3] and when [s].
 struct Blow {
@@ -109,14 +117,14 @@ std::vector<Index> nearest(const Lattice& lattice, Index from) {
 }  // namespace
 
 TEST_CASE("all that was told to wear is worn, waits or is overflow, in every way and lattice") {
-    for (const auto& [name, lattice] : lattices())
-        for (const auto& [way, overflow] : ways)
+    for (const Body& body : lattices())
+        for (const Way& way : ways)
             for (const FractureVolume volume : {FractureVolume::cell, FractureVolume::sphere})
                 for (const Real share : {0.3, 1.6}) {  // 1.6: more than there is
-                    CAPTURE(name);
-                    CAPTURE(way);
+                    CAPTURE(body.name);
+                    CAPTURE(way.name);
                     CAPTURE(share);
-                    Concrete c(lattice, volume, overflow);
+                    Concrete c(body.lattice, volume, way.overflow);
                     REQUIRE(c.sites() > 1000);
                     Random random;
                     Real told = 0;
@@ -128,7 +136,7 @@ TEST_CASE("all that was told to wear is worn, waits or is overflow, in every way
                         for (const Index site : now)
                             if (site % 2) c.set_gone(site);
                     };
-                    for (const Blow& blow : blows(lattice, share)) {
+                    for (const Blow& blow : blows(body.lattice, share)) {
                         c.wear(blow.site, blow.volume, blow.time);
                         told += blow.volume;
                         if (random.below(3) == 0) settle(blow.time);
@@ -144,7 +152,7 @@ TEST_CASE("all that was told to wear is worn, waits or is overflow, in every way
                     Real removed = 0;
                     const std::vector<Real> depth = c.depth();
                     for (std::size_t n = 0; n < depth.size(); ++n)
-                        removed += depth[n] * lattice.column_area[n];
+                        removed += depth[n] * body.lattice.column_area[n];
                     CHECK(removed ==
                           doctest::Approx(c.worn_volume() + c.detached_volume()).epsilon(1e-12).scale(0));
 
@@ -161,13 +169,13 @@ TEST_CASE("all that was told to wear is worn, waits or is overflow, in every way
 }
 
 TEST_CASE("neither the order of calls for different sites nor the number of threads changes a bit") {
-    for (const auto& [name, lattice] : lattices())
-        for (const auto& [way, overflow] : ways) {
-            CAPTURE(name);
-            CAPTURE(way);
+    for (const Body& body : lattices())
+        for (const Way& way : ways) {
+            CAPTURE(body.name);
+            CAPTURE(way.name);
             std::vector<std::vector<Real>> answers;
             for (int run = 0; run < 4; ++run) {
-                Concrete c(lattice, FractureVolume::cell, overflow);
+                Concrete c(body.lattice, FractureVolume::cell, way.overflow);
                 Random random;
                 std::mt19937_64 other(static_cast<unsigned>(run));
                 set_thread_count(run % 2 ? 3 : 1);
@@ -201,14 +209,14 @@ TEST_CASE("neither the order of calls for different sites nor the number of thre
 }
 
 TEST_CASE("a crater takes the nearest sites first, each before the next") {
-    for (const auto& [name, lattice] : lattices()) {
-        CAPTURE(name);
-        Concrete c = concrete_of(lattice);
+    for (const Body& body : lattices()) {
+        CAPTURE(body.name);
+        Concrete c = concrete_of(body.lattice);
         std::vector<Real> left;
         for (Index s = 0; s < c.sites(); ++s) left.push_back(c.capacity(s));
         std::vector<char> gone(left.size(), 0);
         Random random;
-        for (const Blow& blow : blows(lattice, 0.8)) {
+        for (const Blow& blow : blows(body.lattice, 0.8)) {
             if (random.below(10) == 0) {
                 const Index site = random.below(c.sites());
                 c.set_gone(site);
@@ -218,7 +226,7 @@ TEST_CASE("a crater takes the nearest sites first, each before the next") {
             c.wear(blow.site, blow.volume);
             c.settle(0);
             Real volume = blow.volume;
-            for (const Index site : nearest(lattice, blow.site)) {
+            for (const Index site : nearest(body.lattice, blow.site)) {
                 const auto s = static_cast<std::size_t>(site);
                 if (gone[s]) continue;
                 const Real taken = std::min(volume, left[s]);
@@ -291,12 +299,12 @@ TEST_CASE("sites that are gone are passed over, and wear of a grain does not com
 }
 
 TEST_CASE("each site that is worn out is told of once, and what waits is seen") {
-    for (const auto& [way, overflow] : ways) {
-        CAPTURE(way);
-        Concrete c = concrete_of(slab(), overflow);
+    for (const Way& way : ways) {
+        CAPTURE(way.name);
+        Concrete c = concrete_of(slab(), way.overflow);
         CHECK(!c.unsettled());
         c.wear(9, 0.5 * c.capacity(9));
-        CHECK(c.unsettled() == std::holds_alternative<SpreadByEpoch>(overflow));
+        CHECK(c.unsettled() == std::holds_alternative<SpreadByEpoch>(way.overflow));
         c.settle(forever);
         CHECK(!c.unsettled());
     }
@@ -315,35 +323,46 @@ TEST_CASE("each site that is worn out is told of once, and what waits is seen") 
 }
 
 TEST_CASE("concrete is worn through where a held sphere is fully fractured, or where nothing is left") {
-    for (const auto& [way, overflow] : ways) {
-        CAPTURE(way);
-        Concrete c = concrete_of(slab(3), overflow);
+    for (const Way& way : ways) {
+        CAPTURE(way.name);
+        Concrete c = concrete_of(slab(3), way.overflow);
         for (Index layer = 0; layer < 3; ++layer) {
             CHECK(!c.worn_through());
             const Index site = c.lattice().site(2, 3, layer);
             c.wear(site, c.capacity(site));
             c.settle(forever);
             // A mean over the strip reaches no depth yet.
-            if (std::holds_alternative<SpreadByEpoch>(overflow)) break;
+            if (std::holds_alternative<SpreadByEpoch>(way.overflow)) break;
         }
-        CHECK(c.worn_through() == !std::holds_alternative<SpreadByEpoch>(overflow));
+        CHECK(c.worn_through() == !std::holds_alternative<SpreadByEpoch>(way.overflow));
     }
     Lattice free = slab(1);
     for (LatticeSite& site : free.sites) site.held = false;
-    Concrete c = concrete_of(free);
-    for (Index s = 0; s < c.sites(); ++s) {
-        CHECK(!c.worn_through());
-        if (s % 2) c.set_gone(s);
-        c.wear(s, c.capacity(s));  // exactly all: no excess is there to find it out
+    for (const bool all_gone : {false, true}) {  // the rest worn out, or come loose
+        Concrete c = concrete_of(free);
+        for (Index s = 1; s < c.sites(); ++s)
+            if (all_gone)
+                c.set_gone(s);
+            else
+                c.wear(s, c.capacity(s));
+        c.wear(0, c.capacity(0));
+        c.settle(0);
+        CHECK(c.overflow_volume() == 0);
+        CHECK(!c.worn_through());  // exactly all: nothing more was to be taken
+        c.wear(0, 1e-9);
+        c.settle(0);
+        CHECK(c.overflow_volume() == 1e-9);
+        CHECK(c.worn_through());
     }
-    CHECK(c.worn_through());
-    CHECK(c.overflow_volume() == 0);
+    Concrete dropped = concrete_of(free, DropOverflow{});
+    dropped.wear(0, 2 * dropped.capacity(0));
+    CHECK(!dropped.worn_through());  // the others have all of theirs
 }
 
 TEST_CASE("recorded wear has no limit, changes no sphere and shows in the depth") {
-    for (const auto& [way, overflow] : ways) {
-        CAPTURE(way);
-        Concrete c = concrete_of(slab(2), overflow, WornOut::recorded);
+    for (const Way& way : ways) {
+        CAPTURE(way.name);
+        Concrete c = concrete_of(slab(2), way.overflow, WornOut::recorded);
         const Real cell = c.capacity(0);
         const Index held = c.lattice().site(1, 2, 1);
         for (int n = 0; n < 10; ++n) c.wear(held, 1.5 * cell);
@@ -419,27 +438,27 @@ TEST_CASE("a patch over the edge of the block has fewer columns; what they no lo
 }
 
 TEST_CASE("a patch wears irregular columns evenly too, from those whose top is in the rectangle") {
-    for (const auto& [name, lattice] : lattices()) {
-        CAPTURE(name);
+    for (const Body& body : lattices()) {
+        CAPTURE(body.name);
         const SpreadOverPatch patch{0.1, 0.08};
         // The topmost site of each column, by brute force.
-        std::vector<Index> top(lattice.column_area.size(), -1);
+        std::vector<Index> top(body.lattice.column_area.size(), -1);
         const auto at = [&](Index s) -> const LatticeSite& {
-            return lattice.sites[static_cast<std::size_t>(s)];
+            return body.lattice.sites[static_cast<std::size_t>(s)];
         };
-        for (Index s = 0; s < static_cast<Index>(lattice.sites.size()); ++s)
+        for (Index s = 0; s < static_cast<Index>(body.lattice.sites.size()); ++s)
             if (Index& best = top[static_cast<std::size_t>(at(s).column)];
                 best < 0 || at(s).centre.z() > at(best).centre.z())
                 best = s;
         Index struck = 0;  // nearest to the middle
         Vec3 middle = Vec3::Zero();
-        for (const LatticeSite& site : lattice.sites)
-            middle += site.centre / static_cast<Real>(lattice.sites.size());
+        for (const LatticeSite& site : body.lattice.sites)
+            middle += site.centre / static_cast<Real>(body.lattice.sites.size());
         for (const Index s : top)
             if (s >= 0 &&
                 (at(s).centre - middle).head<2>().norm() < (at(struck).centre - middle).head<2>().norm())
                 struck = s;
-        Concrete c = concrete_of(lattice, patch);
+        Concrete c = concrete_of(body.lattice, patch);
         c.wear(struck, c.capacity(struck));
         Real area = 0;
         std::vector<Index> columns;
@@ -449,7 +468,7 @@ TEST_CASE("a patch wears irregular columns evenly too, from those whose top is i
             const Vec3 apart = at(s).centre - at(struck).centre;
             if (std::abs(apart.x()) > 0.05 + 1e-9 || std::abs(apart.y()) > 0.04 + 1e-9) continue;
             columns.push_back(at(s).column);
-            area += lattice.column_area[static_cast<std::size_t>(at(s).column)];
+            area += body.lattice.column_area[static_cast<std::size_t>(at(s).column)];
         }
         REQUIRE(columns.size() > 6);
         const Real excess = 1e-3 * area;

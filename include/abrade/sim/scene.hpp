@@ -129,11 +129,14 @@ struct Scene {
                     {"Scene.concrete.cluster", "from 0 to 4", "bonds",
                      "0 lets the loaded sphere alone give way; each bond more costs much"},
                     concrete->cluster);
-            const auto spheres = static_cast<Index>(concrete->lattice.sites.size());
-            require(concrete->cluster < spheres,
-                    {"Scene.concrete.cluster", "less than the block's spheres, " + std::to_string(spheres), "bonds",
+            const Lattice& lattice = concrete->lattice;
+            const Index wide = std::max(lattice.count_along, lattice.count_across);  // 1 where irregular
+            const auto across = wide > 1 ? wide : static_cast<Index>(lattice.sites.size());
+            require(concrete->cluster == 0 || 2 * concrete->cluster + 1 <= std::max(across, 3),
+                    {"Scene.concrete.cluster: its spheres across",
+                     "at most those of the block, " + std::to_string(across), "spheres",
                      "take a smaller cluster"},
-                    concrete->cluster);
+                    2 * concrete->cluster + 1);
             require(concrete->level == ConcreteLevel::dynamic || concrete->fragments == Fragments::bonded,
                     {"Scene.concrete.fragments", "Fragments::bonded where concrete stands", "",
                      "clumps are for ConcreteLevel::dynamic"},

@@ -120,8 +120,8 @@ public:
     /// The sites that the last `settle` placed volume on, some more than once.
     std::span<const Index> taken_from() const noexcept { return taken_from_; }
 
-    /// Whether the concrete ends here: a held site is fully fractured, or a collision wore more than all sites
-    /// had left. Never for `WornOut::recorded`.
+    /// Whether the concrete ends here: a held site is fully fractured, or a collision wore more than all
+    /// sites had left. Never for `WornOut::recorded`.
     bool worn_through() const noexcept { return held_worn_out_ != 0 || exhausted_; }
 
     /// gamma_f; of `WornOut::recorded` what was worn over V_omega, at most 1.
