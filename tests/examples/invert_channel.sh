@@ -60,11 +60,13 @@ grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
 
 # --- levels, laws and ways of overflow that the file names
 for chosen in 'concrete.level="rigid"' 'concrete.level="dynamic"' 'concrete.cluster=1' 'concrete.worn_out="grain"' 'concrete.worn_out="recorded"' \
-    'contact.law="linear"' 'wear.overflow="drop"' 'wear.law="none"'; do
+    'contact.law="linear"' 'wear.overflow="drop"'; do
     "$program" "${short[@]}" --set run.end_time=0.02 --set "$chosen" --out chosen > chosen.log 2>&1 || fail "$chosen: $(cat chosen.log)"
 done
 "$program" "${short[@]}" --set 'wear.overflow="patch"' --set wear.overflow_length=0.2 --set wear.overflow_width=0.1 --set wear.acceleration=5000 --out patch > patch.log 2>&1 || fail "patch: $(cat patch.log)"
 "$program" "${short[@]}" --set 'wear.overflow="epoch"' --set wear.overflow_length=0.2 --set wear.overflow_every=0.02 --out epoch > epoch.log 2>&1 || fail "epoch: $(cat epoch.log)"
+sed '/^coefficient/d; /^acceleration/d' "$(dirname "$0")/../../examples/invert_channel/quick.toml" > unworn.toml
+"$program" unworn.toml "${short[@]}" --set 'wear.law="none"' --out unworn > unworn.log 2>&1 || fail "no wear law: $(cat unworn.log)"
 sed '/^stiffness = .* # N.m/d; /^restitution/d' "$(dirname "$0")/../../examples/invert_channel/quick.toml" > yields.toml
 "$program" yields.toml "${short[@]}" --set 'contact.law="elastic_plastic"' --set contact.yield_pressure=1e8 --set concrete.stiffness=2e6 --set run.end_time=0.02 --out yields > yields.log 2>&1 || fail "elastic_plastic: $(cat yields.log)"
 "$program" "${short[@]}" --set run.end_time=20 --set sediment.feed_until=0.5 --set 'compare.converted=[0.0005]' --out milestones > milestones.log 2>&1 || fail "milestones: $(cat milestones.log)"

@@ -97,10 +97,11 @@ public:
     }
     template <class Added, class Above>
     void supply(Particles& particles, std::span<const Plane> walls, Real t, Added&& added, Above&& above) {
-        const Real due = params_.volume_rate * std::max(0.0, std::min(t, params_.end) - params_.start);
-        while (supplied_ + templates_[next_].volume <= due) {
+        waits_ = false;
+        while (next_is_due(t)) {
             const auto state = free_place(particles, walls, above);
-            if (!state) return;
+            waits_ = !state;
+            if (waits_) return;
             added(particles.add(templates_[next_], params_.density, *state, Kind::stone));
             supplied_ += templates_[next_].volume;
             ++count_;
@@ -108,7 +109,15 @@ public:
         }
     }
 
+    /// Whether a stone is due at time t [s] that has not been found to have no place.
+    bool due(Real t) const noexcept { return !waits_ && next_is_due(t); }
+
 private:
+    bool next_is_due(Real t) const noexcept {
+        const Real time = std::max(0.0, std::min(t, params_.end) - params_.start);
+        return supplied_ + templates_[next_].volume <= params_.volume_rate * time;
+    }
+
     static constexpr Real nowhere = -std::numeric_limits<Real>::infinity();
 
     Real uniform() { return std::generate_canonical<Real, 53>(random_); }
@@ -184,6 +193,7 @@ private:
     std::size_t next_ = 0;
     Real supplied_ = 0;
     Index count_ = 0;
+    bool waits_ = false;  ///< the next found no place
 };
 
 }  // namespace abrade

@@ -27,7 +27,8 @@ public:
     /// Makes the lists good for the places of now. Steps are of dt.
     void freshen(State<P>& state, Real t, Real dt) {
         const bool traffic = state.feed || state.scene.outlet;
-        if ((traffic && age_ >= longest_life) || state.loosened)
+        const bool due = state.feed && age_ >= shortest_life && state.feed->due(t);
+        if ((traffic && age_ >= longest_life) || due || state.loosened)
             renew(state, t, dt);
         else if (2 * moved_ > inner_skin_ && !refine(state, dt))
             renew(state, t, dt);
