@@ -3,6 +3,7 @@
 // the answer depends on.
 
 #include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/dem/linear_hysteretic.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 
@@ -28,6 +29,11 @@ struct Patch {
     FractureVolume fracture_volume = FractureVolume::cell;
     LinearSpring::Params contact{.stiffness = 2e6, .restitution = 0.6, .friction = 0.5};
     MohrCoulomb::Params bond{.tensile = 2.7e6, .stiffness = 2e6};
+    bool dashpot = true;  ///< else contacts lose by a dent (LinearHysteretic), with the same parameters
+    ConcreteLevel level = ConcreteLevel::dynamic;
+    Index cluster = 0;
+    WornOut worn_out = WornOut::grain;
+    Overflow overflow = DropOverflow{};
     SubParticleAbrasion::Params wear{.acceleration = 500};
     Real safety = 0.8;
 
@@ -36,8 +42,12 @@ struct Patch {
         const Real volume = pi / 6 * cube(stone_size);
         Scene s;
         s.gravity = standard_gravity * Vec3(std::sin(slope), 0, -std::cos(slope));
-        s.concrete =
-            ConcreteBlock{.lattice = flat_lattice(side, side, lattice), .fracture_volume = fracture_volume};
+        s.concrete = ConcreteBlock{.lattice = flat_lattice(side, side, lattice),
+                                   .fracture_volume = fracture_volume,
+                                   .level = level,
+                                   .cluster = cluster,
+                                   .worn_out = worn_out,
+                                   .overflow = overflow};
         s.feed = FeedParams{.volume_rate = volume / interval,
                             .classes = {{.size = stone_size, .fraction = 1, .shape = StoneShape::angular}},
                             .region = {{-half, -0.85 * half, 0}, {0.5 * half, 0.85 * half, 0.2}},
@@ -121,10 +131,18 @@ PatchAnswers answers_of(Sim sim, const Patch& patch) {
 }  // namespace detail
 
 inline PatchAnswers run(const Patch& patch) {
-    auto sim = simulate(patch.scene()).contact(LinearSpring{patch.contact});
-    const SubParticleAbrasion wear{patch.wear};
-    if (!patch.bonded) return detail::answers_of(std::move(sim).wear(wear), patch);
-    return detail::answers_of(std::move(sim).bond(MohrCoulomb{patch.bond}).wear(wear), patch);
+    const auto with = [&](auto sim) {
+        const SubParticleAbrasion wear{patch.wear};
+        if (!patch.bonded) return detail::answers_of(std::move(sim).wear(wear), patch);
+        return detail::answers_of(std::move(sim).bond(MohrCoulomb{patch.bond}).wear(wear), patch);
+    };
+    const LinearSpring::Params& k = patch.contact;
+    if (patch.dashpot) return with(simulate(patch.scene()).contact(LinearSpring{k}));
+    return with(simulate(patch.scene())
+                    .contact(LinearHysteretic{{.stiffness = k.stiffness,
+                                               .restitution = k.restitution,
+                                               .friction = k.friction,
+                                               .tangential_ratio = k.tangential_ratio}}));
 }
 
 }  // namespace abrade::charts

@@ -83,19 +83,31 @@ void draw_water(const ChannelConfig& c, const ChannelWater& water, const fs::pat
     draw(map, picture);
 }
 
+/// Long channels are shown as means over 0.1 m: single spheres are hit by chance, and would be specks.
 void draw_depth_map(const ChannelConfig& c, const ChannelResults& r, const BedDepth& bed,
                     const std::string& title, const fs::path& picture) {
-    ColourMap map{.title = title,
+    const bool is_long = c.invert.length > 4;
+    const Index each = is_long ? static_cast<Index>(std::lround(0.1 / c.lattice.sphere_diameter)) : 1;
+    const Index columns = r.along / std::max<Index>(each, 1);
+    ColourMap map{.title = title + (is_long ? ", means over 0.1 m along" : ""),
                   .x = along_channel(c),
                   .y = across_channel(c),
                   .colour = {.label = "abrasion depth", .unit = "mm", .min = 0.0},
-                  .columns = static_cast<std::size_t>(r.along),
+                  .columns = static_cast<std::size_t>(columns),
                   .values = {}};
     for (Index j = 0; j < r.across; ++j)
-        for (Index i = 0; i < r.along; ++i)
-            map.values.push_back(1e3 * bed.depth_m[static_cast<std::size_t>(i * r.across + j)]);
-    if (*std::max_element(map.values.begin(), map.values.end()) <= 0) map.colour.max = 1.0;
-    map.equal_aspect = c.invert.length < 4;
+        for (Index i = 0; i < columns; ++i) {
+            Real sum = 0;
+            for (Index n = i * each; n < (i + 1) * each; ++n)
+                sum += bed.depth_m[static_cast<std::size_t>(n * r.across + j)];
+            map.values.push_back(1e3 * sum / static_cast<Real>(each));
+        }
+    std::vector<Real> sorted = map.values;
+    std::sort(sorted.begin(), sorted.end());
+    // One hole must not turn all else pale.
+    map.colour.max =
+        sorted.back() <= 0 ? 1.0 : std::max(sorted[sorted.size() * 995 / 1000], 0.2 * sorted.back());
+    map.equal_aspect = !is_long;
     draw(map, picture);
 }
 
@@ -316,7 +328,7 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
         {depth, "Abrasion depth in plan: fracture inside standing spheres, and spheres gone."},
         {centre,
          "Depth along the centre line per m3 of converted sediment (running mean of five columns), with the "
-         "bracket that physics sets: " +
+         "bracket that physics sets for a band worn evenly: " +
              short_number(bracket.low) + " mm/m3 (impacts of saltating stones only) to " +
              short_number(bracket.high) +
              " mm/m3 (all stones sliding at mu = 0.3) on a strip 1 m wide, divided by the width that wears "
