@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <unordered_map>
 
 namespace abrade::examples {
@@ -62,80 +64,84 @@ private:
     Index round_ = 0;
 };
 
-/// Depth along the centre line and over the compared section, per volume that has passed.
-inline void measure_depth(const ChannelConfig& c, const Lattice& lattice, const std::vector<Real>& depth,
-                          const PassedVolume& passed, BedDepth& bed) {
+/// Depth along the centre line and across the compared section, per converted volume that has passed. Means
+/// over the section are all depth over all that passed: one stone far downstream must not count as much as
+/// the many upstream.
+inline BedDepth measure_depth(const ChannelConfig& c, const Concrete& concrete, const PassedVolume& passed) {
+    constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
+    const Lattice& lattice = concrete.lattice();
     const Index along = lattice.count_along, across = lattice.count_across;
     const auto place = [&](Index i, Index j) -> const Vec3& {
         return lattice.sites[static_cast<std::size_t>(lattice.site(i, j, 0))].centre;
     };
-    bed = {};
-    bed.depth_m = depth;
+    BedDepth bed;
+    bed.depth_m = concrete.depth();
     for (Index i = 0; i < along; ++i) bed.x_m.push_back(place(i, 0).x());
     for (Index j = 0; j < across; ++j) bed.y_m.push_back(place(0, j).y());
-    bed.across_depth_m.assign(static_cast<std::size_t>(across), 0);
+    std::vector<Real> sum_across(static_cast<std::size_t>(across), 0);
     const std::vector<Real> volume = passed.past(bed.x_m);
-    std::vector<Real> worn(static_cast<std::size_t>(across), 0);
-    Real sum = 0, all_worn = 0;
-    Index counted = 0, compared = 0;
+    Real sum_centre = 0, sum_converted = 0, rows = 0;
     for (Index i = 0; i < along; ++i) {
         const Real x = bed.x_m[static_cast<std::size_t>(i)];
-        const bool inside = x >= c.comparison.from && x <= c.comparison.to;
-        compared += inside;
-        Real centre = 0;
-        Index columns = 0;
+        const Real converted = c.wear.params().acceleration * volume[static_cast<std::size_t>(i)];
+        const bool compared = x >= c.comparison.from && x <= c.comparison.to;
+        Real centre = 0, columns = 0;
         for (Index j = 0; j < across; ++j) {
-            const Real d = depth[static_cast<std::size_t>(i * across + j)];
+            const Real d = bed.depth_m[static_cast<std::size_t>(i * across + j)];
             bed.max_depth_m = std::max(bed.max_depth_m, d);
             if (std::abs(place(i, j).y()) <= c.comparison.half_width) centre += d, ++columns;
-            if (inside) bed.across_depth_m[static_cast<std::size_t>(j)] += d, all_worn += d;
+            if (compared) sum_across[static_cast<std::size_t>(j)] += d;
         }
-        const Real converted = c.wear.params().acceleration * volume[static_cast<std::size_t>(i)];
-        const Real per_m3 = converted > 0 && columns > 0
-                                ? 1e3 * centre / static_cast<Real>(columns) / converted
-                                : std::numeric_limits<Real>::quiet_NaN();
-        bed.centre_depth_per_m3.push_back(per_m3);
-        if (inside && std::isfinite(per_m3)) sum += per_m3, ++counted;
+        centre /= std::max(columns, 1.0);
+        bed.centre_depth_per_m3.push_back(converted > 0 ? 1e3 * centre / converted : unknown);
+        if (compared) sum_centre += centre, sum_converted += converted, ++rows;
     }
-    bed.centre_mean_per_m3 = counted > 0 ? sum / counted : std::numeric_limits<Real>::quiet_NaN();
+    const Real per_m3 = sum_converted > 0 ? 1e3 / sum_converted : unknown;
+    bed.centre_mean_per_m3 = sum_centre * per_m3;
+    for (const Real d : sum_across) {
+        bed.across_depth_m.push_back(d / std::max(rows, 1.0));
+        bed.across_depth_per_m3.push_back(d * per_m3);
+    }
     // The band that holds 90 % of the worn volume, from the most worn column down.
-    std::vector<Real> sorted = bed.across_depth_m;
-    std::sort(sorted.rbegin(), sorted.rend());
+    const Real worn = std::accumulate(sum_across.begin(), sum_across.end(), Real{0});
+    std::sort(sum_across.rbegin(), sum_across.rend());
     Real held = 0;
-    std::size_t columns = 0;
-    while (columns < sorted.size() && held < 0.9 * all_worn) held += sorted[columns++];
-    bed.band_width_m = static_cast<Real>(columns) * c.invert.width / across;
-    for (Real& d : bed.across_depth_m) d /= std::max(compared, 1);
+    std::size_t band = 0;
+    while (band < sum_across.size() && held < 0.9 * worn) held += sum_across[band++];
+    bed.band_width_m = static_cast<Real>(band) * c.invert.width / across;
+    return bed;
 }
 
-/// Watches a run: volumes passed over time, stones across the compared section, and the bed at milestones.
+/// Watches a run: volumes passed over time, what goes on across the compared section, and the bed at
+/// milestones.
 class BedRecord {
 public:
     explicit BedRecord(const ChannelConfig& c) : config_(c), passed_(c.invert.length) {
         history_.x_m = c.comparison.gauges;
         history_.passed_m3.resize(history_.x_m.size());
-        for (const Real volume : c.comparison.converted)
-            for (const Real x : {c.comparison.from, c.comparison.to}) wanted_.push_back({volume, x});
-        std::stable_sort(wanted_.begin(), wanted_.end(),
-                         [](const Wanted& a, const Wanted& b) { return a.past < b.past; });
+        for (const Real x : {c.comparison.from, c.comparison.to})
+            for (const Real volume : c.comparison.converted) wanted_.push_back({volume, x});
     }
 
     template <class Sim>
     void operator()(const Sim& sim) {
-        const Particles& p = sim.particles();
-        passed_.watch(p);
-        history_.time_s.push_back(sim.time());
-        for (std::size_t g = 0; g < history_.x_m.size(); ++g)
-            history_.passed_m3[g].push_back(passed_.past(history_.x_m[g]));
-        note_stones(p, sim.concrete().lattice());
+        passed_.watch(sim.particles());
+        if (sim.time() >= next_note_ - 0.5 * sim.time_step()) {
+            note_passed(sim.time());
+            next_note_ += config_.output_every;
+        }
+        across_ = sim.concrete().lattice().count_across;
+        for (auto* values : {&stones_, &impacts_, &sliding_})
+            values->resize(static_cast<std::size_t>(across_), 0);
+        note_stones(sim.particles());
+        note_losses(sim);
         for (Wanted& one : wanted_) {
             if (one.reached) continue;
             const Real converted = config_.wear.params().acceleration * passed_.past(one.past);
             if (converted < one.converted) continue;
             one.reached = true;
-            Milestone& kept = milestones_.emplace_back();
-            kept.converted_m3 = one.converted, kept.past_m = one.past, kept.time_s = sim.time();
-            measure_depth(config_, sim.concrete().lattice(), sim.concrete().depth(), passed_, kept.bed);
+            milestones_.push_back(
+                {one.converted, one.past, sim.time(), measure_depth(config_, sim.concrete(), passed_)});
         }
     }
     /// Whether the last milestone has been reached.
@@ -146,12 +152,12 @@ public:
 
     template <class Sim>
     void put_into(ChannelResults& r, const Sim& sim) {
-        measure_depth(config_, sim.concrete().lattice(), sim.concrete().depth(), passed_, r.bed);
+        if (history_.time_s.empty() || history_.time_s.back() < sim.time()) note_passed(sim.time());
+        r.bed = measure_depth(config_, sim.concrete(), passed_);
         r.passed = history_, r.milestones = milestones_;
-        Real all = 0;
-        for (const Real one : stones_) all += one;
-        for (Real& one : stones_) one /= std::max(all, 1e-300);
-        r.stones_across = stones_;
+        r.stones_across = share_of(stones_, sum(stones_));
+        const Real losses = sum(impacts_) + sum(sliding_);
+        r.impacts_across = share_of(impacts_, losses), r.sliding_across = share_of(sliding_, losses);
     }
 
 private:
@@ -160,23 +166,59 @@ private:
         bool reached = false;
     };
 
-    void note_stones(const Particles& p, const Lattice& lattice) {
-        stones_.resize(static_cast<std::size_t>(lattice.count_across), 0);
-        for (std::size_t b = 0; b < p.position.size(); ++b) {
-            const Vec3& x = p.position[b];
-            if (p.kind[b] != Kind::stone || x.x() < config_.comparison.from || x.x() > config_.comparison.to)
-                continue;
-            const Real share = x.y() / config_.invert.width + 0.5;
-            const auto j = static_cast<std::ptrdiff_t>(share * static_cast<Real>(stones_.size()));
-            stones_[static_cast<std::size_t>(std::clamp(
-                j, std::ptrdiff_t{0}, static_cast<std::ptrdiff_t>(stones_.size()) - 1))] += p.volume[b];
-        }
+    static Real sum(const std::vector<Real>& values) {
+        return std::accumulate(values.begin(), values.end(), Real{0});
+    }
+    static std::vector<Real> share_of(std::vector<Real> values, Real all) {
+        for (Real& one : values) one /= std::max(all, 1e-300);
+        return values;
+    }
+
+    void note_passed(Real time) {
+        history_.time_s.push_back(time);
+        for (std::size_t g = 0; g < history_.x_m.size(); ++g)
+            history_.passed_m3[g].push_back(passed_.past(history_.x_m[g]));
+    }
+
+    bool compared(const Vec3& x) const {
+        return x.x() >= config_.comparison.from && x.x() <= config_.comparison.to;
+    }
+    /// The row of the lattice below or about a place: rows share the arc evenly.
+    Real& across(std::vector<Real>& values, const Vec3& x) const {
+        const Real angle = std::asin(std::clamp(x.y() / config_.invert.arc_radius, -1.0, 1.0));
+        const Real row = (0.5 * angle / config_.invert.half_angle() + 0.5) * across_;
+        return values[static_cast<std::size_t>(std::clamp(row, 0.0, across_ - 1.0))];
+    }
+
+    void note_stones(const Particles& p) {
+        for (std::size_t b = 0; b < p.position.size(); ++b)
+            if (p.kind[b] == Kind::stone && compared(p.position[b]))
+                across(stones_, p.position[b]) += p.volume[b];
+    }
+
+    /// The power that contacts with concrete take up now. Elastic energy comes back, so over many looks the
+    /// mean is what is lost.
+    template <class Sim>
+    void note_losses(const Sim& sim) {
+        const Particles& p = sim.particles();
+        sim.world().each_contact([&](Index first, Index second, const auto& contact, const auto& load) {
+            const Real all = -load.force.dot(contact.velocity);
+            const Real normal = -load.force.dot(contact.normal) * contact.velocity.dot(contact.normal);
+            for (const Index body : {first, second}) {
+                if (body < 0 || p.site[static_cast<std::size_t>(body)] < 0) continue;
+                const Vec3& x = p.position[static_cast<std::size_t>(body)];
+                if (compared(x)) across(impacts_, x) += normal, across(sliding_, x) += all - normal;
+            }
+        });
     }
 
     const ChannelConfig& config_;
     PassedVolume passed_;
     PassedHistory history_;
-    std::vector<Real> stones_;  ///< [across] volume, summed over looks
+    Real next_note_ = 0;  ///< [s]
+    Index across_ = 0;
+    std::vector<Real> stones_;             ///< [across] volume, summed over looks
+    std::vector<Real> impacts_, sliding_;  ///< [across] power, summed over looks
     std::vector<Wanted> wanted_;
     std::vector<Milestone> milestones_;
 };

@@ -10,11 +10,16 @@
 
 namespace abrade::examples {
 
+/// Of contacts that yield; stones and the side walls are material 0.
+inline constexpr Index concrete_material = 1;
+
 inline Scene make_scene(const ChannelConfig& c) {
     Scene scene;
     scene.gravity = c.invert.gravity();
     scene.concrete = c.concrete;
     scene.concrete->lattice = invert_lattice(c.invert, c.lattice);
+    if (std::holds_alternative<ElasticPlasticHertz::Params>(c.contact))
+        scene.concrete->material = concrete_material;
     const Real half = 0.5 * c.invert.width;
     scene.add_wall({0, -half, 0}, {0, 1, 0}).add_wall({0, half, 0}, {0, -1, 0});
     scene.feed = c.feed;
@@ -26,27 +31,45 @@ inline Scene make_scene(const ChannelConfig& c) {
     return scene;
 }
 
+/// What stands in the contact slot. Concrete that yields counts as flat; small spheres of stones on each
+/// other or on a wall must not, so they have a law of their own.
+template <ContactLaw Contact>
+auto make_contact(const ChannelConfig& c) {
+    const auto& params = std::get<typename Contact::Params>(c.contact);
+    if constexpr (std::same_as<Contact, ElasticPlasticHertz>) {
+        auto curved = params;
+        curved.flat_radius = 0;
+        return MaterialPairs<Contact>{{.materials = {"stone", "concrete"},
+                                       .pairs = {{"stone", "stone", curved},
+                                                 {"stone", "concrete", params},
+                                                 {"concrete", "concrete", params}}}};
+    } else {
+        return Contact{params};
+    }
+}
+
 /// One engine is compiled for each line of `channel_engines`.
 template <ContactLaw Contact, FluidModel Fluid>
 auto make_simulation(const ChannelConfig& c, Fluid fluid) {
-    auto dry = simulate(make_scene(c))
-                   .contact(Contact{std::get<typename Contact::Params>(c.contact)})
-                   .bond(MohrCoulomb{c.bond})
-                   .wear(c.wear);
+    auto dry =
+        simulate(make_scene(c)).contact(make_contact<Contact>(c)).bond(MohrCoulomb{c.bond}).wear(c.wear);
     if constexpr (std::same_as<Fluid, NoFluid>)
         return dry;
     else
         return std::move(dry).fluid(std::move(fluid), CliftGauvin{c.drag});
 }
 
-/// Of the middle class of stones at 1 m/s [-].
+/// Of the middle class of stones on concrete at 1 m/s [-].
 template <class Contact>
-Real restitution_of(const ChannelConfig& c, const Contact& law) {
+Real restitution_at_1_m_per_s(const ChannelConfig& c, const Contact& contact) {
     const Real size = c.feed.classes[c.feed.classes.size() / 2].size;
-    if constexpr (requires { law.restitution(Real{}, Real{}, Real{}); })
+    const auto of = [&](const auto& law) {
         return law.restitution(1, c.feed.density * pi / 6 * cube(size), 0.5 * size);
+    };
+    if constexpr (requires { typename Contact::OfPair; })
+        return of(contact.between({0, concrete_material}));
     else
-        return law.params().restitution;
+        return of(contact);
 }
 
 /// Whether nothing of its column is left above a site; sites of a column stand together, the upper first.
@@ -84,7 +107,8 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     r.waiting_volume_m3 = concrete.waiting_volume();
     r.worn_through = concrete.worn_through();
     r.spheres_let_go = sim.spheres_let_go();
-    r.restitution_at_1_m_per_s = restitution_of(c, sim.contact_law());
+    r.restitution_at_1_m_per_s = restitution_at_1_m_per_s(c, sim.contact_law());
+    for (Index site = 0; site < concrete.sites(); ++site) r.spheres_worn_out += concrete.fracture(site) >= 1;
     // Equation [1] for the whole run: half of what each contact with concrete lost, times Cw and beta.
     if (const auto* law = std::get_if<SubParticleAbrasion>(&c.wear.law)) {
         const SubParticleAbrasion::Params& wear = law->params();
@@ -100,7 +124,8 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     r.wall_contacts_s = shares.contacts * r.wall_s, r.wall_bonds_s = shares.bonds * r.wall_s;
     r.wall_motion_s = shares.motion * r.wall_s, r.wall_lists_s = shares.renewal * r.wall_s;
     r.wall_fluid_s = shares.fluid * r.wall_s;
-    r.fluid = std::remove_cvref_t<decltype(sim.fluid_model())>::name, r.contact = sim.contact_law().name;
+    r.fluid = std::remove_cvref_t<decltype(sim.fluid_model())>::name,
+    r.contact = PairLaw<std::remove_cvref_t<decltype(sim.contact_law())>>::name;
     r.bond = MohrCoulomb::name, r.wear = c.wear.chosen();
 
     const Lattice& lattice = concrete.lattice();

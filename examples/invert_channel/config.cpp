@@ -19,9 +19,7 @@ constexpr std::array<std::string_view, 4> overflows{"crater", "patch", "epoch", 
 void refuse(const TomlReader& in, std::initializer_list<const char*> keys, const std::string& choice) {
     for (const char* key : keys)
         if (in.has(key))
-            fail(
-                {in.where(key) + ": " + key, "left out: " + choice + " has no use for it", "", "take it out"},
-                "a value");
+            fail({in.where(key) + ": " + key, "left out: " + choice + " has no use for it"}, "a value");
 }
 
 void read_channel(TomlReader& in, ChannelConfig& c) {
@@ -75,6 +73,10 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
     require(c.concrete.cluster == 0 || level == "static",
             {in.where("concrete.cluster") + ": concrete.cluster", "0 unless concrete.level is \"static\"",
              "bonds", "leave it out"},
+            c.concrete.cluster);
+    require(c.concrete.cluster <= 2,
+            {in.where("concrete.cluster") + ": concrete.cluster", "at most 2", "bonds",
+             "0 lets the loaded sphere alone give way; each bond more costs much"},
             c.concrete.cluster);
     const auto worn_out =
         in.choice("concrete.worn_out", worn_outs,
@@ -154,7 +156,7 @@ void read_contact(TomlReader& in, ChannelConfig& c) {
                                         .assumption = "not in the text",
                                         .bound = Bound::positive});
         law.softening =
-            in.number("contact.softening", {.fallback = 1e-3,
+            in.number("contact.softening", {.fallback = 1e-2,
                                             .help = "share of the modulus that the run has",
                                             .assumption = "softer for a longer step; yield speed is kept",
                                             .bound = Bound::positive});
@@ -181,9 +183,9 @@ void read_contact(TomlReader& in, ChannelConfig& c) {
 }
 
 void read_wear(TomlReader& in, ChannelConfig& c) {
-    const auto law = in.choice("wear.law", wear_laws,
-                               {.fallback = "sub_particle", .help = "by which energy wears concrete"});
-    const std::string chosen = "wear.law = \"" + std::string(law) + "\"";
+    c.wear_law = in.choice("wear.law", wear_laws,
+                           {.fallback = "sub_particle", .help = "by which energy wears concrete"});
+    const std::string &law = c.wear_law, chosen = "wear.law = \"" + law + "\"";
     const auto acceleration = [&] {
         return in.number(
             "wear.acceleration",
@@ -218,8 +220,8 @@ void read_wear(TomlReader& in, ChannelConfig& c) {
                    friction = wanted("wear.friction", "m3/J", "per work of friction");
         c.wear = Ishibashi{{.impact = impact, .friction = friction, .acceleration = acceleration()}};
     } else {
-        refuse(in, {"wear.coefficient", "wear.acceleration"}, chosen);
-        c.wear = NoWear{};
+        in.allow("wear.coefficient");  // so that one --set turns wear off
+        c.wear = ChosenWear{ChosenWear::Params{.acceleration = acceleration()}};
     }
 
     const auto overflow =
@@ -366,14 +368,16 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
             from);
     const Real height = in.number("sediment.feed_height", {.unit = "m",
                                                            .fallback = 0.02,
-                                                           .help = "over the bed up to which stones enter",
+                                                           .help = "over the bed up to which stones enter; "
+                                                                   "0.02: they lie on it, more: they drop",
                                                            .assumption = "not in the text",
                                                            .bound = Bound::positive});
     const Real until = in.number(
         "sediment.feed_until",
         {.unit = "s", .fallback = 0, .help = "end of the supply, 0: none", .bound = Bound::not_negative});
-    require(height > 0.002,
-            {in.where("sediment.feed_height") + ": sediment.feed_height", "above 0.002 m", "m"}, height);
+    require(height > 0.002 && height <= 4,
+            {in.where("sediment.feed_height") + ": sediment.feed_height", "above 0.002 m, at most 4 m", "m"},
+            height);
     if (until > 0) feed.end = until;
     feed.region = {{from, -half, 0.002}, {to, half, height}};
     feed.velocity = {speed, 0, 0};

@@ -42,8 +42,8 @@ struct ChannelConfig {
     std::string source;  ///< the TOML file
     Invert invert;
     LatticeSize lattice;
-    ConcreteBlock concrete;   ///< but for its lattice
-    std::string contact_law;  ///< as in the file
+    ConcreteBlock concrete;             ///< but for its lattice
+    std::string contact_law, wear_law;  ///< as in the file
     std::variant<LinearHysteretic::Params, LinearSpring::Params, ElasticPlasticHertz::Params> contact;
     MohrCoulomb::Params bond;
     ChosenWear wear{ChosenWear::Params{}};

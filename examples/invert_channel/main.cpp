@@ -29,6 +29,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <numeric>
 
 using namespace abrade;
 using namespace abrade::examples;
@@ -64,6 +65,7 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"concrete_spheres", r.concrete_spheres},
         {"bonds_broken", r.bonds_broken},
         {"spheres_let_go", r.spheres_let_go},
+        {"spheres_worn_out", r.spheres_worn_out},
         {"worn_through", r.worn_through},
         {"sediment_fed_m3", r.sediment_fed_m3},
         {"sediment_passed_m3", r.sediment_passed_m3},
@@ -72,6 +74,7 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"worn_volume_from_energy_m3", r.worn_volume_from_energy_m3},
         {"overflow_volume_m3", r.overflow_volume_m3},
         {"waiting_volume_m3", r.waiting_volume_m3},
+        {"worn_over_energy", r.worn_over_energy()},
         {"detached_volume_m3", r.detached_volume_m3},
         {"largest_collision_share", r.largest_collision_share},
         {"largest_safe_beta", r.largest_safe_beta},
@@ -81,8 +84,9 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"worn_band_width_m", r.bed.band_width_m},
         {"energy_lost_normal_J", r.energy_lost_normal_J},
         {"energy_lost_sliding_J", r.energy_lost_sliding_J},
-        {"impact_share",
-         r.energy_lost_normal_J / std::max(r.energy_lost_normal_J + r.energy_lost_sliding_J, 1e-300)},
+        {"impact_share", r.impact_share()},
+        {"impact_share_compared_sampled",
+         std::accumulate(r.impacts_across.begin(), r.impacts_across.end(), Real{0})},
         {"restitution_at_1_m_per_s", r.restitution_at_1_m_per_s},
         {"ledger_residual_relative", r.ledger_residual_relative},
         {"integration_residue_J", r.integration_residue_J},
@@ -94,6 +98,8 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
           {"lists", r.wall_lists_s},
           {"changing_fluid", r.wall_fluid_s}}},
         {"policies", {{"fluid", r.fluid}, {"contact", r.contact}, {"bond", r.bond}, {"wear", r.wear}}},
+        {"contact_law", c.contact_law},
+        {"wear_law", c.wear_law},
         {"concrete_level", name_of(c.concrete.level)},
         {"cluster", c.concrete.cluster},
         {"worn_out", name_of(c.concrete.worn_out)},

@@ -121,6 +121,10 @@ std::vector<Real> smoothed(const std::vector<Real>& values, std::size_t half) {
     return out;
 }
 
+std::string milestone_text(const Milestone& one) {
+    return short_number(one.converted_m3) + " m3 had passed x = " + short_number(one.past_m) + " m";
+}
+
 void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
     const Real width = r.bed.band_width_m > 0 ? r.bed.band_width_m : 1;
     const Bracket bracket = Bracket{}.per_width(width);
@@ -135,17 +139,16 @@ void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs:
                    .low = {bracket.low, bracket.low},
                    .high = {bracket.high, bracket.high}}}};
     if (std::isfinite(mean)) {
-        std::vector<Real> shown = smoothed(r.bed.centre_depth_per_m3, 2);
-        shown.resize(static_cast<std::size_t>(
-            std::find_if(shown.begin(), shown.end(), [](Real d) { return !std::isfinite(d); }) -
-            shown.begin()));  // nothing has passed what is downstream
-        chart.curves.push_back({.title = "simulation",
-                                .x = {r.bed.x_m.begin(), r.bed.x_m.begin() + std::ssize(shown)},
-                                .y = shown});
+        chart.curves.push_back(
+            {.title = "simulation", .x = r.bed.x_m, .y = smoothed(r.bed.centre_depth_per_m3, 2)});
         chart.curves.push_back({.title = "mean of the compared section",
                                 .x = {from, to},
                                 .y = {mean, mean},
                                 .style = CurveStyle::dashed});
+        for (const Milestone& one : r.milestones)
+            chart.curves.push_back({.title = "as " + milestone_text(one),
+                                    .x = one.bed.x_m,
+                                    .y = smoothed(one.bed.centre_depth_per_m3, 2)});
     } else {
         chart.title = "No sediment has passed the gauge yet";
     }
@@ -161,22 +164,30 @@ void draw_centre_line(const ChannelConfig& c, const ChannelResults& r, const fs:
     draw(chart, picture);
 }
 
-/// Mean depth across the compared section, and where stones run.
+Real largest(const std::vector<Real>& values) {
+    return std::max(*std::max_element(values.begin(), values.end()), 1e-300);
+}
+
+/// Mean depth across the compared section, which losses wear it, and where stones run.
 void draw_cross_section(const ChannelConfig& c, const ChannelResults& r, const fs::path& picture) {
-    std::vector<Real> depth, stones;
-    const Real worn = std::max(*std::max_element(r.bed.across_depth_m.begin(), r.bed.across_depth_m.end()),
-                               1e-300),
-               most = std::max(*std::max_element(r.stones_across.begin(), r.stones_across.end()), 1e-300);
-    for (const Real one : r.bed.across_depth_m) depth.push_back(one / worn);
-    for (const Real one : r.stones_across) stones.push_back(one / most);
-    draw(LineChart{.title = "Across the compared section: depth (largest " + short_number(1e3 * worn, 3) +
-                            " mm) and where stones run",
+    const auto over = [](std::vector<Real> values, Real largest) {
+        for (Real& one : values) one /= largest;
+        return values;
+    };
+    const std::vector<Real>& y = r.bed.y_m;
+    const std::vector<Real> stones = smoothed(r.stones_across, 1), impacts = smoothed(r.impacts_across, 1),
+                            sliding = smoothed(r.sliding_across, 1);
+    const Real depth = largest(r.bed.across_depth_m), losses = std::max(largest(impacts), largest(sliding));
+    draw(LineChart{.title =
+                       "Across the compared section (greatest depth " + short_number(1e3 * depth, 3) + " mm)",
                    .x = across_channel(c),
-                   .y = {.label = "share of the largest", .unit = "-", .min = 0.0},
-                   .curves = {{.title = "mean abrasion depth", .x = r.bed.y_m, .y = depth},
-                              {.title = "volume of stones x time",
-                               .x = r.bed.y_m,
-                               .y = smoothed(stones, 1),
+                   .y = {.label = "share of the largest", .min = 0.0},
+                   .curves = {{.title = "mean depth", .x = y, .y = over(r.bed.across_depth_m, depth)},
+                              {.title = "losses by sliding", .x = y, .y = over(sliding, losses)},
+                              {.title = "losses by impacts", .x = y, .y = over(impacts, losses)},
+                              {.title = "stones",
+                               .x = y,
+                               .y = over(stones, largest(stones)),
                                .style = CurveStyle::dashed}}},
          picture);
 }
@@ -239,13 +250,16 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
         row("their mean speed", r.mean_stone_speed_m_per_s, "m/s"),
         row("concrete spheres", r.concrete_spheres, ""),
         row("bonds broken", r.bonds_broken, ""),
+        row("spheres fully worn", r.spheres_worn_out, ""),
         row("spheres let go by their bonds", r.spheres_let_go, ""),
         row("restitution at 1 m/s", r.restitution_at_1_m_per_s, ""),
         row("sediment past the gauge", r.sediment_passed_m3, "m3"),
         row("converted sediment (times beta)", r.converted_sediment_m3, "m3"),
         row("worn volume", 1e6 * r.worn_volume_m3, "cm3"),
-        row("worn volume from the energy lost", 1e6 * r.worn_volume_from_energy_m3, "cm3"),
+        row("wear from the energy lost", 1e6 * r.worn_volume_from_energy_m3, "cm3", "another law"),
         row("overflow: worn off nothing", 1e6 * r.overflow_volume_m3, "cm3"),
+        row("waiting for the end of its epoch", 1e6 * r.waiting_volume_m3, "cm3"),
+        row("worn, overflow and waiting over what the energy gives", r.worn_over_energy(), "", "another law"),
         row("sound concrete that went with loosened spheres", 1e6 * r.detached_volume_m3, "cm3"),
         row("largest share of a cell that one collision wore", r.largest_collision_share, ""),
         row("largest safe beta", r.largest_safe_beta, "", "nothing was worn"),
@@ -273,14 +287,18 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
 }  // namespace
 
 std::string validity(const ChannelConfig& c, const ChannelResults& r) {
+    const std::string size = short_number(c.lattice.sphere_diameter) + " m";
     if (c.concrete.worn_out == WornOut::recorded)
-        return "Wear was recorded on a frozen bed: neither stones nor water feel it. Depths beyond a share "
-               "of "
-               "the water's depth are outside the model's validity.";
+        return "Recorded on a frozen bed, which neither stones nor water feel: outside the model's validity "
+               "where depth exceeds a sphere's " +
+               size + ", for there the bed would be another. The greatest depth is " +
+               short_number(r.bed.max_depth_m, 2) + " m" +
+               (r.water ? ", the water is " + short_number(r.water->depth_m, 2) + " m deep." : ".");
     if (const Real beta = c.wear.params().acceleration; beta > r.largest_safe_beta)
         return "Warning: one collision wore " + short_number(r.largest_collision_share, 2) +
-               " times its sphere's cell: beta = " + short_number(beta) + " is above the safe " +
-               short_number(r.largest_safe_beta, 2) + ", so the bed may depend on it (docs/convergence.md).";
+               " times its sphere's cell: beta " + short_number(beta) + " is above the safe " +
+               short_number(r.largest_safe_beta, 2) +
+               ". How much of the worn volume such collisions brought is not known: see docs/convergence.md.";
     return "No collision wore more than half of its cell: beta was safe.";
 }
 
@@ -302,17 +320,19 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
     Report report;
     report.title = c.title;
     report.explanation =
-        "Gravel is fed into " +
+        "Concrete: " + name_of(c.concrete.level) +
+        (c.concrete.worn_out == WornOut::recorded
+             ? ", wear only recorded on a frozen bed"
+             : ", worn-out spheres: " + name_of(c.concrete.worn_out) +
+                   ", wear beyond a cell: " + name_of(c.concrete.overflow)) +
+        ". Contacts: " + c.contact_law + " (e = " + short_number(r.restitution_at_1_m_per_s, 2) +
+        " at 1 m/s). Wear: " + c.wear_law + ". " + validity(c, r) + " Gravel is fed into " +
         std::string(!r.water ? "a dry channel"
                     : flows  ? "water that runs down a channel"
                              : "steady uniform water at the upstream end of a channel") +
-        " whose invert is made of bonded concrete spheres. "
-        "Level of the concrete: " +
-        name_of(c.concrete.level) + "; worn-out spheres: " + name_of(c.concrete.worn_out) +
-        "; wear beyond a cell: " + name_of(c.concrete.overflow) + ". Contacts: " + r.contact +
-        ", wear: " + r.wear +
-        ". The ledger follows every joule; worn volume is the energy lost times a constant, to round-off. " +
-        validity(c, r);
+        " whose invert is made of bonded concrete spheres. The ledger follows every joule" +
+        (c.wear_law == "sub_particle" ? "; worn volume is the energy lost times a constant, to round-off."
+                                      : ".");
     if (r.stopped)
         report.explanation +=
             " The run was stopped by the user before its end: figures are of the part that was computed.";
@@ -335,9 +355,9 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
              "here." +
              (c.comparison.measured.empty() ? " No measured points were given (compare.measured)." : "")},
         {section,
-         "Across the compared section: mean abrasion depth, and the volume of stones summed over time, each "
-         "as "
-         "a share of its largest."},
+         "Across the compared section: mean abrasion depth; what contacts with concrete lose, by sliding and "
+         "by impacts to one scale; the volume of stones summed over time. Each as a share of its largest. "
+         "Losses and stones are sampled, running means of three columns."},
         {passed, "Solid volume that has passed, against what was due to be fed."},
         {ledger,
          "Energy over time. The integration residue is the integrator's error in energy, shown and not "
@@ -345,8 +365,7 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
     for (std::size_t n = 0; n < r.milestones.size(); ++n) {
         const Milestone& one = r.milestones[n];
         const fs::path picture = folder.path("milestone_" + std::to_string(n + 1) + ".png");
-        const std::string when =
-            short_number(one.converted_m3) + " m3 have passed x = " + short_number(one.past_m) + " m";
+        const std::string when = milestone_text(one);
         draw_depth_map(c, r, one.bed, "Abrasion depth as " + when, picture);
         report.figures.push_back({picture, "Abrasion depth in plan as " + when + ", at " +
                                                short_number(one.time_s) + " s. At the centre " +

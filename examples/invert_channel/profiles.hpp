@@ -9,34 +9,29 @@
 
 #include <filesystem>
 #include <fstream>
-#include <limits>
-#include <vector>
 
 namespace abrade::examples {
-
-/// Abrasion depth across the channel per volume past the gauge [mm/m3]: the mean over the compared section.
-/// Not a number before any sediment has passed.
-inline std::vector<Real> cross_profile(const ChannelResults& r) {
-    const Real per_m3 =
-        r.converted_sediment_m3 > 0 ? 1e3 / r.converted_sediment_m3 : std::numeric_limits<Real>::quiet_NaN();
-    std::vector<Real> profile;
-    for (const Real depth : r.bed.across_depth_m) profile.push_back(depth * per_m3);
-    return profile;
-}
 
 /// Writes profiles.json. A depth that is not a number (no sediment has passed the gauge) becomes null.
 /// Throws FileError.
 inline void write_profiles(const ChannelConfig& c, const ChannelResults& r,
                            const std::filesystem::path& path) {
-    const nlohmann::ordered_json profiles{{"length_m", c.invert.length},
-                                          {"width_m", c.invert.width},
-                                          {"compared_from_m", c.comparison.from},
-                                          {"compared_to_m", c.comparison.to},
-                                          {"x_m", r.bed.x_m},
-                                          {"centre_depth_mm_per_m3", r.bed.centre_depth_per_m3},
-                                          {"y_m", r.bed.y_m},
-                                          {"across_depth_mm_per_m3", cross_profile(r)},
-                                          {"stones_across", r.stones_across}};
+    nlohmann::ordered_json profiles{{"length_m", c.invert.length},
+                                    {"width_m", c.invert.width},
+                                    {"compared_from_m", c.comparison.from},
+                                    {"compared_to_m", c.comparison.to},
+                                    {"x_m", r.bed.x_m},
+                                    {"centre_depth_mm_per_m3", r.bed.centre_depth_per_m3},
+                                    {"y_m", r.bed.y_m},
+                                    {"across_depth_mm_per_m3", r.bed.across_depth_per_m3},
+                                    {"stones_across_sampled", r.stones_across},
+                                    {"impacts_across_sampled", r.impacts_across},
+                                    {"sliding_across_sampled", r.sliding_across}};
+    for (const Milestone& one : r.milestones)
+        profiles["milestones"].push_back({{"converted_m3", one.converted_m3},
+                                          {"past_m", one.past_m},
+                                          {"centre_depth_mm_per_m3", one.bed.centre_depth_per_m3},
+                                          {"across_depth_mm_per_m3", one.bed.across_depth_per_m3}});
     std::ofstream file(path);
     file << profiles.dump() << "\n";
     if (!file.flush()) throw FileError("cannot write '" + path.string() + "'");

@@ -3,6 +3,7 @@
 
 #include "config.hpp"
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -50,6 +51,7 @@ struct BedDepth {
     std::vector<Real> x_m, y_m;             ///< [along], [across] of the columns
     std::vector<Real> centre_depth_per_m3;  ///< [along] over what has passed there; NaN: nothing has [mm/m3]
     std::vector<Real> across_depth_m;       ///< [across] mean over the compared section
+    std::vector<Real> across_depth_per_m3;  ///< the same over what has passed each place [mm/m3]
     Real centre_mean_per_m3 = 0;            ///< over the compared section [mm/m3]
     Real max_depth_m = 0, band_width_m = 0;
 };
@@ -73,15 +75,18 @@ struct ChannelResults {
     Index steps = 0, stones = 0, stones_fed = 0, concrete_spheres = 0, bonds_broken = 0;
     int threads = 1;
     Real sediment_fed_m3 = 0, sediment_passed_m3 = 0, converted_sediment_m3 = 0;
-    Real worn_volume_m3 = 0, worn_volume_from_energy_m3 = 0, overflow_volume_m3 = 0, detached_volume_m3 = 0;
+    Real worn_volume_m3 = 0, overflow_volume_m3 = 0, detached_volume_m3 = 0;
+    /// What the energy lost wears; NaN for other laws than sub-particle abrasion.
+    Real worn_volume_from_energy_m3 = std::numeric_limits<Real>::quiet_NaN();
     Real largest_collision_share = 0;  ///< of a cell's volume that one collision wore
-    Real largest_safe_beta = 0;        ///< at which that would have been 1; infinite where nothing wore
+    Real largest_safe_beta = 0;        ///< at which that would have been 1/2; infinite where nothing wore
     Real mean_depth_mm = 0;
     Real energy_lost_normal_J = 0, energy_lost_sliding_J = 0;  ///< in contacts with concrete
     Real ledger_residual_relative = 0, integration_residue_J = 0;
     Real mean_stone_speed_m_per_s = 0;
     Real waiting_volume_m3 = 0;         ///< told to wear, its epoch has not ended
     Index spheres_let_go = 0;           ///< that bonds no longer held
+    Index spheres_worn_out = 0;         ///< fully fractured; of a recorded bed: whose cell was used up
     Real restitution_at_1_m_per_s = 0;  ///< of the middle stone on concrete
     Real wall_contacts_s = 0, wall_bonds_s = 0, wall_motion_s = 0, wall_lists_s = 0, wall_fluid_s = 0;
     std::optional<ChannelWater> water;
@@ -89,11 +94,23 @@ struct ChannelResults {
 
     BedDepth bed;
     Index along = 0, across = 0;
-    std::vector<Real> stones_across;  ///< [across] share of their volume x time in the compared section [-]
+    // Across the compared section, sampled at the looks of `BedRecord`; each kind sums up to 1, impacts and
+    // sliding together.
+    std::vector<Real> stones_across;   ///< [across] volume x time of stones [-]
+    std::vector<Real> impacts_across;  ///< [across] energy that contacts with concrete take, normal [-]
+    std::vector<Real> sliding_across;  ///< [across] and tangential [-]
     PassedHistory passed;
     std::vector<Milestone> milestones;
     std::vector<DrawnSphere> spheres;
     LedgerHistory ledger;
+
+    /// All that wear was told, over what the energy lost gives: 1 but for round-off.
+    Real worn_over_energy() const {
+        return (worn_volume_m3 + overflow_volume_m3 + waiting_volume_m3) / worn_volume_from_energy_m3;
+    }
+    Real impact_share() const {  ///< of the losses on concrete [-]
+        return energy_lost_normal_J / (energy_lost_normal_J + energy_lost_sliding_J);
+    }
 };
 
 /// What physics allows for the centre line of a worn band: depth per converted sediment [mm/m3].

@@ -27,8 +27,8 @@ inline Index cells_along(const ChannelConfig& c, Real length) {
     return static_cast<Index>(std::ceil(length / c.fluid.spacing - 1e-9));
 }
 
-/// Between two looks at what has passed, at most [s].
-constexpr Real look_every = 0.05;
+/// Between two looks at what has passed and at what contacts take up, at most [s].
+constexpr Real look_every = 0.02;
 
 /// `look_at(fluid, first)` sees the water as the stones begin, and at the end.
 template <ContactLaw Contact, FluidModel Fluid, class LookAt>
@@ -59,7 +59,7 @@ ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path&
             sim.run({.end_time = config.end_time,
                      .time_step = config.time_step,
                      .safety = config.safety,
-                     .observe_every = std::min(config.output_every, look_every),
+                     .observe_every = config.output_every / std::ceil(config.output_every / look_every),
                      .skin = config.skin,
                      .stop = stop},
                     watch);

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The invert channel as a user meets it: a short run, a stopped run, a run that goes wrong, and bad input.
+# The invert channel as a user meets it: a short run, all choices of the file, a stopped run, a run that goes wrong, and
+# bad input.
 set -euo pipefail
 program="$1"
 failures=0
@@ -9,7 +10,7 @@ value() { grep -oE "\"$2\": *[^,}]*" "$1" | head -1 | sed 's/.*: *//'; }
 # Compares numbers: holds NAME EXPRESSION, with awk's syntax.
 holds() { awk "BEGIN { exit !($2) }" || fail "$1: $2"; }
 
-short=(--set channel.length=0.5 --set run.end_time=0.06 --set compare.gauge=0.2 --set compare.from=0.2 --set compare.to=0.5)
+short=(--set channel.length=0.5 --set run.end_time=0.3 --set compare.gauge=0.2 --set compare.from=0.2 --set compare.to=0.5)
 
 # --- a short run gives everything that is promised
 "$program" "${short[@]}" --out short > short.log || fail "the short run fails: $(cat short.log)"
@@ -18,14 +19,17 @@ for file in report.html summary.json series.h5 series_stones.xdmf series_concret
 done
 for key in wall_s simulated_s represented_h stones concrete_spheres sediment_passed_m3 converted_sediment_m3 worn_volume_m3 \
     worn_volume_from_energy_m3 overflow_volume_m3 largest_collision_share largest_safe_beta centre_depth_mm_per_m3 max_depth_mm mean_depth_mm energy_lost_normal_J \
-    energy_lost_sliding_J ledger_residual_relative bonds_broken time_step_s fluid contact bond wear concrete_level worn_out overflow worn_through waiting_volume_m3 impact_share restitution_at_1_m_per_s validity passed_volume; do
+    energy_lost_sliding_J ledger_residual_relative bonds_broken time_step_s fluid contact bond wear contact_law wear_law \
+    concrete_level cluster worn_out overflow worn_through waiting_volume_m3 worn_over_energy spheres_worn_out spheres_let_go impact_share \
+    impact_share_compared_sampled restitution_at_1_m_per_s validity passed_volume; do
     grep -q "\"$key\":" short/summary.json || fail "summary.json has no $key"
 done
 holds "ledger closes" "$(value short/summary.json ledger_residual_relative) < 1e-6"
 holds "something wore" "$(value short/summary.json worn_volume_m3) > 0"
-worn=$(value short/summary.json worn_volume_m3) energy=$(value short/summary.json worn_volume_from_energy_m3)
-holds "worn volume is the energy lost" "($worn - $energy)^2 <= (1e-9 * $worn)^2"
-holds "the run is as long as asked" "($(value short/summary.json simulated_s) - 0.06)^2 < 1e-18"
+accounted() { holds "$1: all wear is worn, overflow or waiting" "($(value "$1/summary.json" worn_over_energy) - 1)^2 < 1e-20"; }
+accounted short
+holds "restitution" "($(value short/summary.json restitution_at_1_m_per_s) - 0.6)^2 < 1e-24"
+holds "the run is as long as asked" "($(value short/summary.json simulated_s) - 0.3)^2 < 1e-18"
 grep -q "assum" short/report.html || fail "the report marks no assumptions"
 grep -qE 'src="http|href="http' short/report.html && fail "the report loads something from outside"
 
@@ -33,9 +37,37 @@ share=$(value short/summary.json largest_collision_share) safe=$(value short/sum
 holds "at the safe beta a collision wears half a cell" "($safe * $share - 0.5 * 10)^2 < 1e-12"
 holds "no collision wore a whole cell" "$share > 0 && $share < 1"
 grep -q "Warning" short/report.html && fail "a warning although no collision wore a whole cell"
-"$program" "${short[@]}" --set wear.acceleration=200000 --out fast > fast.log || fail "a run with much acceleration"
-grep -q "Warning: one collision wore" fast/report.html || fail "the report does not warn of beta"
-grep -q "^warning  one collision wore" fast.log || fail "the run does not warn of beta"
+
+# --- where wear goes that its cell no longer has; beta is far above the safe one, and that is said
+fast=(--set run.end_time=0.2 --set wear.acceleration=20000)
+overflow() { # overflow NAME OPTION...
+    local name="$1"
+    shift
+    "$program" "${short[@]}" "${fast[@]}" --set "wear.overflow=\"$name\"" "$@" --out "$name" > "$name.log" 2>&1 || fail "overflow $name: $(cat "$name.log")"
+    [ "$(value "$name/summary.json" overflow)" = "\"$name\"" ] || fail "overflow is not $name"
+    accounted "$name"
+}
+overflow crater
+overflow patch --set wear.overflow_length=0.2 --set wear.overflow_width=0.1
+overflow epoch --set wear.overflow_length=0.2 --set wear.overflow_every=0.03
+overflow drop
+grep -q "Warning: one collision wore .* is above the safe" crater/report.html || fail "the report does not warn of beta"
+grep -q "^warning  one collision wore" crater.log || fail "the run does not warn of beta"
+for name in crater patch epoch; do holds "$name: nothing overflows" "$(value $name/summary.json overflow_volume_m3) <= 1e-9 * $(value $name/summary.json worn_volume_m3)"; done
+holds "wear is dropped" "$(value drop/summary.json overflow_volume_m3) > 0"
+holds "spheres are worn out" "$(value crater/summary.json spheres_worn_out) > 0"
+
+# --- what becomes of worn-out spheres; a bed that is worn through ends the run
+"$program" "${short[@]}" "${fast[@]}" --set 'concrete.worn_out="recorded"' --out recorded > recorded.log 2>&1 || fail "recorded: $(cat recorded.log)"
+accounted recorded
+holds "a frozen bed stands" "$(value recorded/summary.json spheres_let_go) + $(value recorded/summary.json overflow_volume_m3) == 0"
+grep -q '"validity": "Recorded on a frozen bed.*outside the model' recorded/summary.json || fail "a frozen bed is not called so"
+grep -q 'frozen bed' recorded/report.html || fail "the report does not say that the bed is frozen"
+"$program" "${short[@]}" "${fast[@]}" --set 'concrete.worn_out="grain"' --out grain > grain.log 2>&1 || fail "grain: $(cat grain.log)"
+accounted grain
+"$program" "${short[@]}" "${fast[@]}" --set concrete.layers=1 --set wear.acceleration=1e6 --out through > through.log 2>&1 || fail "one layer: $(cat through.log)"
+[ "$(value through/summary.json worn_through)" = true ] && grep -q 'worn through.*more concrete.layers' through.log || fail "concrete that is worn through: $(cat through.log)"
+holds "it ends the run" "$(value through/summary.json simulated_s) < 0.2"
 
 # --- other fluids: shallow water has come to Manning's depth and speed before the stones begin, and keeps its volume
 "$program" "${short[@]}" --fluid shallow --set run.end_time=0.03 --out shallow > shallow.log || fail "shallow water: $(cat shallow.log)"
@@ -58,24 +90,43 @@ holds "the ledger closes on a grid" "$(value grid/summary.json ledger_residual_r
 "$program" "${short[@]}" --fluid none --set run.end_time=0.01 --out none > none.log || fail "a dry channel: $(cat none.log)"
 grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
 
-# --- levels, laws and ways of overflow that the file names
-for chosen in 'concrete.level="rigid"' 'concrete.level="dynamic"' 'concrete.cluster=1' 'concrete.worn_out="grain"' 'concrete.worn_out="recorded"' \
-    'contact.law="linear"' 'wear.overflow="drop"'; do
-    "$program" "${short[@]}" --set run.end_time=0.02 --set "$chosen" --out chosen > chosen.log 2>&1 || fail "$chosen: $(cat chosen.log)"
-done
-"$program" "${short[@]}" --set 'wear.overflow="patch"' --set wear.overflow_length=0.2 --set wear.overflow_width=0.1 --set wear.acceleration=5000 --out patch > patch.log 2>&1 || fail "patch: $(cat patch.log)"
-"$program" "${short[@]}" --set 'wear.overflow="epoch"' --set wear.overflow_length=0.2 --set wear.overflow_every=0.02 --out epoch > epoch.log 2>&1 || fail "epoch: $(cat epoch.log)"
-sed '/^coefficient/d; /^acceleration/d' "$(dirname "$0")/../../examples/invert_channel/quick.toml" > unworn.toml
-"$program" unworn.toml "${short[@]}" --set 'wear.law="none"' --out unworn > unworn.log 2>&1 || fail "no wear law: $(cat unworn.log)"
-sed '/^stiffness = .* # N.m/d; /^restitution/d' "$(dirname "$0")/../../examples/invert_channel/quick.toml" > yields.toml
-"$program" yields.toml "${short[@]}" --set 'contact.law="elastic_plastic"' --set contact.yield_pressure=1e8 --set concrete.stiffness=2e6 --set run.end_time=0.02 --out yields > yields.log 2>&1 || fail "elastic_plastic: $(cat yields.log)"
-"$program" "${short[@]}" --set run.end_time=20 --set sediment.feed_until=0.5 --set 'compare.converted=[0.0005]' --out milestones > milestones.log 2>&1 || fail "milestones: $(cat milestones.log)"
-[ -s milestones/milestone_2.png ] || fail "no picture of the second milestone"
-holds "a milestone ends the run" "$(value milestones/summary.json simulated_s) < 20"
+# --- levels and laws that the file names
+chosen() { # chosen KEY NAME OPTION...: the summary has it as KEY
+    local key="$1" name="$2"
+    shift 2
+    "$program" "$@" --out chosen > chosen.log 2>&1 || fail "$name: $(cat chosen.log)"
+    [ "$(value chosen/summary.json "$key")" = "\"$name\"" ] || fail "$key is not $name"
+    holds "$name: the ledger closes" "$(value chosen/summary.json ledger_residual_relative) < 1e-6"
+}
+quick="$(dirname "$0")/../../examples/invert_channel/quick.toml"
+sed '/^stiffness = .* # N.m/d; /^restitution/d; /^coefficient/d' "$quick" > plain.toml  # keys that not all laws have
+plain=(plain.toml "${short[@]}" --set concrete.stiffness=2e6)
+chosen concrete_level static quick.toml "${short[@]}" --set concrete.cluster=1
+chosen concrete_level rigid quick.toml "${short[@]}" --set 'concrete.level="rigid"'
+chosen concrete_level dynamic quick.toml "${short[@]}" --set 'concrete.level="dynamic"' --set concrete.layers=2 --set run.end_time=0.002
+chosen contact_law linear quick.toml "${short[@]}" --set 'contact.law="linear"'
+chosen contact_law elastic_plastic "${plain[@]}" --set 'contact.law="elastic_plastic"' --set contact.yield_pressure=3e8
+holds "it loses energy" "$(value chosen/summary.json restitution_at_1_m_per_s) < 1 && $(value chosen/summary.json energy_lost_normal_J) > 0"
+chosen wear_law archard quick.toml "${short[@]}" --set 'wear.law="archard"' --set wear.hardness=1e9
+holds "archard wears" "$(value chosen/summary.json worn_volume_m3) > 0"
+[ "$(value chosen/summary.json worn_over_energy)" = null ] || fail "a law that goes by other things than the energy lost is held to it"
+chosen wear_law ishibashi "${plain[@]}" --set contact.stiffness=2e6 --set 'wear.law="ishibashi"' --set wear.impact=1e-8 --set wear.friction=1e-9
+holds "ishibashi wears" "$(value chosen/summary.json worn_volume_m3) > 0"
+chosen wear_law none quick.toml "${short[@]}" --set 'wear.law="none"'
+holds "nothing wears" "$(value chosen/summary.json worn_volume_m3) == 0"
+
+# --- in flight: stones that drop hit harder; the supply ends when told
+"$program" "${short[@]}" --set sediment.feed_height=1 --set sediment.feed_until=0.1 --out dropped > dropped.log 2>&1 || fail "dropped stones: $(cat dropped.log)"
+holds "the supply has ended" "$(value dropped/summary.json sediment_fed_m3) <= 0.0083 * 0.1"
+grep -q 'the supply fell short' dropped.log && fail "an ended supply counts as one that fell short"
+
+# --- milestones: the bed is kept as enough has passed each end of the section, and the last ends the run
+"$program" "${short[@]}" --set run.end_time=20 --set 'compare.converted=[0.02]' --out milestones > milestones.log 2>&1 || fail "milestones: $(cat milestones.log)"
+for file in milestone_1.png milestone_2.png; do [ -s "milestones/$file" ] || fail "milestones/$file is missing or empty"; done
+holds "a milestone ends the run" "$(value milestones/summary.json simulated_s) < 19"
 [ "$(value milestones/summary.json stopped_early)" = false ] || fail "a milestone counts as a stop"
-for run in short patch; do
-    holds "$run: worn, lost and waiting is what the energy gives" "($(value $run/summary.json worn_volume_m3) + $(value $run/summary.json overflow_volume_m3) + $(value $run/summary.json waiting_volume_m3) - $(value $run/summary.json worn_volume_from_energy_m3))^2 <= (1e-9 * $(value $run/summary.json worn_volume_m3))^2"
-done
+[ "$(grep -o '"past_m": *[0-9.]*' milestones/summary.json | tr -dc '0-9.\n' | tr '\n' ' ')" = "0.2 0.5 " ] || fail "milestones are not those asked for"
+grep -q '"milestones":.*"across_depth_mm_per_m3"' milestones/profiles.json || fail "profiles.json has no milestones"
 
 # --- measured points are drawn; a bad row is named
 printf 'x,depth\n0.3,0.1\n' > points.csv
@@ -99,13 +150,13 @@ holds "only what has settled is told" "$(value unsettled/summary.json water_sett
 
 # --- a run that goes wrong: exit 3, nothing under the final name, the last good state saved
 status=0
-"$program" "${short[@]}" --set run.end_time=0.3 --set contact.stiffness=30 --out soft > soft.log 2>&1 || status=$?
+"$program" "${short[@]}" --set run.end_time=2 --set contact.stiffness=1000 --out soft > soft.log 2>&1 || status=$?
 [ $status -eq 3 ] || fail "runaway overlap: exit code $status"
 grep -qE 'step [0-9]+ .*with id [0-9]+ .*overlaps' soft.log || fail "runaway overlap is not explained: $(cat soft.log)"
 [ ! -e soft ] && [ -s soft.failed/last_good.h5 ] || fail "runaway overlap: wrong files"
 
 status=0
-"$program" "${short[@]}" --fluid shallow --set run.end_time=0.3 --set contact.stiffness=30 --out wet > wet.log 2>&1 || status=$?
+"$program" "${short[@]}" --fluid shallow --set run.end_time=2 --set contact.stiffness=1000 --out wet > wet.log 2>&1 || status=$?
 [ $status -eq 3 ] && [ -s wet.failed/last_good.h5 ] || fail "a failed run in shallow water: exit code $status: $(cat wet.log)"
 grep -q surface wet.failed/last_good.h5 || fail "the water of a failed run is not kept"
 
@@ -153,9 +204,17 @@ refused "inflow too deep" 'at most critical.*got 2 m' --fluid shallow --set flui
 refused "a coarse grid" 'fluid.spacing.*at most a quarter.*0.5 m' --fluid shallow --set fluid.spacing=0.5
 refused "a law of its own water" 'fluid.model with contact.law.*uniform with linear.*got grid with linear' --fluid grid --set 'contact.law="linear"'
 refused "a key of another law" 'contact.yield_pressure.*hysteretic.*no use' --set contact.yield_pressure=1e8
+refused "a law without a restitution" 'contact.restitution.*left out.*elastic_plastic' plain.toml --set concrete.stiffness=2e6 --set 'contact.law="elastic_plastic"' --set contact.yield_pressure=1e8 --set contact.restitution=0.5
+refused "no yield pressure" 'contact.yield_pressure.*required' plain.toml --set concrete.stiffness=2e6 --set 'contact.law="elastic_plastic"'
+refused "yield pressure" 'contact.yield_pressure.*> 0.*-1 Pa' plain.toml --set concrete.stiffness=2e6 --set 'contact.law="elastic_plastic"' --set contact.yield_pressure=-1
+refused "another law's weights" 'wear.normal_weight.*archard.*no use' --set 'wear.law="archard"' --set wear.hardness=1e9 --set wear.normal_weight=2
+refused "no coefficients" 'wear.impact.*required' plain.toml --set concrete.stiffness=2e6 --set contact.stiffness=2e6 --set 'wear.law="ishibashi"'
+refused "unknown level" 'concrete.level.*did you mean "static"' --set 'concrete.level="statik"'
+refused "a large cluster" 'concrete.cluster.*at most 2.*3 bonds' --set concrete.cluster=3
 refused "a cluster of rigid concrete" 'concrete.cluster.*static' --set 'concrete.level="rigid"' --set concrete.cluster=1
 refused "a patch without a size" 'wear.overflow_length' --set 'wear.overflow="patch"'
 refused "an epoch's time for a crater" 'wear.overflow_every.*crater' --set wear.overflow_every=1
+refused "a gauge outside" 'compare.gauges.*inside the channel.*3 m' --set 'compare.gauges=[3]'
 refused "unknown option" 'help' --frobnicate
 mkdir -p readonly_is_a_file && touch readonly_is_a_file/inside
 code=0; "$program" --out readonly_is_a_file/inside > refused.log 2>&1 || code=$?

@@ -213,12 +213,18 @@ private:
         if (seat_of_[at(site)] >= 0) return;
         const std::vector<Index> members = cluster_about(site);
         set_up(members);
-        for (const StandingLink& link : balance_.links)
-            if (!link.sound) return;
+        // Broken bonds are left out: what sound ones hold alone, all of them together hold.
+        bool any_sound = false;
+        for (StandingLink& link : balance_.links) {
+            any_sound |= link.sound;
+            if (!link.sound) link.grip = StandingLink::Grip::open;
+        }
+        if (!any_sound) return;
         balance_.find_compliance();
         Real weakest = std::numeric_limits<Real>::infinity();
         for (std::size_t l = 0; l < balance_.links.size(); ++l) {
             const StandingLink& link = balance_.links[l];
+            if (!link.sound) continue;
             const Vec3 across = link.normal.unitOrthogonal();
             const std::array<Screw, 4> kinds{{{link.normal, Vec3::Zero()},
                                               {across, Vec3::Zero()},
