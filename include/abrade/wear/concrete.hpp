@@ -65,9 +65,9 @@ public:
         validate(overflow_);
         if (worn_out_ == WornOut::recorded) return;
         newly_worn_out_.sites.resize(lattice_.sites.size());
+        by_place_ = detail::SitesByPlace(lattice_);
         if (std::holds_alternative<DropOverflow>(overflow_)) return;
         waiting_.sites.resize(lattice_.sites.size());
-        by_place_ = detail::SitesByPlace(lattice_);
         if (std::holds_alternative<FillCrater>(overflow_)) return;
         by_column_ = detail::SitesByColumn(lattice_);
         if (const auto* epoch = std::get_if<SpreadByEpoch>(&overflow_))
@@ -114,7 +114,10 @@ public:
         } else {
             for (const Index site : waiting_.take()) spread(site, std::exchange(worn_[at(site)].waiting, 0));
         }
-        return newly_worn_out_.take();
+        std::vector<Index> worn_out = newly_worn_out_.take();
+        if (worn_out_ == WornOut::fines && std::isfinite(time))
+            for (const Index site : worn_out) hand_on_collision(site, time);
+        return worn_out;
     }
 
     /// The sites that the last `settle` placed volume on, some more than once.
@@ -246,6 +249,23 @@ private:
         fill_crater(struck, volume);
     }
 
+    /// Where a sphere vanishes under a stone, what the stone wears next belongs to the same collision: by the
+    /// neighbours, within the time that it takes to fall a few centimetres.
+    void hand_on_collision(Index site, Real time) {
+        constexpr Real fall = 0.02;  // [s]
+        const Real collision = worn_[at(site)].collision, reach = 3 * lattice_.radius;
+        if (!(collision > 0)) return;
+        const Vec3& x = lattice_.sites[at(site)].centre;
+        const auto has = [&](Index other) { return has_some(other); };
+        by_place_.nearest_first(lattice_, site, reach, has, [&](Index other) {
+            if ((lattice_.sites[at(other)].centre - x).norm() > reach) return false;
+            Worn& worn = worn_[at(other)];
+            worn.collision = std::max(worn.last >= time ? worn.collision : 0, collision);
+            worn.last = time + fall;
+            return true;
+        });
+    }
+
     void fill_crater(Index struck, Real volume) {
         if (!(volume > 0)) return;
         // A little more than the half ball of that volume.
@@ -254,6 +274,7 @@ private:
         if (left_ > 0)
             by_place_.nearest_first(lattice_, struck, reach, has, [&](Index site) {
                 volume = place(site, volume);
+                worn_[at(site)].collision = std::max(worn_[at(site)].collision, worn_[at(struck)].collision);
                 return volume > 0;
             });
         worn_[at(struck)].overflow += volume;
