@@ -36,7 +36,7 @@ struct SpringMemory {
 /// is an error. Nor do springs resist that one end twists against the other: in a cubic lattice, where all
 /// neighbours of a layer may turn against each other as gears do, nothing stops that, and the load's own
 /// shear drives it slowly (tests/verification/deposit.cpp). Beams (ParallelBond) resist it, and so do springs
-/// with TwistResistance; a hexagonal lattice has no such motion, and concrete that may sleep stops it.
+/// with TwistResistance; a hexagonal lattice has no such motion.
 template <class Number>
 class BondSprings {
 public:

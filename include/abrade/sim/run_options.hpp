@@ -1,8 +1,9 @@
 #pragma once
 // How a run is asked for, and what it throws when it goes wrong.
 
-#include <abrade/core/types.hpp>
+#include <abrade/core/require.hpp>
 
+#include <cmath>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -40,5 +41,25 @@ struct RunOptions {
     /// Asked now and then, while a fluid settles too; true ends the run cleanly.
     std::function<bool()> stop{};
 };
+
+/// Throws InputError for what cannot be asked for `now` [s].
+inline void validate(const RunOptions& options, Real now, bool weightless) {
+    require(std::isfinite(options.end_time) && options.end_time >= now,
+            {"RunOptions.end_time", "finite and not before now (" + to_text(now) + " s)", "s",
+             "end times count from the start of the simulation"},
+            options.end_time);
+    require(options.safety > 0 && options.safety <= 1,
+            {"RunOptions.safety", "in (0, 1]", "", "it is a share of the stable step; 0.5 is common"},
+            options.safety);
+    require_not_negative(options.observe_every, "RunOptions.observe_every", "s");
+    require_not_negative(options.time_step, "RunOptions.time_step", "s");
+    require_not_negative(options.skin, "RunOptions.skin", "m");
+    require_not_negative(options.sleep_speed, "RunOptions.sleep_speed", "m/s");
+    require_not_negative(options.sleep_after, "RunOptions.sleep_after", "s");
+    require(options.sleep_speed == 0 || options.sleep_after > 0 || !weightless,
+            {"RunOptions.sleep_after", "> 0 where bodies may sleep and there is no gravity", "s",
+             "say how long a body is slow before it sleeps"},
+            options.sleep_after);
+}
 
 }  // namespace abrade

@@ -117,14 +117,8 @@ public:
     const Concrete& concrete() const { return world().concrete(); }
     /// Where the sphere of a site of the concrete is, awake or not; where it was built if it left [m].
     const Vec3& concrete_place(Index site) const { return world().state().place_of(site); }
-    Index bonds_broken() const {
-        const auto& state = world().state();
-        const Index standing =
-            state.standing ? state.standing->broken_tension() + state.standing->broken_shear() : 0;
-        return state.broken_tension + state.broken_shear + standing;
-    }
-    /// Spheres of standing concrete that came loose as grains.
-    Index spheres_let_go() const { return world().state().let_go_count; }
+    Index bonds_broken() const { return world().state().bonds_broken(); }
+    Index spheres_let_go() const { return world().state().let_go_count; }  ///< of concrete that stood
     /// The time acceleration at which the largest collision so far would have worn half of its sphere's cell
     /// [-], from where on the map of docs/convergence.md loses wear to overflow; infinite where nothing wore.
     /// More stones may bring a larger collision.
@@ -201,10 +195,9 @@ private:
                 show();
             }
             const bool look = step_ % steps_between_snapshots == 0 && !last;
-            bool changed =
-                (look || world_->state().let_go_count > 0) && !last && follow_grains(options, look);
-            if (look) changed |= shorten(options);
-            if (changed) plan();
+            const bool grains = !last && (look || world_->state().let_go_count > 0);
+            const bool follows = grains && follow_grains(options, look);
+            if ((look && shorten(options)) || follows) plan();
         }
         wall_seconds_ = wall_before + seconds_since(clock_start);
     }
@@ -221,10 +214,9 @@ private:
 
     /// Grains of standing concrete are lighter than stones: the step is theirs while there are any.
     bool follow_grains(const RunOptions& options, bool look) {
-        if (options.time_step > 0 || !world_->state().sites.stand) return false;
-        if (!look && has_grains_) return false;
-        const std::vector<Kind>& kind = particles().kind;
-        const bool grains = std::find(kind.begin(), kind.end(), Kind::grain) != kind.end();
+        const auto& state = world_->state();
+        if (options.time_step > 0 || !state.sites.stand || (!look && has_grains_)) return false;
+        const bool grains = state.has_grains();
         if (std::exchange(has_grains_, grains) == grains) return false;
         time_step_ = usual_step(options);
         return true;
@@ -235,9 +227,8 @@ private:
 
     StableStep stable_now(Real most) const {
         StableStep step = StableStepNow(world().state()).of_all(most);
-        const std::vector<Real>& inverse_mass = particles().inverse_mass;
-        if (std::all_of(inverse_mass.begin(), inverse_mass.end(), [](Real one) { return one == 0; }))
-            step.lower(stable_.seconds, stable_.limit);  // of what is still to be fed
+        if (world().state().nobody_moves())
+            step.lower(stable_.seconds, stable_.limit);  // of what is to be fed
         return step;
     }
 
@@ -254,22 +245,7 @@ private:
     }
 
     void prepare(const RunOptions& options) {
-        require(std::isfinite(options.end_time) && options.end_time >= time_,
-                {"RunOptions.end_time", "finite and not before now (" + to_text(time_) + " s)", "s",
-                 "end times count from the start of the simulation"},
-                options.end_time);
-        require(options.safety > 0 && options.safety <= 1,
-                {"RunOptions.safety", "in (0, 1]", "", "it is a share of the stable step; 0.5 is common"},
-                options.safety);
-        require_not_negative(options.observe_every, "RunOptions.observe_every", "s");
-        require_not_negative(options.time_step, "RunOptions.time_step", "s");
-        require_not_negative(options.skin, "RunOptions.skin", "m");
-        require_not_negative(options.sleep_speed, "RunOptions.sleep_speed", "m/s");
-        require_not_negative(options.sleep_after, "RunOptions.sleep_after", "s");
-        require(options.sleep_speed == 0 || options.sleep_after > 0 || !scene_.gravity.isZero(),
-                {"RunOptions.sleep_after", "> 0 where bodies may sleep and there is no gravity", "s",
-                 "say how long a body is slow before it sleeps"},
-                options.sleep_after);
+        validate(options, time_, scene_.gravity.isZero());
         if (!world_) build_world();
         const Real skin = options.skin > 0 ? options.skin : 0.25 * smallest_radius_;
         period_need_->check(world_->scene(), skin);
@@ -308,15 +284,14 @@ private:
         stable_ = stable_step(contact_, bond_, all, world_->network(), world_->scene().feed);
         who_limits_ = stable_.limit;
         if (stable_.body >= 0) who_limits_ += ", " + TroubleText(*world_, 0).name_of(stable_.body);
-        const Lattice& lattice = world_->concrete().lattice();
-        const bool stands = world_->state().sites.stand;
-        period_need_.emplace(all, world_->scene().feed, stands ? lattice.radius : 0);
+        const Real standing = world_->state().sites.stand ? world_->concrete().lattice().radius : 0;
+        period_need_.emplace(all, world_->scene().feed, standing);
         smallest_radius_ =
             all.radius.empty() ? 0.01 : *std::min_element(all.radius.begin(), all.radius.end());
-        if (!stands) return;
-        smallest_radius_ = std::min(smallest_radius_, lattice.radius);
-        const Real mass = scene_.concrete->density * 4.0 / 3 * pi * cube(lattice.radius);
-        stable_loose_ = contact_.stable_dt(mass, lattice.radius);
+        if (standing == 0) return;
+        smallest_radius_ = std::min(smallest_radius_, standing);
+        stable_loose_ =
+            contact_.stable_dt(scene_.concrete->density * 4.0 / 3 * pi * cube(standing), standing);
     }
 
     /// One that begins earlier than the solids comes up to them, unless it is stopped on its way.

@@ -68,6 +68,17 @@ struct State {
                    : -particles.mass[at(body)] * scene.gravity.dot(position);
     }
 
+    Index bonds_broken() const noexcept {
+        const Index standing_ones = standing ? standing->broken_tension() + standing->broken_shear() : 0;
+        return broken_tension + broken_shear + standing_ones;
+    }
+    bool has_grains() const noexcept {
+        return std::find(particles.kind.begin(), particles.kind.end(), Kind::grain) != particles.kind.end();
+    }
+    bool nobody_moves() const noexcept {
+        return std::all_of(particles.inverse_mass.begin(), particles.inverse_mass.end(),
+                           [](Real inverse_mass) { return inverse_mass == 0; });
+    }
     Index body_in(Index slot) const noexcept {
         return particles.body[at(store.sphere_of(store.owner_of(slot)))];
     }
