@@ -343,7 +343,7 @@ TEST_CASE("bits do not depend on the number of threads") {
                        .bond(MohrCoulomb{{.tensile = 1e3, .stiffness = 4e6}})
                        .wear(abrasion(2000));
         Index chunks = 0;
-        sim.run({.end_time = 0.06, .observe_every = 2e-3}, [&](const auto& now) {
+        sim.run({.end_time = 0.06, .observe_every = 2e-3, .skin = 0.02}, [&](const auto& now) {
             chunks = std::max(chunks, now.world().state().store.slabs.chunks());
         });
         CHECK(chunks > 1);  // threads have something to share
