@@ -324,10 +324,9 @@ private:
     }
 
     std::vector<Bond> bonds_;    ///< [number] all, for good
-    std::vector<Index> active_;  ///< numbers of those that do not rest, slab by slab
+    std::vector<Index> active_;  ///< numbers of those not dropped, slab by slab
     Ties ties_;
     std::vector<std::vector<Index>> breaks_;  ///< [slab] broken since `take_loose`
-    Real resting_stored_ = 0;                 ///< [J]
     std::vector<BondPack<Law>> packs_;
     std::vector<Index> first_pack_{0, 0};   ///< [slab]
     std::vector<BondedPair> looked_after_;  ///< spheres, the smaller first, sorted

@@ -115,7 +115,7 @@ public:
     // These throw std::logic_error before the first run: there is nothing to show yet.
     const Particles& particles() const { return world().particles(); }
     const Concrete& concrete() const { return world().concrete(); }
-    /// Where the sphere of a site of the concrete is, awake or not; where it was built if it left [m].
+    /// Where the sphere of a site of the concrete is, a body or not; where it was built if it left [m].
     const Vec3& concrete_place(Index site) const { return world().state().place_of(site); }
     Index bonds_broken() const { return world().state().bonds_broken(); }
     Index spheres_let_go() const { return world().state().let_go_count; }  ///< of concrete that stood

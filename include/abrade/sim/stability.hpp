@@ -86,10 +86,10 @@ void each_end(const Network<B>& network, const B& law, const Particles& particle
 }  // namespace detail
 
 /// A step to begin with: for stones what the law says of dense surroundings, for bonded spheres what the
-/// bonds that they have and two contacts more allow. Of bonded spheres alone if asked for.
+/// bonds that they have and two contacts more allow.
 template <ContactPolicy C, BondLaw B>
 StableStep stable_step(const C& contact, const B& bond, const Particles& particles, const Network<B>& network,
-                       const std::optional<FeedParams>& feed, bool bonded_only = false) {
+                       const std::optional<FeedParams>& feed) {
     StableStep step;
     const auto at = [](Index i) { return static_cast<std::size_t>(i); };
     std::vector<Index> held(at(particles.bodies()), -1);  // [body] its place among the bonded
@@ -107,7 +107,7 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
                      });
     for (Index b = 0; b < particles.bodies(); ++b) {
         const auto i = at(b);
-        if (particles.inverse_mass[i] == 0 || (bonded_only && held[i] < 0)) continue;
+        if (particles.inverse_mass[i] == 0) continue;
         const Real mass = particles.mass[i];
         const detail::Extent extent = detail::extent_of(particles, b);
         if (held[i] < 0) {
@@ -124,7 +124,7 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
         step.lower(own.step(step.seconds), "bonded concrete", b);
         step.lower(contact.stable_dt(mass, extent.largest), "contacts of loose concrete", b);
     }
-    if (feed && !bonded_only)
+    if (feed)
         for (const StoneClass& stones : feed->classes) {
             const Clump clump = make_stone(stones.shape, stones.size);
             const Real mass =
