@@ -30,7 +30,8 @@ public:
         const bool due = state.feed && age_ >= shortest_life && state.feed->due(t);
         if ((traffic && age_ >= longest_life) || due || state.loosened)
             renew(state, t, dt);
-        else if (2 * moved_ > inner_skin_ && !refine(state, dt))
+        else if ((2 * moved_ > inner_skin_ || state.flight.drifts > state.flight.horizon) &&
+                 !refine(state, dt))
             renew(state, t, dt);
         else if (state.sleep.stirred && wake_stirred(state))
             repack(state);
@@ -39,10 +40,10 @@ public:
     /// Renews what changes seldom: bodies that left, supply, near pairs.
     void renew(State<P>& state, Real t, Real dt) {
         const auto start = std::chrono::steady_clock::now();
-        state.land();
+        land(state);
         wrap(state);
         const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
-        if (state.feed || has_broken_bonds || state.sites.stand) state.publish_places();
+        if (state.feed || has_broken_bonds || state.sites.stand) publish_places(state);
         choose_skin(state, dt);
         detail::SiteMarks near(state.sites.marks);
         if (state.sites.stand) mark_near(state, 0, list_skin_, near);
@@ -63,7 +64,7 @@ public:
             std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
         if (largest != state.particles.radius.end())
             state.smallest_radius = *smallest, state.size_ratio = *smallest / *largest;
-        state.find_flyers();
+        find_flyers(state);
         find_pairs(state);
         built_at_.resize(at(state.store.spheres()));
         parallel_for(state.store.spheres(),
@@ -75,10 +76,10 @@ public:
     }
     /// Sorts contacts by who rests, as far as lists are good.
     void repack(State<P>& state) {
-        state.land();
+        land(state);
         mark_resting(state);
         state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_, state.sleep.rests);
-        state.take_off();
+        take_off(state, 2 * inner_life_ * dt_);
     }
     Real skin() const noexcept { return list_skin_; }   ///< of near pairs [m]
     Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
@@ -138,7 +139,8 @@ private:
 
     /// Picks candidates; false where the list of near pairs would not last.
     bool refine(State<P>& state, Real dt) {
-        state.land();
+        dt_ = dt;
+        land(state);
         const Extremes most = extremes(state);
         const Real left = list_skin_ - 2 * std::sqrt(most.way2);
         const Real way = 2 * dt * std::sqrt(most.speed2);
@@ -332,6 +334,7 @@ private:
     Real inner_skin_ = 0, moved_ = 0;     ///< of the candidates; how far anything may have come since [m]
     Real seconds_ = 0, inner_life_ = 32;  ///< [s], [steps]
     bool outrun_ = false;
+    Real dt_ = 0;                 ///< the step [s]
     Index age_ = 0;               ///< steps since the last renewal
     std::vector<Vec3> built_at_;  ///< [slot] where the list was made [m]
 };

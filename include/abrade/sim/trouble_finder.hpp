@@ -71,9 +71,7 @@ public:
         if (state_.particles.bodies() == 1 && state_.scene.walls.empty()) return found;
         for (Index slot = 0; slot < state_.store.spheres(); ++slot) {
             if (!(lines.motion[at(slot)].inverse_mass > 0)) continue;
-            Vec3 v = lines.motion[at(slot)].velocity;
-            if (state_.pace[at(slot)] == Pace::flying) v = state_.flight.velocity(v, state_.scene.gravity);
-            const Real share = dt * v.norm() / lines.place[at(slot)].radius;
+            const Real share = dt * lines.motion[at(slot)].velocity.norm() / lines.place[at(slot)].radius;
             if (share > std::max(1.0, found.measure))
                 found = {Trouble::Cause::long_stride, body_in(slot), -1, share};
         }

@@ -73,12 +73,12 @@ public:
     }
 
     /// Places, and velocities as the lines have them, for what cannot wait for forces.
-    void publish_places() { state_.publish_places(); }
+    void publish_places() { abrade::publish_places(state_); }
 
     void set_skin(Real skin) noexcept { lists_.set_skin(skin); }
     void set_free_flight(bool allowed) {
         state_.flight.allowed = allowed;
-        state_.find_flyers();
+        find_flyers(state_);
     }
     /// As RunOptions says.
     void set_sleep(Real speed, Real after) {
@@ -226,14 +226,13 @@ private:
         if (move) {
             book(state_.accounts, all.motion);
             FreeFlight& flight = state_.flight;
-            flight.note(move->kick, move->drift);
+            flight.note(move->kick, move->drift, move->time);
             state_.sleep.stirred |= all.motion.stirs;
             const Real way =
-                move->drift * std::max(std::sqrt(all.motion.fastest2),
-                                       flight.fastest + flight.kicks * state_.scene.gravity.norm());
+                move->drift * std::max(std::sqrt(all.motion.fastest2), flight.fastest_now());
             lists_.note_step(way);
             check(all.motion);
-            if (way > state_.smallest_radius) report(TroubleFinder(state_).longest_stride(move->drift));
+            if (way > state_.smallest_radius) land(state_), report(TroubleFinder(state_).longest_stride(move->drift));
             if (lists_.outrun()) report(TroubleFinder(state_).fastest());
         }
     }
@@ -313,12 +312,7 @@ private:
         too_deep_ |= contacts.deepest > overlap_limit * (1 + state_.size_ratio);
         if (bonds.deepest > overlap_limit) report(TroubleFinder(state_).crushed_bond(bonds));
     }
-    void book(Ledger& to, const MotionSums& motion) const {
-        to.interaction_work += motion.interaction_work();
-        to.gravity_work += motion.gravity_work(state_.scene.gravity);
-        to.drag_work += motion.drag, to.drag_input += motion.drag_input;
-        to.buoyancy_work += motion.buoyancy;
-    }
+    void book(Ledger& to, const MotionSums& motion) const { abrade::book(to, motion, state_.scene.gravity); }
 
     /// What is first stays, but for overlaps: the deepest counts.
     void report(const Trouble& found) noexcept {
@@ -334,8 +328,8 @@ private:
         const Box space = state_.scene.open_bounds();
         const Vec3 low = detail::first_three(motion.low), high = detail::first_three(motion.high);
         const bool nobody = !(low.x() <= high.x());
-        const bool near_bounds = state_.flight.furthest(state_.scene.gravity) >= state_.flight.margin;
-        if (near_bounds) state_.land();
+        const bool near_bounds = state_.flight.furthest() >= state_.flight.margin;
+        if (near_bounds) land(state_);
         const bool sound = motion.fastest2 < square(TroubleFinder<P>::fastest_of_this_field) &&
                            detail::first_three(motion.finite).allFinite();
         if (sound && !near_bounds && (nobody || (space.contains(low) && space.contains(high)))) return;
