@@ -52,7 +52,8 @@ public:
     struct Build {
         const Particles& particles;
         std::span<const Plane> planes;
-        std::span<const char> passive;  ///< [sphere]
+        std::span<const Seeks> seeks;      ///< [sphere]
+        std::span<const NearPair> known;  ///< pairs of spheres that are found already
         Real skin = 0;                  ///< [m]
         Vec3 period = Vec3::Zero();     ///< [m]; 0 where space is open
         bool by_material = false;       ///< whether each pair of materials has packs of its own
@@ -149,11 +150,11 @@ private:
         std::vector<Vec3> centre(count);
         std::vector<Real> radius(count);
         std::vector<Index> body(count);
-        std::vector<char> passive(count);
+        std::vector<Seeks> seeks(count);
         for (std::size_t s = 0; s < count; ++s) {
             const auto sphere = at(store.sphere_of(static_cast<Index>(s)));
             centre[s] = store.lines.place[s].centre, radius[s] = store.lines.place[s].radius;
-            body[s] = build.particles.body[sphere], passive[s] = build.passive[sphere];
+            body[s] = build.particles.body[sphere], seeks[s] = build.seeks[sphere];
         }
         slab_.resize(count), concrete_.resize(count);
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
@@ -163,7 +164,12 @@ private:
         material_.assign(count, 0);
         if (build.by_material)
             for (std::size_t s = 0; s < count; ++s) material_[s] = build.particles.material[at(body[s])];
-        return near_pairs({centre, radius, body, passive, build.skin, build.period});
+        std::vector<NearPair> near = near_pairs({centre, radius, body, seeks, build.skin, build.period});
+        near.reserve(near.size() + build.known.size());
+        for (const NearPair& pair : build.known)
+            near.push_back(detail::ordered(at(store.slot_of(pair.first)), at(store.slot_of(pair.second)),
+                                           pair.shift));
+        return near;
     }
 
     /// Which slab a pair belongs to: the first of its two, across the edge of a periodic axis the last slab.
@@ -191,10 +197,10 @@ private:
         if (build.planes.empty()) return;
         for (Index slot = 0; slot < store.spheres(); ++slot) {
             const Index sphere = store.sphere_of(slot);
-            if (build.passive[at(sphere)]) continue;
+            if (build.seeks[at(sphere)] != Seeks::all) continue;
             const SpherePlace& place = store.lines.place[at(slot)];
             for (Index p = 0; p < static_cast<Index>(build.planes.size()); ++p) {
-                if (!(build.planes[at(p)].distance(place.centre) < place.radius + build.skin)) continue;
+                if (!(build.planes[at(p)].distance(place.centre) < place.radius + 0.5 * build.skin)) continue;
                 Listed one;
                 one.section = slab_[at(slot)];
                 one.own = slot, one.other = -1 - p;

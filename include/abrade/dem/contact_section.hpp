@@ -182,14 +182,17 @@ private:
         std::size_t kind, first, last;
     };
 
-    /// Whether the surfaces of near pair n are nearer than `skin` [m].
+    /// Whether the surfaces of near pair n are nearer than `skin` [m], or half of it where one never moves.
     bool are_within(Real skin, const SphereLines& lines, std::span<const Plane> planes,
                     std::size_t n) const noexcept {
         const auto [first, second] = near_[n].pair;
         const SpherePlace& a = lines.place[static_cast<std::size_t>(first)];
         if (second < 0)
-            return planes[static_cast<std::size_t>(-1 - second)].distance(a.centre) < a.radius + skin;
+            return planes[static_cast<std::size_t>(-1 - second)].distance(a.centre) < a.radius + 0.5 * skin;
         const SpherePlace& b = lines.place[static_cast<std::size_t>(second)];
+        if (lines.motion[static_cast<std::size_t>(first)].inverse_mass == 0 ||
+            lines.motion[static_cast<std::size_t>(second)].inverse_mass == 0)
+            skin *= 0.5;
         return (a.centre - b.centre).squaredNorm() < square(a.radius + b.radius + skin);
     }
 

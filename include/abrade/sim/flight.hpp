@@ -136,6 +136,7 @@ void publish_places(State<P>& state) {
     Particles& particles = state.particles;
     parallel_for(particles.bodies(), [&](Index body) {
         const auto b = static_cast<std::size_t>(body);
+        if (particles.first_sphere[b] >= store.spheres()) return;  // it has just come
         particles.position[b] = store.position_of(particles, body);
         particles.velocity[b] = store.velocity_of(particles, body);
         const auto first = static_cast<std::size_t>(particles.first_sphere[b]);

@@ -147,14 +147,16 @@ struct State {
     void wear_away(Index site) {
         if constexpr (P::has_bonds)
             if (!sites.stand) network.sever(site), pattern_changed = true;
-        concrete.set_gone(site);
+        leave_place(site);
         if (sites.body_of[at(site)] >= 0) worn_away.push_back(site);
         loosened = true;
     }
 
-    /// The sphere of a site that stands is free from now on: a grain.
+    /// The sphere of a site that stands is free from now on: a grain. One that has sunk into another, or that
+    /// another has sunk into, would be shot out as such: it crumbles and vanishes.
     void let_go(Index site) {
         if (concrete.gone(site)) return;
+        if (sites.recede() && overlaps_standing(site)) return wear_away(site);
         const Index body = body_at(site);
         const Real mass = particles.mass[at(body)],
                    inertia = 0.4 * mass * square(particles.radius[at(particles.first_sphere[at(body)])]);
@@ -164,7 +166,7 @@ struct State {
         if (const Index sphere = particles.first_sphere[at(body)]; sphere < store.spheres())
             store.lines.motion[at(store.slot_of(sphere))].inverse_mass = 1 / mass;
         accounts.fed_potential += potential_energy(body, particles.position[at(body)]);
-        concrete.set_gone(site);
+        leave_place(site);
         ++let_go_count;
         loosened = true;
     }
@@ -178,10 +180,28 @@ struct State {
         return kind == Kind::concrete;
     }
 
-    /// Where a site's sphere stands, a body or not; where it was built if it is gone and no body [m].
-    const Vec3& place_of(Index site) const noexcept {
+    /// Where a site's sphere stands, a body or not; where it was built if it is gone and no body [m]. A worn
+    /// one that recedes and that nobody is near stands where it will once somebody is.
+    Vec3 place_of(Index site) const noexcept {
         const Index body = sites.body_of[at(site)];
-        return body >= 0 ? particles.position[at(body)] : concrete.lattice().sites[at(site)].centre;
+        if (body >= 0) return particles.position[at(body)];
+        return sites.recede() && !concrete.gone(site) ? place_once_sunk(site)
+                                                      : concrete.lattice().sites[at(site)].centre;
+    }
+
+    /// Where a standing sphere will be once it has sunk as far as its wear has it [m].
+    Vec3 place_once_sunk(Index site) const noexcept {
+        return concrete.lattice().sites[at(site)].centre + concrete.fracture(site) * sites.way[at(site)];
+    }
+    /// Lets a standing sphere sink that far; nothing may touch it before or then.
+    void sink(Index site) {
+        sites.worn[at(site)] = 0;
+        const Vec3& there = sites.place[at(site)] = place_once_sunk(site);
+        const Index body = sites.body_of[at(site)];
+        if (body < 0) return;
+        const Index sphere = particles.first_sphere[at(body)];
+        particles.position[at(body)] = particles.centre[at(sphere)] = there;
+        if (sphere < store.spheres()) store.lines.place[at(store.slot_of(sphere))].centre = there;
     }
 
     /// The body of a site that stands, made where there is none.
@@ -206,6 +226,22 @@ struct State {
     }
 
 private:
+    void leave_place(Index site) {
+        concrete.set_gone(site);
+        if (sites.stand) sites.place[at(site)].setConstant(1e100);
+    }
+
+    /// Whether a standing sphere overlaps another, because either has sunk.
+    bool overlaps_standing(Index site) const {
+        const Vec3& own = sites.place[at(site)];
+        const Real diameter = 2 * concrete.lattice().radius;
+        bool found = false;
+        sites.grid.each_about(own, diameter + sites.longest_way, [&](Index other) {
+            found |= other != site && (sites.place[at(other)] - own).squaredNorm() < square(0.999 * diameter);
+        });
+        return found;
+    }
+
     void add_concrete(ConcreteBlock& block) {
         const Lattice& lattice = block.lattice;
         const auto count = static_cast<Index>(lattice.sites.size());
@@ -226,6 +262,12 @@ private:
             stand(block, centre);
         else
             set_moving(block);
+        if (sites.stand && block.worn_out == WornOut::recedes) {
+            sites.way = detail::ways_down(lattice);
+            sites.worn.assign(at(count), 0);
+            for (const Vec3& way : sites.way) sites.longest_way = std::max(sites.longest_way, way.norm());
+        }
+        if (sites.stand) sites.place = std::move(centre);
         concrete = Concrete(std::move(block.lattice), block.fracture_volume, block.overflow, block.worn_out);
         if (sites.stand) return;
         pattern_changed = true;  // a packing may have spheres that nothing ties

@@ -280,6 +280,7 @@ private:
         if (site >= 0) {
             const Real before = state_.concrete.fracture(site);
             state_.concrete.wear(site, load.worn, now_, led_here_);
+            state_.sites.note_worn(site);
             constexpr Real per_step = 1 / StandingBonds<decltype(P::bond)>::strength_step;
             if (state_.standing &&
                 std::floor(per_step * before) != std::floor(per_step * state_.concrete.fracture(site)))
