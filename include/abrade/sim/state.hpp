@@ -53,7 +53,7 @@ struct State {
         velocity_in_fluid;  ///< [body] that drag was last reckoned with [m/s]; empty without a fluid
     Index broken_tension = 0, broken_shear = 0;
     bool pattern_changed = false;  ///< a bond broke
-    bool loosened = false;         ///< concrete came loose, or may meet others than those it is bonded to
+    bool loosened = false;         ///< concrete came loose or is gone
     Real smallest_radius = 0;      ///< of a sphere [m]
     Real size_ratio = 1;           ///< smallest radius over largest [-]
     Real gauge_volume = 0;         ///< solid, net downstream [m3]
@@ -128,7 +128,6 @@ struct State {
     void free_loose_concrete() {
         if constexpr (P::has_bonds) {
             if (!std::exchange(pattern_changed, false)) return;
-            loosened = store.spheres() > 0;  // what has lost a bond looks for others now
             for (const Ties::Piece& piece : network.take_loose()) {
                 if (piece.size() > 1 && scene.concrete->fragments == Fragments::clumps)
                     pieces.push_back(piece);
@@ -171,13 +170,17 @@ struct State {
         loosened = true;
     }
 
-    /// Bonded concrete that is sound cannot come to touch its like: its neighbours look after that.
+    /// Concrete that is where it was built touches nobody but those it is bonded to. Bonds that hold are no
+    /// reason to stay: they let spheres roll about each other, as far as into others that they do not touch
+    /// as built.
     bool keeps_its_place(Index body) const noexcept {
         const Kind kind = particles.kind[at(body)];
         if (kind == Kind::fixed || (kind == Kind::concrete && sites.stand)) return true;
-        if constexpr (P::has_bonds)
-            return kind == Kind::concrete && !network.ties().damaged(particles.site[at(body)]);
-        return kind == Kind::concrete;
+        if (kind != Kind::concrete) return false;
+        constexpr Real share = 0.05;  // of the radius; two of them have come as near as `lattice_of` bonds
+        const Vec3& now = store.lines.place[at(first_slot_of(body))].centre;
+        const Vec3& built = concrete.lattice().sites[at(particles.site[at(body)])].centre;
+        return (now - built).squaredNorm() < square(share * concrete.lattice().radius);
     }
 
     /// Where a site's sphere stands, a body or not; where it was built if it is gone and no body [m]. A worn
