@@ -24,7 +24,8 @@ public:
                 then.place[slot].centre -= last.drift * then.motion[slot].velocity;
         state_.contacts.each_touching([&](const auto& touching) {
             const SlotPair& pair = touching.pair;
-            const auto contact = contact_between(then, state_.scene.walls, pair, 0);
+            const auto contact = contact_seen_by(law_between(state_.policies.contact, touching.materials),
+                                                 then, state_.scene.walls, touching, 0);
             const Real first = then.place[at(pair.first)].radius,
                        second = pair.second < 0 ? 0 : then.place[at(pair.second)].radius;
             DeepContact deep{.reach = first + second,

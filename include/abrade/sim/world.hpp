@@ -108,11 +108,10 @@ public:
     void each_contact(Visit&& visit) const {
         state_.contacts.each_touching([&](const auto& touching) {
             const SlotPair& pair = touching.pair;
-            const auto contact = contact_between(state_.store.lines, state_.scene.walls, pair, 0);
+            const auto& law = law_between(state_.policies.contact, touching.materials);
+            const auto contact = contact_seen_by(law, state_.store.lines, state_.scene.walls, touching, 0);
             visit(body_in(pair.first), body_in(pair.second), contact,
-                  law_between(state_.policies.contact, touching.materials)
-                      .respond(contact, touching.memory)
-                      .load);
+                  law.respond(contact, touching.memory).load);
         });
     }
 
