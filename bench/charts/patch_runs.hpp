@@ -34,8 +34,8 @@ public:
             std::string label, cell;
             std::getline(text, label, ';'), std::getline(text, cell, ';');
             PatchAnswers a;
-            PatchAnswers::visit([&](const char*, auto member) {
-                if (std::getline(text, cell, ';')) a.*member = std::stod(cell);
+            PatchAnswers::visit([&](const auto&, auto answer) {
+                if (std::getline(text, cell, ';')) answer(a) = std::stod(cell);
             });
             runs_[label].push_back(a);
         }
@@ -55,12 +55,12 @@ public:
             std::ofstream file(table_, std::ios::app);
             if (file.tellp() == 0) {
                 file << "setting;seed";
-                PatchAnswers::visit([&](const char* name, auto) { file << ';' << name; });
+                PatchAnswers::visit([&](const auto& name, auto) { file << ';' << name; });
                 file << '\n';
             }
             file << label << ';' << patch.seed;
             PatchAnswers::visit(
-                [&](const char*, auto member) { file << ';' << to_text(done.back().*member); });
+                [&](const auto&, auto answer) { file << ';' << to_text(answer(done.back())); });
             file << '\n';
             std::cerr << label << ", seed " << patch.seed << ": " << done.back().processor << " s\n";
         }
@@ -80,11 +80,11 @@ public:
         std::vector<PatchAnswers> done = runs_.at(label);
         s.failed = static_cast<int>(std::erase_if(done, [](const PatchAnswers& a) { return a.fed == 0; }));
         s.seeds = static_cast<int>(done.size());
-        PatchAnswers::visit([&](const char*, auto member) {
-            for (const PatchAnswers& a : done) s.mean.*member += a.*member / s.seeds;
+        PatchAnswers::visit([&](const auto&, auto answer) {
+            for (const PatchAnswers& a : done) answer(s.mean) += answer(a) / s.seeds;
             Real squares = 0;
-            for (const PatchAnswers& a : done) squares += square(a.*member - s.mean.*member);
-            s.deviation.*member = std::sqrt(squares / std::max(s.seeds - 1, 1));
+            for (const PatchAnswers& a : done) squares += square(answer(a) - answer(s.mean));
+            answer(s.deviation) = std::sqrt(squares / std::max(s.seeds - 1, 1));
         });
         return s;
     }

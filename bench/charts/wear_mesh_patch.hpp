@@ -1,0 +1,140 @@
+#pragma once
+// What stones wear off a patch and lose on it, against how the concrete is cut and computed and against
+// stiffness: part of wear_mesh.cpp.
+
+#include "../../examples/common/charts.hpp"
+#include "patch_runs.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <iomanip>
+
+namespace abrade::charts {
+
+/// A patch on which nothing wears out: beta = 1, so that the bed stays the same for all.
+inline Patch fresh_patch(Real sphere_diameter, ConcreteLevel level, Real stiffness = 1, Real bonds = 1) {
+    Patch patch{.stones = 160, .tail = 0.4, .dashpot = false, .level = level};
+    patch.lattice = {.sphere_diameter = sphere_diameter,
+                     .layers = static_cast<Index>(std::lround(0.06 / sphere_diameter))};
+    patch.contact.stiffness *= stiffness;
+    patch.bond.stiffness = bonds * patch.contact.stiffness;
+    patch.wear.acceleration = 1;
+    return patch;
+}
+
+class PatchChart {
+public:
+    PatchChart(const std::filesystem::path& folder, PatchRuns& runs) : folder_(folder), runs_(runs) {}
+
+    /// Prints the table, draws the picture; returns what belongs in the summary.
+    nlohmann::ordered_json make() {
+        std::cout
+            << "\n## A patch that stones strike and slide over\n\n| concrete | stiffness x | worn, mm3 a "
+               "stone | lost in impacts, mJ | in sliding, mJ | impact share | bonds broken | let go | "
+               "worn against the first, in standard errors | seeds | core, s |\n"
+               "|---|---|---|---|---|---|---|---|---|---|---|\n";
+        Real least = std::numeric_limits<Real>::infinity(), most = 0, apart = 0, apart_shares = 0, error = 0;
+        for (const Row& row : rows()) {
+            runs_.make(row.label(), row.patch(), row.seeds);
+            const Statistics s = runs_.of(row.label()), first = runs_.of(rows().front().label());
+            const Real worn = in_errors(s, first, &PatchAnswers::worn);
+            const Real shares = std::max({in_errors(s, first, &PatchAnswers::impact_share),
+                                          in_errors(s, first, &PatchAnswers::lost_normal),
+                                          in_errors(s, first, &PatchAnswers::lost_sliding)});
+            std::cout << "| " << row.title << " | " << row.stiffness << " | "
+                      << text(s, &PatchAnswers::worn, 1e9) << " | "
+                      << text(s, &PatchAnswers::lost_normal, 1e3) << " | "
+                      << text(s, &PatchAnswers::lost_sliding, 1e3) << " | "
+                      << text(s, &PatchAnswers::impact_share, 1) << " | " << s.mean.bonds_broken << " | "
+                      << s.mean.grains << " | " << std::setprecision(2) << worn << " | " << s.seeds << " | "
+                      << s.mean.processor << " |\n";
+            least = std::min(least, s.mean.worn), most = std::max(most, s.mean.worn);
+            apart = std::max(apart, worn), apart_shares = std::max(apart_shares, shares);
+            error = std::max(error, s.standard_error(&PatchAnswers::worn) / s.mean.worn);
+        }
+        draw_stiffness();
+        return {{"patch_worn_spread_relative", most / least - 1},
+                {"patch_worn_largest_difference_standard_errors", apart},
+                {"patch_shares_largest_difference_standard_errors", apart_shares},
+                {"patch_worn_largest_standard_error_relative", error}};
+    }
+
+private:
+    struct Row {
+        std::string title;
+        Real sphere_diameter;
+        ConcreteLevel level;
+        int seeds;
+        Real stiffness = 1;  ///< of contacts, over 2e6 N/m
+        Real bonds = 1;      ///< their stiffness over that of contacts
+
+        std::string label() const { return title + ", stiffness x" + to_text(stiffness); }
+        Patch patch() const { return fresh_patch(sphere_diameter, level, stiffness, bonds); }
+    };
+    /// The first is what the others are compared with.
+    static const std::vector<Row>& rows() {
+        using enum ConcreteLevel;
+        static const std::vector<Row> all{
+            {"static, 0.02 m", 0.02, quasi_static, 12},
+            {"static, 0.01 m", 0.01, quasi_static, 12},
+            {"rigid, 0.02 m", 0.02, rigid, 12},
+            {"rigid, 0.01 m", 0.01, rigid, 12},
+            {"dynamic, bonds x64, 0.02 m", 0.02, dynamic, 8, 1, 64},
+            {"dynamic, bonds x64, 0.01 m", 0.01, dynamic, 1, 1, 64},
+            {"static, 0.02 m", 0.02, quasi_static, 12, 0.25},
+            {"static, 0.02 m", 0.02, quasi_static, 12, 4},
+            {"static, 0.02 m", 0.02, quasi_static, 12, 16},
+            {"static, 0.01 m", 0.01, quasi_static, 12, 0.25},
+            {"static, 0.01 m", 0.01, quasi_static, 12, 4},
+            {"static, 0.01 m", 0.01, quasi_static, 12, 16},
+            {"dynamic, bonds x64, 0.02 m", 0.02, dynamic, 8, 0.25, 64},
+        };
+        return all;
+    }
+
+    /// Distance of two means over the standard error of their difference [-].
+    static Real in_errors(const Statistics& a, const Statistics& b, Real PatchAnswers::*of) {
+        const Real error = std::hypot(a.standard_error(of), b.standard_error(of));
+        return error > 0 ? std::abs(a.mean.*of - b.mean.*of) / error : 0;
+    }
+    static std::string text(const Statistics& s, Real PatchAnswers::*of, Real unit) {
+        std::ostringstream out;
+        out << std::setprecision(3) << unit * s.mean.*of << " +- " << std::setprecision(2)
+            << unit * s.standard_error(of);
+        return out.str();
+    }
+
+    void draw_stiffness() const {
+        using namespace examples;
+        LineChart chart{
+            .title = "Worn volume against stiffness, contacts and bonds together; bands: two standard errors",
+            .x = {.label = "contact stiffness", .unit = "N/m", .logarithmic = true},
+            .y = {.label = "worn per stone", .unit = "mm3", .min = 0.0}};
+        for (const Row& row : rows()) {
+            const auto known = [&](const Curve& curve) { return curve.title == row.title; };
+            if (std::any_of(chart.curves.begin(), chart.curves.end(), known)) continue;
+            std::vector<Row> same;
+            for (const Row& other : rows())
+                if (other.title == row.title) same.push_back(other);
+            std::sort(same.begin(), same.end(),
+                      [](const Row& a, const Row& b) { return a.stiffness < b.stiffness; });
+            Curve curve{.title = row.title, .style = same.size() > 1 ? CurveStyle::line : CurveStyle::points};
+            Band band;
+            for (const Row& one : same) {
+                const Statistics s = runs_.of(one.label());
+                const Real worn = 1e9 * s.mean.worn, error = 2e9 * s.standard_error(&PatchAnswers::worn);
+                curve.x.push_back(one.patch().contact.stiffness), curve.y.push_back(worn);
+                band.low.push_back(worn - error), band.high.push_back(worn + error);
+            }
+            band.x = curve.x;
+            if (chart.bands.empty()) chart.bands.push_back(band);
+            chart.curves.push_back(curve);
+        }
+        draw(chart, folder_ / "wear_mesh_patch.png");
+    }
+
+    std::filesystem::path folder_;
+    PatchRuns& runs_;
+};
+
+}  // namespace abrade::charts
