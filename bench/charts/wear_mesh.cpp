@@ -17,8 +17,7 @@ using namespace abrade::charts;
 namespace {
 
 nlohmann::ordered_json make(const std::string& part, const std::filesystem::path& folder, PatchRuns& runs) {
-    if (part == "drops")
-        return DropChart(folder, std::getenv("POSES") ? std::atoi(std::getenv("POSES")) : 50).make();
+    if (part == "drops") return DropChart(folder, 50).make();
     if (part == "patch") return PatchChart(folder, runs).make();
     if (part == "beta") return BetaChart(folder, runs).make();
     throw InputError("chart_wear_mesh: there is no part '" + part + "'; parts are drops, patch and beta");

@@ -69,6 +69,9 @@ private:
             {"patch", WornOut::fines, SpreadOverPatch{.length = 0.03, .width = 0.03}},
             {"epoch", WornOut::fines, SpreadByEpoch{.length = 0.05, .every = 0.3}},
             {"dropped", WornOut::fines, DropOverflow{}},
+            {"recedes, crater", WornOut::recedes, FillCrater{}},
+            {"recedes, patch", WornOut::recedes, SpreadOverPatch{.length = 0.03, .width = 0.03}},
+            {"recedes, epoch", WornOut::recedes, SpreadByEpoch{.length = 0.05, .every = 0.3}},
         };
         return all;
     }
@@ -100,7 +103,7 @@ private:
         return one;
     }
     /// So many that standard errors are some 3 %.
-    static int seeds(Real beta) { return beta < 50 ? 3 : beta < 500 ? 6 : beta < 2000 ? 24 : 48; }
+    static int seeds(Real beta) { return beta < 50 ? 3 : beta < 500 ? 8 : beta < 2000 ? 24 : 48; }
 
     Statistics of(const Way& way, Real beta) {
         const std::string label = way.title + ", beta " + to_text(beta);

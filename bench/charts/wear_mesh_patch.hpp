@@ -31,32 +31,33 @@ public:
         std::cout
             << "\n## A patch that stones strike and slide over\n\n| concrete | stiffness x | worn, mm3 a "
                "stone | lost in impacts, mJ | in sliding, mJ | impact share | bonds broken | let go | "
-               "worn against the first, in standard errors | seeds | core, s |\n"
-               "|---|---|---|---|---|---|---|---|---|---|---|\n";
-        Real least = std::numeric_limits<Real>::infinity(), most = 0, apart = 0, apart_shares = 0, error = 0;
+               "seeds | core, s |\n|---|---|---|---|---|---|---|---|---|---|\n";
+        Real least = std::numeric_limits<Real>::infinity(), most = 0, error = 0;
         for (const Row& row : rows()) {
             runs_.make(row.label(), row.patch(), row.seeds);
-            const Statistics s = runs_.of(row.label()), first = runs_.of(rows().front().label());
-            const Real worn = in_errors(s, first, &PatchAnswers::worn);
-            const Real shares = std::max({in_errors(s, first, &PatchAnswers::impact_share),
-                                          in_errors(s, first, &PatchAnswers::lost_normal),
-                                          in_errors(s, first, &PatchAnswers::lost_sliding)});
+            const Statistics s = runs_.of(row.label());
             std::cout << "| " << row.title << " | " << row.stiffness << " | "
                       << text(s, &PatchAnswers::worn, 1e9) << " | "
                       << text(s, &PatchAnswers::lost_normal, 1e3) << " | "
                       << text(s, &PatchAnswers::lost_sliding, 1e3) << " | "
-                      << text(s, &PatchAnswers::impact_share, 1) << " | " << s.mean.bonds_broken << " | "
-                      << s.mean.grains << " | " << std::setprecision(2) << worn << " | " << s.seeds << " | "
-                      << s.mean.processor << " |\n";
-            least = std::min(least, s.mean.worn), most = std::max(most, s.mean.worn);
-            apart = std::max(apart, worn), apart_shares = std::max(apart_shares, shares);
+                      << text(s, &PatchAnswers::impact_share, 1) << " | " << std::setprecision(2)
+                      << s.mean.bonds_broken << " | " << s.mean.grains << " | " << s.seeds << " | "
+                      << s.mean.processor << " |\n"
+                      << std::flush;
+            if (!row.counts()) continue;
             error = std::max(error, s.standard_error(&PatchAnswers::worn) / s.mean.worn);
+            if (row.stiffness != 1) continue;
+            least = std::min(least, s.mean.worn), most = std::max(most, s.mean.worn);
         }
+        nlohmann::ordered_json summary{{"patch_worn_spread_relative", most / least - 1},
+                                       {"patch_worn_largest_standard_error_relative", error}};
+        std::cout << "\nLargest relative difference of worn volume, and largest difference of worn volume, "
+                     "losses and impact share in standard errors:\n\n";
+        compare(summary, "levels", &Row::sphere_diameter, &Row::stiffness);
+        compare(summary, "sizes", &Row::level, &Row::stiffness);
+        compare(summary, "stiffness", &Row::level, &Row::sphere_diameter);
         draw_stiffness();
-        return {{"patch_worn_spread_relative", most / least - 1},
-                {"patch_worn_largest_difference_standard_errors", apart},
-                {"patch_shares_largest_difference_standard_errors", apart_shares},
-                {"patch_worn_largest_standard_error_relative", error}};
+        return summary;
     }
 
 private:
@@ -69,29 +70,53 @@ private:
         Real bonds = 1;      ///< their stiffness over that of contacts
 
         std::string label() const { return title + ", stiffness x" + to_text(stiffness); }
+        /// Spheres of other sizes show where the sizes in question stand.
+        bool counts() const { return sphere_diameter == 0.02 || sphere_diameter == 0.01; }
         Patch patch() const { return fresh_patch(sphere_diameter, level, stiffness, bonds); }
     };
-    /// The first is what the others are compared with.
     static const std::vector<Row>& rows() {
         using enum ConcreteLevel;
         static const std::vector<Row> all{
-            {"static, 0.02 m", 0.02, quasi_static, 12},
-            {"static, 0.01 m", 0.01, quasi_static, 12},
-            {"rigid, 0.02 m", 0.02, rigid, 12},
-            {"rigid, 0.01 m", 0.01, rigid, 12},
+            {"static, 0.02 m", 0.02, quasi_static, 16},
+            {"static, 0.01 m", 0.01, quasi_static, 16},
+            {"rigid, 0.02 m", 0.02, rigid, 16},
+            {"rigid, 0.01 m", 0.01, rigid, 16},
             {"dynamic, bonds x64, 0.02 m", 0.02, dynamic, 8, 1, 64},
-            {"dynamic, bonds x64, 0.01 m", 0.01, dynamic, 1, 1, 64},
-            {"static, 0.02 m", 0.02, quasi_static, 12, 0.25},
-            {"static, 0.02 m", 0.02, quasi_static, 12, 4},
-            {"static, 0.02 m", 0.02, quasi_static, 12, 16},
-            {"static, 0.01 m", 0.01, quasi_static, 12, 0.25},
-            {"static, 0.01 m", 0.01, quasi_static, 12, 4},
-            {"static, 0.01 m", 0.01, quasi_static, 12, 16},
+            {"dynamic, bonds x64, 0.01 m", 0.01, dynamic, 3, 1, 64},
+            {"static, 0.04 m", 0.04, quasi_static, 16},
+            {"static, 0.005 m", 0.005, quasi_static, 16},
+            {"static, 0.02 m", 0.02, quasi_static, 16, 0.25},
+            {"static, 0.02 m", 0.02, quasi_static, 16, 4},
+            {"static, 0.02 m", 0.02, quasi_static, 16, 16},
+            {"static, 0.01 m", 0.01, quasi_static, 16, 0.25},
+            {"static, 0.01 m", 0.01, quasi_static, 16, 4},
+            {"static, 0.01 m", 0.01, quasi_static, 16, 16},
             {"dynamic, bonds x64, 0.02 m", 0.02, dynamic, 8, 0.25, 64},
         };
         return all;
     }
 
+    /// Compares rows that have both of `same` in common.
+    void compare(nlohmann::ordered_json& summary, const std::string& what, auto Row::*same,
+                 auto Row::*same_too) const {
+        Real relative = 0, worn = 0, shares = 0;
+        for (const Row& one : rows())
+            for (const Row& other : rows()) {
+                if (&one >= &other || !one.counts() || !other.counts()) continue;
+                if (one.*same != other.*same || one.*same_too != other.*same_too) continue;
+                const Statistics a = runs_.of(one.label()), b = runs_.of(other.label());
+                relative = std::max(relative, std::abs(a.mean.worn / b.mean.worn - 1));
+                worn = std::max(worn, in_errors(a, b, &PatchAnswers::worn));
+                for (const auto of :
+                     {&PatchAnswers::impact_share, &PatchAnswers::lost_normal, &PatchAnswers::lost_sliding})
+                    shares = std::max(shares, in_errors(a, b, of));
+            }
+        std::cout << "- " << what << ": " << relative << "; " << worn << ", " << shares << "\n";
+        const std::string name = "patch_" + what + "_";
+        summary[name + "worn_relative"] = relative;
+        summary[name + "worn_standard_errors"] = worn;
+        summary[name + "shares_standard_errors"] = shares;
+    }
     /// Distance of two means over the standard error of their difference [-].
     static Real in_errors(const Statistics& a, const Statistics& b, Real PatchAnswers::*of) {
         const Real error = std::hypot(a.standard_error(of), b.standard_error(of));

@@ -13,8 +13,7 @@ namespace {
 constexpr std::array<std::string_view, 3> levels{"static", "rigid", "dynamic"},
     contact_laws{"hysteretic", "linear", "elastic_plastic"};
 constexpr std::array<std::string_view, 4> worn_outs{"fines", "grain", "recorded", "recedes"},
-    overflows{"crater", "patch", "epoch", "drop"},
-    wear_laws{"sub_particle", "archard", "ishibashi", "none"};
+    overflows{"crater", "patch", "epoch", "drop"}, wear_laws{"sub_particle", "archard", "ishibashi", "none"};
 
 /// Throws InputError where a key is given that the choice made does not use.
 void refuse(const TomlReader& in, std::initializer_list<const char*> keys, const std::string& choice) {
@@ -456,9 +455,9 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
                                               .bound = Bound::not_negative});
     c.safety = in.number("run.safety",
                          {.fallback = 0.8, .help = "share of the stable step", .bound = Bound::positive});
-    c.skin = in.number(
-        "run.skin",
-        {.unit = "m", .fallback = 0.03, .help = "of the neighbour list", .bound = Bound::positive});
+    c.skin =
+        in.number("run.skin",
+                  {.unit = "m", .fallback = 0.03, .help = "of the neighbour list", .bound = Bound::positive});
     read_channel(in, c);
     read_concrete(in, c);
     read_contact(in, c);

@@ -16,7 +16,8 @@ struct Spheres {
     std::vector<Seeks> seeks;
 
     void add(const Vec3& x, Real r, Index of, bool is_passive = false) {
-        centre.push_back(x), radius.push_back(r), body.push_back(of), seeks.push_back(is_passive ? Seeks::passive : Seeks::all);
+        centre.push_back(x), radius.push_back(r), body.push_back(of),
+            seeks.push_back(is_passive ? Seeks::passive : Seeks::all);
     }
     Vec3 period = Vec3::Zero();
     NeighbourQuery query(Real skin) const { return {centre, radius, body, seeks, skin, period}; }

@@ -95,7 +95,8 @@ namespace {
 Scene in_water() {
     Scene scene;
     for (int n = 0; n < 12; ++n) {
-        const BodyState state{.position = {0.3 * n, 0, 0.15}, .velocity = {1.0 + 0.1 * n, 0.2, 0.5},
+        const BodyState state{.position = {0.3 * n, 0, 0.15},
+                              .velocity = {1.0 + 0.1 * n, 0.2, 0.5},
                               .angular_velocity = {30, 5.0 * n, 20}};
         if (n % 3 == 0)
             scene.add_sphere(0.02, state);
@@ -119,7 +120,8 @@ Real furthest_apart(const auto& a, const auto& b) {
     Real most = 0;
     for (std::size_t n = 0; n < a.particles().position.size(); ++n) {
         most = std::max(most, (a.particles().position[n] - b.particles().position[n]).norm());
-        most = std::max(most, 0.01 * a.particles().orientation[n].angularDistance(b.particles().orientation[n]));
+        most =
+            std::max(most, 0.01 * a.particles().orientation[n].angularDistance(b.particles().orientation[n]));
     }
     return most;
 }

@@ -41,8 +41,8 @@ constexpr Real three_cells = 6e4;
 template <class Sim>
 Vec3 velocity_of_stone(const Sim& sim) {
     const Particles& p = sim.particles();
-    return p.velocity[static_cast<std::size_t>(
-        std::find(p.kind.begin(), p.kind.end(), Kind::stone) - p.kind.begin())];
+    return p.velocity[static_cast<std::size_t>(std::find(p.kind.begin(), p.kind.end(), Kind::stone) -
+                                               p.kind.begin())];
 }
 /// Of the bed as it is [m3]: spheres stand where their columns' record has them.
 template <class Sim>
@@ -50,16 +50,17 @@ Real volume_above_surface(const Sim& sim) {
     const Concrete& c = sim.concrete();
     Real volume = 0;
     for (Index s = 0; s < c.sites(); ++s)
-        volume += c.gone(s) ? c.capacity(s)
-                            : c.capacity(s) / d *
-                                  (c.lattice().sites[at(s)].centre - sim.concrete_place(s)).norm();
+        volume += c.gone(s)
+                      ? c.capacity(s)
+                      : c.capacity(s) / d * (c.lattice().sites[at(s)].centre - sim.concrete_place(s)).norm();
     return volume;
 }
 
 }  // namespace
 
 TEST_CASE("a worn sphere sinks by its fracture rate, once the stone has left it") {
-    auto sim = simulate(on_the_middle(WornOut::recedes)).contact(law).bond(strong).wear(abrasion(half_a_cell));
+    auto sim =
+        simulate(on_the_middle(WornOut::recedes)).contact(law).bond(strong).wear(abrasion(half_a_cell));
     const Index middle = on_the_middle(WornOut::recedes).concrete->lattice.site(2, 2, 0);
     Vec3 before = on_the_middle(WornOut::recedes).concrete->lattice.sites[at(middle)].centre;
     Index moves = 0;
@@ -160,16 +161,15 @@ TEST_CASE("a sphere that has sunk into another crumbles instead of being shot ou
     const Vec3 inwards = Vec3(-1, -1, 0.95).normalized();
     scene.add_sphere(0.006, {.position = corner + Vec3(0, 0, 0.0165), .velocity = {0, 0, -3}});
     scene.add_sphere(0.006, {.position = corner + 0.06 * inwards, .velocity = -2 * inwards});
-    auto sim = simulate(scene)
-                   .contact(law)
-                   .bond(MohrCoulomb{{.tensile = 1, .stiffness = 4e6}})
-                   .wear(abrasion(5e3));
+    auto sim =
+        simulate(scene).contact(law).bond(MohrCoulomb{{.tensile = 1, .stiffness = 4e6}}).wear(abrasion(5e3));
     Real fastest = 0;
     sim.run({.end_time = 0.05, .observe_every = 1e-3}, [&](const auto& now) {
         for (const Vec3& v : now.particles().velocity) fastest = std::max(fastest, v.norm());
     });
     const Index site = sim.concrete().lattice().site(4, 4, 0);
-    MESSAGE(sim.concrete().fracture(site) << " " << sim.bonds_broken() << " " << sim.concrete_place(site).transpose());
+    MESSAGE(sim.concrete().fracture(site)
+            << " " << sim.bonds_broken() << " " << sim.concrete_place(site).transpose());
     CHECK(sim.concrete().detached_volume() > 0);
     CHECK(fastest < 4);
     CHECK(sim.ledger().residual_relative() < 1e-12);
@@ -178,6 +178,7 @@ TEST_CASE("a sphere that has sunk into another crumbles instead of being shot ou
 TEST_CASE("concrete that moves does not recede") {
     Scene scene = on_the_middle(WornOut::recedes);
     scene.concrete->level = ConcreteLevel::dynamic;
-    CHECK(message_of([&] { simulate(scene).contact(law).bond(strong).run({.end_time = 1e-4}); })
-              .find("Scene.concrete.worn_out") != std::string::npos);
+    CHECK(message_of([&] {
+              simulate(scene).contact(law).bond(strong).run({.end_time = 1e-4});
+          }).find("Scene.concrete.worn_out") != std::string::npos);
 }

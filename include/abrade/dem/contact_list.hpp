@@ -66,11 +66,11 @@ public:
     struct Build {
         const Particles& particles;
         std::span<const Plane> planes;
-        std::span<const Seeks> seeks;      ///< [sphere]
+        std::span<const Seeks> seeks;     ///< [sphere]
         std::span<const NearPair> known;  ///< pairs of spheres that are found already
-        Real skin = 0;                  ///< [m]
-        Vec3 period = Vec3::Zero();     ///< [m]; 0 where space is open
-        bool by_material = false;       ///< whether each pair of materials has packs of its own
+        Real skin = 0;                    ///< [m]
+        Vec3 period = Vec3::Zero();       ///< [m]; 0 where space is open
+        bool by_material = false;         ///< whether each pair of materials has packs of its own
     };
 
     /// Puts aside what touching pairs remember, before the store is arranged anew. `moved` [sphere] says
@@ -185,8 +185,8 @@ private:
         std::vector<NearPair> near = near_pairs({centre, radius, body, seeks, build.skin, build.period});
         near.reserve(near.size() + build.known.size());
         for (const NearPair& pair : build.known)
-            near.push_back(detail::ordered(at(store.slot_of(pair.first)), at(store.slot_of(pair.second)),
-                                           pair.shift));
+            near.push_back(
+                detail::ordered(at(store.slot_of(pair.first)), at(store.slot_of(pair.second)), pair.shift));
         return near;
     }
 

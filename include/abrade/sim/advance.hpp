@@ -172,13 +172,12 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         flight.kicks += move.kick;
         const detail::FlightLoad flown =
             detail::flight_load(state, body, place.centre, motion.velocity, flight);
-        p.centre[first] = p.position[b] =
-            flight.place(place.centre, motion.velocity, flown.acceleration);
+        p.centre[first] = p.position[b] = flight.place(place.centre, motion.velocity, flown.acceleration);
         p.velocity[b] = flight.velocity(motion.velocity, flown.acceleration);
         p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * motion.rim;
         p.force[b] = p.mass[b] * flown.acceleration, p.torque[b].setZero();
-        detail::add_flight(state, body, flown, flight.path(motion.velocity, flown.acceleration),
-                           flight.kicks, sums);
+        detail::add_flight(state, body, flown, flight.path(motion.velocity, flown.acceleration), flight.kicks,
+                           sums);
         return;
     }
     const Vec3 other = sample(place.centre, motion.velocity);

@@ -30,8 +30,9 @@ FlightLoad flight_load(const State<P>& state, Index body, const Vec3& position, 
                                   {x, v, state.particles.volume[b]}, state.scene.gravity);
             };
             const FluidLoad first = fluid_at(position, velocity, flight.start);
-            const Vec3 half = velocity + 0.5 * flight.kicks *
-                                             (state.scene.gravity + inverse_mass * (first.drag + first.buoyancy));
+            const Vec3 half =
+                velocity +
+                0.5 * flight.kicks * (state.scene.gravity + inverse_mass * (first.drag + first.buoyancy));
             const Real to_middle = 0.5 * (flight.drifts - flight.last);
             found.fluid = fluid_at(position + to_middle * half, half, flight.start + to_middle);
             found.acceleration += inverse_mass * (found.fluid.drag + found.fluid.buoyancy);
@@ -171,7 +172,8 @@ std::optional<Real> hardest_in_flight(const State<P>& state, Index body, const V
                 fluid_load(state.policies.drag, state.policies.fluid.sample(position, state.flight.now),
                            {position, velocity, state.particles.volume[b]}, state.scene.gravity);
             const Real inverse_mass = state.particles.inverse_mass[b];
-            const Real against = (load.fluid_velocity - velocity).norm(), drag = inverse_mass * load.drag.norm();
+            const Real against = (load.fluid_velocity - velocity).norm(),
+                       drag = inverse_mass * load.drag.norm();
             // Of quadratic drag, twice the force over the speed against the fluid.
             if (2 * drag * state.flight.horizon > 0.1 * against) return std::nullopt;
             // Drag itself may double where the fluid is faster.
@@ -239,8 +241,8 @@ void take_off(State<P>& state, Real horizon) {
             const Real spin = clump.angular_velocity(clump.angular_momentum).norm();
             Real reach = 0;
             for (Index n = 0; n < clump.count; ++n)
-                reach = std::max(reach,
-                                 state.particles.offset[at(state.particles.first_sphere[at(body)] + n)].norm());
+                reach = std::max(
+                    reach, state.particles.offset[at(state.particles.first_sphere[at(body)] + n)].norm());
             one.fastest += 1.5 * spin * reach;  // it may turn faster about another axis
         }
         if (bounded)

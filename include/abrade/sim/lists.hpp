@@ -27,8 +27,8 @@ public:
 
     /// Makes the lists good for the places of now. Steps are of dt.
     void freshen(State<P>& state, Real t, Real dt) {
-        const bool traffic = state.feed || state.scene.outlet || state.sites.recede() ||
-                             !state.sites.worn_out.empty();
+        const bool traffic =
+            state.feed || state.scene.outlet || state.sites.recede() || !state.sites.worn_out.empty();
         const bool due = state.feed && age_ >= shortest_life && state.feed->due(t);
         if ((traffic && age_ >= longest_life) || due || state.loosened)
             renew(state, t, dt);
@@ -331,7 +331,7 @@ private:
         parallel_for(p.spheres(), [&](Index s) {
             const Index body = p.body[at(s)];
             const bool stands = state.sites.stand && p.kind[at(body)] == Kind::concrete;
-            seeks[at(s)] = stands                         ? Seeks::left_out
+            seeks[at(s)] = stands                        ? Seeks::left_out
                            : state.keeps_its_place(body) ? Seeks::passive
                                                          : Seeks::all;
         });
@@ -349,8 +349,7 @@ private:
         }
         state.contacts.rebuild(
             state.store,
-            {p, state.scene.walls, seeks, known, list_skin_, state.scene.periodic().period,
-             P::has_materials},
+            {p, state.scene.walls, seeks, known, list_skin_, state.scene.periodic().period, P::has_materials},
             std::move(requests), [&](Index first, Index second) {
                 return P::has_bonds && state.network.holds({first, second});
             });
@@ -376,10 +375,10 @@ private:
     Real inner_skin_ = 0, moved_ = 0;     ///< of the candidates; how far anything may have come since [m]
     Real seconds_ = 0, inner_life_ = 32;  ///< [s], [steps]
     bool outrun_ = false;
-    Real dt_ = 0;                 ///< the step [s]
-    Index age_ = 0;               ///< steps since the last renewal
+    Real dt_ = 0;                       ///< the step [s]
+    Index age_ = 0;                     ///< steps since the last renewal
     std::vector<SitePair> near_sites_;  ///< found by the last renewal
-    std::vector<Vec3> built_at_;  ///< [slot] where the list was made [m]
+    std::vector<Vec3> built_at_;        ///< [slot] where the list was made [m]
 };
 
 }  // namespace abrade

@@ -16,17 +16,17 @@ enum class Pace : std::uint8_t { every_step, beside_sleeper, flying, asleep };
 /// fluid act, take all steps until then as one, at the acceleration of halfway. Fixed ones take none.
 struct FreeFlight {
     bool allowed = true;
-    Real kicks = 0;     ///< since they took off: sum of kicks [s]
-    Real drifts = 0;    ///< of drifts [s]
-    Real area = 0;      ///< of each drift times the kicks before it [s2]
-    Real last = 0;      ///< the last drift [s]
-    Real start = 0;     ///< time of the first kick's loads [s]
-    Real now = 0;       ///< that of the places reached [s]
-    Real fastest = 0;   ///< as they took off [m/s]
-    Real hardest = 0;   ///< no acceleration of theirs is beyond this [m/s2]
-    Real margin = 0;    ///< from where they took off to the nearest bound of space [m]
+    Real kicks = 0;    ///< since they took off: sum of kicks [s]
+    Real drifts = 0;   ///< of drifts [s]
+    Real area = 0;     ///< of each drift times the kicks before it [s2]
+    Real last = 0;     ///< the last drift [s]
+    Real start = 0;    ///< time of the first kick's loads [s]
+    Real now = 0;      ///< that of the places reached [s]
+    Real fastest = 0;  ///< as they took off [m/s]
+    Real hardest = 0;  ///< no acceleration of theirs is beyond this [m/s2]
+    Real margin = 0;   ///< from where they took off to the nearest bound of space [m]
     Real horizon = std::numeric_limits<Real>::infinity();  ///< drag is slow over so long a flight [s]
-    Index held = 0;     ///< spheres that fly but for their candidates
+    Index held = 0;                                        ///< spheres that fly but for their candidates
 
     void note(Real kick, Real drift, Real time) noexcept {
         if (kicks == 0) start = time;

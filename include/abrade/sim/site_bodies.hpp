@@ -16,20 +16,20 @@ namespace abrade {
 /// The concrete's spheres as bodies. Where concrete stands (ConcreteLevel), those that no moving body is near
 /// are none.
 struct SiteBodies {
-    bool stand = false;          ///< none of them moves while it is concrete
-    Clump sphere{};              ///< what each site is made of
-    std::vector<Index> body_of;  ///< [site] -1: no body, or gone
-    std::vector<char> held;      ///< [site] part of the ground, which never moves
-    std::vector<char> marks;     ///< [site] all 0 between uses
-    PointGrid grid;              ///< of the sites as built
-    std::vector<Vec3> place;     ///< [site] of standing spheres [m]; far away where one has left
-    std::vector<Index> worn_out; ///< fully fractured, and there until nothing touches them
-    std::vector<Index> emptied;  ///< sites that bonds have not been told of yet
+    bool stand = false;           ///< none of them moves while it is concrete
+    Clump sphere{};               ///< what each site is made of
+    std::vector<Index> body_of;   ///< [site] -1: no body, or gone
+    std::vector<char> held;       ///< [site] part of the ground, which never moves
+    std::vector<char> marks;      ///< [site] all 0 between uses
+    PointGrid grid;               ///< of the sites as built
+    std::vector<Vec3> place;      ///< [site] of standing spheres [m]; far away where one has left
+    std::vector<Index> worn_out;  ///< fully fractured, and there until nothing touches them
+    std::vector<Index> emptied;   ///< sites that bonds have not been told of yet
 
     // Of WornOut::recedes only:
-    std::vector<Vec3> way;    ///< [site] to the next sphere below, which it reaches at gamma_f = 1 [m]
-    std::vector<char> worn;   ///< [site] whether it has worn since it last sank
-    Real longest_way = 0;     ///< [m]
+    std::vector<Vec3> way;   ///< [site] to the next sphere below, which it reaches at gamma_f = 1 [m]
+    std::vector<char> worn;  ///< [site] whether it has worn since it last sank
+    Real longest_way = 0;    ///< [m]
 
     bool recede() const noexcept { return !way.empty(); }
     void note_worn(Index site) noexcept {
@@ -88,8 +88,7 @@ inline std::vector<Vec3> ways_down(const Lattice& lattice) {
     std::vector<Vec3> way(order.size(), Vec3(0, 0, -2 * lattice.radius));
     for (std::size_t n = 1; n < order.size(); ++n) {
         const LatticeSite &upper = lattice.sites[order[n - 1]], &lower = lattice.sites[order[n]];
-        if (upper.column == lower.column)
-            way[order[n - 1]] = way[order[n]] = lower.centre - upper.centre;
+        if (upper.column == lower.column) way[order[n - 1]] = way[order[n]] = lower.centre - upper.centre;
     }
     return way;
 }

@@ -227,11 +227,11 @@ private:
             FreeFlight& flight = state_.flight;
             flight.note(move->kick, move->drift, move->time);
             state_.sleep.stirred |= all.motion.stirs;
-            const Real way =
-                move->drift * std::max(std::sqrt(all.motion.fastest2), flight.fastest_now());
+            const Real way = move->drift * std::max(std::sqrt(all.motion.fastest2), flight.fastest_now());
             lists_.note_step(way);
             check(all.motion);
-            if (way > state_.smallest_radius) land(state_), report(TroubleFinder(state_).longest_stride(move->drift));
+            if (way > state_.smallest_radius)
+                land(state_), report(TroubleFinder(state_).longest_stride(move->drift));
             if (lists_.outrun()) report(TroubleFinder(state_).fastest());
         }
     }
