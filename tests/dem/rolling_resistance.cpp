@@ -274,6 +274,7 @@ TEST_CASE("parameters that make no sense are refused; the law says what it is") 
     CHECK_THROWS_AS((Linear{{.friction = 0.1}}), InputError);  // the contact's own parameters count
     CHECK(describe(linear()) ==
           "RollingResistance(stiffness = 1e+06 N/m, restitution = 0.6, friction = 0.5, tangential_ratio = "
-          "0.2857142857142857, rolling_friction = 0.3, rolling_damping = 0.3, rolling_stiffness_factor = "
+          "0.2857142857142857, damping_mass_free = 0, rolling_friction = 0.3, rolling_damping = 0.3, "
+          "rolling_stiffness_factor = "
           "2.25, rolling_constant_torque = 0)");
 }

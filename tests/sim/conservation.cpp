@@ -190,13 +190,16 @@ TEST_CASE("a clump turns its spheres though its three moments are equal") {
     Scene scene;
     scene.gravity = Vec3::Zero();
     scene.add_stone(cross, {.position = {0, 0, 0}, .angular_velocity = {0, 0, 10}});
-    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e5}});
-    sim.run({.end_time = 0.1, .time_step = 1e-5});
-    const Particles& p = sim.particles();
-    const Real angle = 0.1 * 10;
-    for (std::size_t s = 0; s < 6; ++s) {
-        const Vec3 at = Eigen::AngleAxis<Real>(angle, Vec3::UnitZ()) * cross.members[s].centre;
-        CHECK((p.centre[s] - at).norm() < 1e-9);  // second order: (w dt)^2 / 12 of the angle
+    for (const bool free_flight : {false, true}) {
+        auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e5}});
+        sim.run({.end_time = 0.1, .time_step = 1e-5, .free_flight = free_flight});
+        const Particles& p = sim.particles();
+        const Real angle = 0.1 * 10;
+        for (std::size_t s = 0; s < 6; ++s) {
+            const Vec3 at = Eigen::AngleAxis<Real>(angle, Vec3::UnitZ()) * cross.members[s].centre;
+            // Second order: (w dt)^2 / 12 of the angle, in flight with dt of the 256 steps that lists last.
+            CHECK((p.centre[s] - at).norm() < (free_flight ? 1.1e-6 : 1e-9));
+        }
     }
 }
 
@@ -213,7 +216,7 @@ TEST_CASE("elastic bouncing neither gains nor loses over a thousand bounces") {
                        .epsilon(0.01)
                        .scale(0));  // each bounce errs by dt^2 at random: no drift of one sign
     CHECK(e.lost_normal == 0);
-    CHECK(e.residual_relative() < 1e-12);
+    CHECK(e.residual_relative() < 1e-12 * (1 + 90 / 5e-5 / 1e6));  // round-off of 1.8 million steps
 }
 
 TEST_CASE("a contact that overlaps at the start has its energy in the ledger from the start") {

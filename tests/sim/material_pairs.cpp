@@ -229,5 +229,5 @@ TEST_CASE("a table that makes no sense is refused") {
     CHECK_THROWS_AS(three().number("wood"), InputError);
     CHECK(describe(Table{{.materials = {"a"}, .pairs = {{"a", "a", {.stiffness = 1e6}}}}}) ==
           "MaterialPairs(a-a.stiffness = 1e+06 N/m, a-a.restitution = 1, a-a.friction = 0, "
-          "a-a.tangential_ratio = 0.2857142857142857)");
+          "a-a.tangential_ratio = 0.2857142857142857, a-a.damping_mass_free = 0)");
 }

@@ -142,7 +142,7 @@ TEST_CASE("the same bits with one thread and with three, where stones wear a bed
         CHECK(sim.ledger().residual_relative() < 1e-12);
         std::vector<Real> all{static_cast<Real>(sim.bonds_broken()), static_cast<Real>(gone)};
         for (Index s = 0; s < sim.concrete().sites(); ++s)
-            all.insert(all.end(), sim.concrete_place(s).data(), sim.concrete_place(s).data() + 3);
+            for (int a = 0; a < 3; ++a) all.push_back(sim.concrete_place(s)[a]);
         for (const Vec3& x : sim.particles().position) all.insert(all.end(), x.data(), x.data() + 3);
         return all;
     };
@@ -158,18 +158,18 @@ TEST_CASE("a sphere that has sunk into another crumbles instead of being shot ou
     scene.stones.clear();
     // One falls on the corner sphere, which its seat holds; another strikes it outwards once it has sunk.
     const Vec3 corner = scene.concrete->lattice.sites[at(scene.concrete->lattice.site(4, 4, 0))].centre;
-    const Vec3 inwards = Vec3(-1, -1, 0.95).normalized();
+    const Vec3 inwards = Vec3(-1, -1, 3).normalized(), sunk(0, 0, -0.005);
     scene.add_sphere(0.006, {.position = corner + Vec3(0, 0, 0.0165), .velocity = {0, 0, -3}});
-    scene.add_sphere(0.006, {.position = corner + 0.06 * inwards, .velocity = -2 * inwards});
-    auto sim =
-        simulate(scene).contact(law).bond(MohrCoulomb{{.tensile = 1, .stiffness = 4e6}}).wear(abrasion(5e3));
+    scene.add_sphere(0.004, {.position = corner + sunk + 0.06 * inwards, .velocity = -2 * inwards});
+    auto sim = simulate(scene)
+                   .contact(law)
+                   .bond(MohrCoulomb{{.tensile = 1, .friction_angle = 10, .stiffness = 4e6}})
+                   .wear(abrasion(5e3));
     Real fastest = 0;
     sim.run({.end_time = 0.05, .observe_every = 1e-3}, [&](const auto& now) {
         for (const Vec3& v : now.particles().velocity) fastest = std::max(fastest, v.norm());
     });
-    const Index site = sim.concrete().lattice().site(4, 4, 0);
-    MESSAGE(sim.concrete().fracture(site)
-            << " " << sim.bonds_broken() << " " << sim.concrete_place(site).transpose());
+    CHECK(sim.spheres_let_go() == 0);
     CHECK(sim.concrete().detached_volume() > 0);
     CHECK(fastest < 4);
     CHECK(sim.ledger().residual_relative() < 1e-12);
