@@ -86,17 +86,16 @@ void find_near_sites(const State<P>& state, Index first, Real skin, std::vector<
 }
 
 /// The concrete's surface changes between collisions, never within one: what is worn out vanishes once
-/// nothing touches it, and where worn spheres recede, those that nothing touches sink. `near` has the spheres
-/// that are near and touched.
+/// nothing touches it, and where worn spheres recede, those that nothing touches sink. Grains that are worn
+/// out are no surface and vanish at once. `near` has the spheres that are near and touched.
 template <class P>
 void reshape(State<P>& state, const detail::SiteMarks& near) {
     SiteBodies& sites = state.sites;
     std::erase_if(sites.worn_out, [&](Index site) {
-        if (near.touched(site)) return false;
-        if (!state.concrete.gone(site)) {
-            state.wear_away(site);
-            if (sites.stand) sites.emptied.push_back(site);
-        }
+        const bool is_grain = state.concrete.gone(site);
+        if (near.touched(site) && !is_grain) return false;
+        state.wear_away(site);
+        if (sites.stand && !is_grain) sites.emptied.push_back(site);
         return true;
     });
     if (!sites.recede()) return;
@@ -129,11 +128,11 @@ void settle_concrete(State<P>& state, Real time) {
     if (!state.scene.concrete) return;
     Concrete& concrete = state.concrete;
     const WornOut worn_out = state.scene.concrete->worn_out;
+    const bool as_fines = worn_out == WornOut::fines || worn_out == WornOut::recedes;
     std::vector<Index> emptied = std::exchange(state.sites.emptied, {}), loose;
     if (concrete.unsettled()) {
         const std::vector<Index> full = concrete.settle(time);
-        if (worn_out == WornOut::fines || worn_out == WornOut::recedes)
-            state.sites.worn_out.insert(state.sites.worn_out.end(), full.begin(), full.end());
+        if (as_fines) state.sites.worn_out.insert(state.sites.worn_out.end(), full.begin(), full.end());
         for (const Index site : concrete.taken_from()) state.sites.note_worn(site);
         if (worn_out == WornOut::grain && state.sites.stand)
             for (const Index site : full) emptied.push_back(site), loose.push_back(site);
@@ -155,7 +154,9 @@ void settle_concrete(State<P>& state, Real time) {
             presses.clear();
         }
     std::sort(loose.begin(), loose.end());
-    for (const Index site : loose) state.let_go(site);
+    // What is fully worn goes as fines, once nothing touches it, and not as a grain before.
+    for (const Index site : loose)
+        if (!as_fines || concrete.fracture(site) < 1) state.let_go(site);
 }
 
 }  // namespace abrade
