@@ -103,22 +103,23 @@ private:
 
     void draw_shares() {
         PanelChart chart{.title = "Share of its energy that a sphere loses at 2 m/s, e = 0.6",
-                         .x = {.label = "diameter of the stone", .unit = "m", .min = 0.0, .max = 0.16},
+                         .x = {.label = "diameter of the stone", .unit = "mm", .min = 0.0, .max = 160},
                          .y = {.label = "share lost in impacts", .unit = "-", .min = 0.0, .max = 0.8},
                          .columns = 3,
                          .panel_width = 420};
-        for (const Ground& ground : grounds()) chart.names.push_back(ground.title);
-        chart.names.push_back("plane");
+        std::vector<Ground> drawn = grounds();
+        drawn.erase(drawn.begin() + 1);  // rigid, on the same line
+        drawn.push_back(plane());
+        for (const Ground& ground : drawn) chart.names.push_back(ground.title);
+        chart.names.front() = "static and rigid";
         for (const Real d : sphere_diameters) {
             Panel& panel = chart.panels.emplace_back();
-            panel.title = "concrete's spheres " + to_text(d) + " m";
-            for (std::size_t n = 0; n <= grounds().size(); ++n) {
-                const Ground& ground = n < grounds().size() ? grounds()[n] : plane();
+            panel.title = "concrete's spheres " + to_text(1e3 * d) + " mm";
+            for (const Ground& ground : drawn) {
                 Curve& curve = panel.curves.emplace_back();
                 for (const Real stone : stones) {
-                    curve.x.push_back(stone);
-                    curve.y.push_back(mean(runs_.shares(
-                        {ground, ground.plane ? 0.02 : d, stone, 2, StoneShape::sphere}, poses_)));
+                    curve.x.push_back(1e3 * stone);
+                    curve.y.push_back(mean(runs_.shares({ground, d, stone, 2}, poses_)));
                 }
             }
         }
