@@ -69,6 +69,9 @@ private:
             {"patch", WornOut::fines, SpreadOverPatch{.length = 0.03, .width = 0.03}},
             {"epoch", WornOut::fines, SpreadByEpoch{.length = 0.05, .every = 0.3}},
             {"dropped", WornOut::fines, DropOverflow{}},
+            {"recedes, crater", WornOut::recedes, FillCrater{}},
+            {"recedes, patch", WornOut::recedes, SpreadOverPatch{.length = 0.03, .width = 0.03}},
+            {"recedes, epoch", WornOut::recedes, SpreadByEpoch{.length = 0.05, .every = 0.3}},
         };
         return all;
     }

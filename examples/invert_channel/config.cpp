@@ -11,9 +11,9 @@ namespace abrade::examples {
 namespace {
 
 constexpr std::array<std::string_view, 3> levels{"static", "rigid", "dynamic"},
-    worn_outs{"fines", "grain", "recorded"}, contact_laws{"hysteretic", "linear", "elastic_plastic"};
-constexpr std::array<std::string_view, 4> overflows{"crater", "patch", "epoch", "drop"},
-    wear_laws{"sub_particle", "archard", "ishibashi", "none"};
+    contact_laws{"hysteretic", "linear", "elastic_plastic"};
+constexpr std::array<std::string_view, 4> worn_outs{"fines", "grain", "recorded", "recedes"},
+    overflows{"crater", "patch", "epoch", "drop"}, wear_laws{"sub_particle", "archard", "ishibashi", "none"};
 
 /// Throws InputError where a key is given that the choice made does not use.
 void refuse(const TomlReader& in, std::initializer_list<const char*> keys, const std::string& choice) {
@@ -81,11 +81,15 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
     const auto worn_out =
         in.choice("concrete.worn_out", worn_outs,
                   {.fallback = "fines",
-                   .help = "fines: a fully worn sphere vanishes; grain: it stays as a loose grain; recorded: "
-                           "wear is written down on a bed that stays as it is"});
-    c.concrete.worn_out = worn_out == "fines"   ? WornOut::fines
-                          : worn_out == "grain" ? WornOut::grain
-                                                : WornOut::recorded;
+                   .help = "fines: a fully worn sphere vanishes; recedes: and until then it sinks as it "
+                           "wears; grain: it stays as a loose grain; recorded: wear is written down on a "
+                           "bed that stays as it is"});
+    c.concrete.worn_out =
+        static_cast<WornOut>(std::find(worn_outs.begin(), worn_outs.end(), worn_out) - worn_outs.begin());
+    if (c.concrete.worn_out == WornOut::recedes && level == "dynamic")
+        fail({in.where("concrete.worn_out") + ": concrete.worn_out", "another where concrete moves", "",
+              "take concrete.level = \"static\", or worn_out = \"fines\""},
+             worn_out);
     c.bond.tensile =
         in.number("concrete.tensile",
                   {.unit = "Pa", .fallback = 2.7e6, .help = "strength sigma_t0", .bound = Bound::positive});
@@ -451,9 +455,9 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
                                               .bound = Bound::not_negative});
     c.safety = in.number("run.safety",
                          {.fallback = 0.8, .help = "share of the stable step", .bound = Bound::positive});
-    c.skin = in.number(
-        "run.skin",
-        {.unit = "m", .fallback = 0.012, .help = "of the neighbour list", .bound = Bound::positive});
+    c.skin =
+        in.number("run.skin",
+                  {.unit = "m", .fallback = 0.03, .help = "of the neighbour list", .bound = Bound::positive});
     read_channel(in, c);
     read_concrete(in, c);
     read_contact(in, c);

@@ -57,7 +57,6 @@ TEST_CASE(
             const auto t = static_cast<std::size_t>(order[n]);
             ties.cut(order[n], pairs[t]);
             cut[t] = 1;
-            CHECK(ties.damaged(pairs[t].first));
             if (n % 3 != 0 && n + 1 < order.size()) continue;  // several cuts at once
             for (const Ties::Piece& piece : ties.take_loose()) {
                 CHECK(std::is_sorted(piece.begin(), piece.end()));

@@ -36,8 +36,8 @@ struct Rig {
         went += contacts.keep(law, store, walls, moved);
         p = rest;
         store.arrange(p, moved, 0.002, {Vec3::Zero(), period});
-        const std::vector<char> passive(static_cast<std::size_t>(p.spheres()), 0);
-        contacts.rebuild(store, {p, walls, passive, 0.002, period}, {}, [](Index, Index) { return false; });
+        const std::vector<Seeks> seeks(static_cast<std::size_t>(p.spheres()), Seeks::all);
+        contacts.rebuild(store, {p, walls, seeks, {}, 0.002, period}, {}, [](Index, Index) { return false; });
         contacts.refine(store.lines, walls, 0.002);
     }
     ContactSums respond(Real dt = 1e-5) {
@@ -186,10 +186,10 @@ TEST_CASE("slabs, chunks and images: the same forces as pair by pair, in open an
         rig.respond(0);
         const auto count = static_cast<std::size_t>(rig.p.spheres());
         std::vector<Vec3> expected(count, Vec3::Zero());
-        const std::vector<char> passive(count, 0);
+        const std::vector<Seeks> seeks(count, Seeks::all);
         const std::vector<Vec3> centre = rig.p.centre;
         for (const NearPair& pair :
-             near_pairs_brute_force({centre, rig.p.radius, rig.p.body, passive, 0, period})) {
+             near_pairs_brute_force({centre, rig.p.radius, rig.p.body, seeks, 0, period})) {
             SphereLines two;
             two.resize(2);
             const auto i = static_cast<std::size_t>(pair.first), j = static_cast<std::size_t>(pair.second);

@@ -237,5 +237,5 @@ TEST_CASE("parameters that make no sense are refused, with the rule") {
                          InputError);
     CHECK(describe(law()) ==
           "LinearSpring(stiffness = 1e+06 N/m, restitution = 0.6, friction = 0.5, tangential_ratio = "
-          "0.2857142857142857)");
+          "0.2857142857142857, damping_mass_free = 0)");
 }

@@ -13,13 +13,14 @@ struct Spheres {
     std::vector<Vec3> centre;
     std::vector<Real> radius;
     std::vector<Index> body;
-    std::vector<char> passive;
+    std::vector<Seeks> seeks;
 
     void add(const Vec3& x, Real r, Index of, bool is_passive = false) {
-        centre.push_back(x), radius.push_back(r), body.push_back(of), passive.push_back(is_passive);
+        centre.push_back(x), radius.push_back(r), body.push_back(of),
+            seeks.push_back(is_passive ? Seeks::passive : Seeks::all);
     }
     Vec3 period = Vec3::Zero();
-    NeighbourQuery query(Real skin) const { return {centre, radius, body, passive, skin, period}; }
+    NeighbourQuery query(Real skin) const { return {centre, radius, body, seeks, skin, period}; }
 };
 
 struct Random {

@@ -1,5 +1,6 @@
 // Bodies in free flight take many steps as one: the same way, the same ledger, the same bits for every
 // thread.
+#include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>
@@ -86,4 +87,75 @@ TEST_CASE("a flying body that leaves the bounds is caught in the step in which i
     } catch (const RunError& error) {
         CHECK(error.time == doctest::Approx(0.5).epsilon(1e-3).scale(0));
     }
+}
+
+namespace {
+
+/// Clumps and spheres thrown into a flow, high enough to stay off the floor for a while.
+Scene in_water() {
+    Scene scene;
+    for (int n = 0; n < 12; ++n) {
+        const BodyState state{.position = {0.3 * n, 0, 0.15},
+                              .velocity = {1.0 + 0.1 * n, 0.2, 0.5},
+                              .angular_velocity = {30, 5.0 * n, 20}};
+        if (n % 3 == 0)
+            scene.add_sphere(0.02, state);
+        else
+            scene.add_stone(make_clump("pair", {{{-0.01, 0, 0}, 0.015}, {{0.012, 0, 0}, 0.012}}), state);
+    }
+    return scene;
+}
+const UniformFlow water{{.section = {.length = 10}, .discharge = 0.5}};
+
+auto fly_in_water(Real time_step, Real observe_every = 0, bool free_flight = true, Real skin = 0.02) {
+    auto sim = simulate(in_water()).contact(law).fluid(water, CliftGauvin{});
+    sim.run({.end_time = 0.1,
+             .time_step = time_step,
+             .observe_every = observe_every,
+             .skin = skin,
+             .free_flight = free_flight});
+    return sim;
+}
+Real furthest_apart(const auto& a, const auto& b) {
+    Real most = 0;
+    for (std::size_t n = 0; n < a.particles().position.size(); ++n) {
+        most = std::max(most, (a.particles().position[n] - b.particles().position[n]).norm());
+        most =
+            std::max(most, 0.01 * a.particles().orientation[n].angularDistance(b.particles().orientation[n]));
+    }
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("clumps and spheres in water fly as they go step by step") {
+    const auto each_step = fly_in_water(2e-5, 0, false), flown = fly_in_water(2e-5);
+    // They travel some 0.2 m, and turn by some 4 rad.
+    CHECK(furthest_apart(each_step, flown) < 2e-5);
+    for (const auto* sim : {&each_step, &flown}) {
+        CHECK(sim->ledger().residual_relative() < 1e-12);
+        CHECK(sim->ledger().drag_work > 0);
+        CHECK(std::abs(sim->ledger().integration_residue()) < 1e-3 * sim->ledger().throughput());
+    }
+    CHECK(flown.ledger().drag_work == doctest::Approx(each_step.ledger().drag_work).epsilon(1e-3));
+}
+
+TEST_CASE("who looks on changes no bit of a flight in water") {
+    const auto alone = fly_in_water(2e-5), observed = fly_in_water(2e-5, 1.3e-3);
+    for (std::size_t n = 0; n < alone.particles().position.size(); ++n) {
+        CHECK(alone.particles().position[n] == observed.particles().position[n]);
+        CHECK(alone.particles().orientation[n].coeffs() == observed.particles().orientation[n].coeffs());
+    }
+    CHECK(observed.ledger().residual_relative() < 1e-12);
+}
+
+TEST_CASE("grains that drag stops within a flight take each step") {
+    const auto settle = [](bool free_flight) {
+        Scene scene;
+        scene.add_sphere(2e-4, {.position = {0, 0, 0.15}, .velocity = {0, 0, 1}});
+        auto sim = simulate(scene).contact(law).fluid(water, CliftGauvin{});
+        sim.run({.end_time = 0.02, .time_step = 1e-6, .skin = 0.01, .free_flight = free_flight});
+        return sim.particles().velocity[0];
+    };
+    CHECK((settle(true) - settle(false)).norm() < 1e-3);
 }

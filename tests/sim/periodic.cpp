@@ -118,8 +118,8 @@ TEST_CASE("at the smallest period near pairs are those that all images give, one
         std::sort(sorted.rbegin(), sorted.rend());
         const Real period = 2 * (sorted[0] + sorted[1] + skin);
         for (Vec3& x : centre) x.x() -= period * std::floor(x.x() / period);
-        const std::vector<char> passive(12, 0);
-        auto pairs = near_pairs({centre, radius, body, passive, skin, {period, 0, 0}});
+        const std::vector<Seeks> seeks(12, Seeks::all);
+        auto pairs = near_pairs({centre, radius, body, seeks, skin, {period, 0, 0}});
         std::sort(pairs.begin(), pairs.end());
         std::vector<NearPair> expected;
         for (Index i = 0; i < 12; ++i)

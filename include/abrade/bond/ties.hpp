@@ -32,7 +32,7 @@ public:
     void build(std::span<const BondedPair> pairs, std::vector<char> held) {
         held_ = std::move(held);
         cut_.assign(pairs.size(), 0), mark_.assign(held_.size(), 0);
-        loose_.assign(held_.size(), 0), damaged_.assign(held_.size(), 0);
+        loose_.assign(held_.size(), 0);
         round_ = 0;
         start_.assign(held_.size() + 1, 0);
         for (const BondedPair& pair : pairs) ++start_[at(pair.first) + 1], ++start_[at(pair.second) + 1];
@@ -51,8 +51,6 @@ public:
     Index members() const noexcept { return static_cast<Index>(held_.size()); }
     bool held(Index member) const noexcept { return held_[at(member)] != 0; }
     bool loose(Index member) const noexcept { return loose_[at(member)] != 0; }
-    /// Whether a tie of it was cut: it may then come to touch others than those it is tied to.
-    bool damaged(Index member) const noexcept { return damaged_[at(member)] != 0; }
     /// All ties of a member, cut ones too.
     std::span<const End> of(Index member) const noexcept {
         return std::span(ends_).subspan(at(start_[at(member)]),
@@ -61,8 +59,7 @@ public:
 
     void cut(Index tie, const BondedPair& members) {
         cut_[at(tie)] = 1;
-        for (const Index member : {members.first, members.second})
-            damaged_[at(member)] = 1, doubtful_.push_back(member);
+        doubtful_.push_back(members.first), doubtful_.push_back(members.second);
     }
 
     /// What cuts since the last call have untied from the ground, each piece once.
@@ -117,11 +114,11 @@ public:
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
 
-    std::vector<Index> start_{0};               ///< [member + 1]
-    std::vector<End> ends_;                     ///< member by member
-    std::vector<char> cut_;                     ///< [tie]
-    std::vector<char> held_, loose_, damaged_;  ///< [member]
-    std::vector<std::uint32_t> mark_;           ///< [member] the round of the search that met it last
+    std::vector<Index> start_{0};      ///< [member + 1]
+    std::vector<End> ends_;            ///< member by member
+    std::vector<char> cut_;            ///< [tie]
+    std::vector<char> held_, loose_;   ///< [member]
+    std::vector<std::uint32_t> mark_;  ///< [member] the round of the search that met it last
     std::uint32_t round_ = 0;
     std::vector<Index> doubtful_;  ///< members that may have come loose
 };

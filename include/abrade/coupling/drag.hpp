@@ -39,9 +39,9 @@ public:
     const Params& params() const noexcept { return params_; }
 
     Real coefficient(Real reynolds) const noexcept {
-        const Real re = std::clamp(reynolds, 1e-12, 3e5);
-        return params_.shape_factor *
-               (24 / re * (1 + 0.15 * std::pow(re, 0.687)) + 0.42 / (1 + 42500 * std::pow(re, -1.16)));
+        const Real re = std::clamp(reynolds, 1e-12, 3e5), log_re = std::log(re);
+        return params_.shape_factor * (24 / re * (1 + 0.15 * std::exp(0.687 * log_re)) +
+                                       0.42 / (1 + 42500 * std::exp(-1.16 * log_re)));
     }
 
 private:

@@ -19,6 +19,12 @@ struct ContactStep {
     Real ahead = 0.5;
 };
 
+/// Which of the two are concrete that bonds hold, though it has a mass.
+enum class HeldSides : std::uint8_t { none, first, second, both };
+constexpr HeldSides held_sides(bool first, bool second) noexcept {
+    return static_cast<HeldSides>((first ? 1 : 0) + (second ? 2 : 0));
+}
+
 /// A law that answers whole packs at once. Others are asked lane by lane.
 template <class L>
 concept AnswersPacks = requires(const L& law, const ContactKinematics<Pack>& contact,
@@ -196,6 +202,18 @@ void fetch_ahead(std::span<ContactPack<Law>> packs, std::size_t p, const LineRea
     for (const LineOffset second : packs[std::min(p + 1, last)].second) at.fetch(second);
 }
 
+/// 1/m_i + 1/m_j over the free bodies of each lane, where there is one; elsewhere `all`, the sum over both.
+template <class Lanes>
+Pack free_inverse_mass(const Lanes& pack, const HeldSides* held, const LineReader& at, Pack all) noexcept {
+    for (std::size_t k = 0; k < pack_lanes; ++k) {
+        if (held[k] == HeldSides::none || held[k] == HeldSides::both) continue;
+        const LineOffset other = held[k] == HeldSides::first ? pack.second[k] : pack.first[k];
+        const Real inverse_mass = at.motion(other)[0].value[3];
+        if (inverse_mass > 0) all.set(static_cast<int>(k), inverse_mass);
+    }
+    return all;
+}
+
 /// combine(first, second) of the lines of each lane, as columns.
 template <class Lanes, class Combine>
 QuadColumns gather(const Lanes& pack, const Combine& combine) noexcept {
@@ -244,6 +262,7 @@ struct KernelKind {
 struct PackRun {
     const Plane* plane = nullptr;                  ///< for kinds on a plane, where lambda = 1 - overlap / 2r
     const std::uint8_t* concrete_sides = nullptr;  ///< [pack x lane] of the two, for kinds that wear
+    const HeldSides* held_sides = nullptr;         ///< [pack x lane] the same, for a law that damps free mass
 };
 
 /// Evaluates the law for packs of contacts, commits their memory and adds the answers to the spheres' loads.
@@ -300,6 +319,10 @@ template <KernelKind kind, ContactLaw Law, class Wear>
             contact.overlap = reach - distance;
         }
         contact.inverse_mass = inverse_mass;
+        if constexpr (kind.wears && !kind.on_plane && MayDampFreeMass<Law>)
+            if (law.damps_free_mass())
+                contact.inverse_mass = detail::free_inverse_mass(
+                    pack, run.held_sides + p * static_cast<std::size_t>(pack_lanes), at, inverse_mass);
         contact.curvature = curvature;
         contact.time_step = step.time_step;
         const Vec3Of<Pack> rim(rim_x, rim_y, rim_z);

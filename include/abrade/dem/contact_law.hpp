@@ -17,9 +17,11 @@ struct ContactKinematics {
     Vec3Of<Number> normal;    ///< unit, from j to i
     Number overlap;           ///< [m], > 0 in contact
     Vec3Of<Number> velocity;  ///< of i relative to j at the contact point [m/s]
-    Number inverse_mass;      ///< 1/m_i + 1/m_j, one over the effective mass [1/kg]
-    Number curvature;         ///< 1/r_i + 1/r_j, one over the effective radius [1/m]
-    Real time_step;           ///< [s]
+    /// 1/m_i + 1/m_j, one over the effective mass [1/kg]; a law that `damps_free_mass` sees the sum over what
+    /// is free.
+    Number inverse_mass;
+    Number curvature;  ///< 1/r_i + 1/r_j, one over the effective radius [1/m]
+    Real time_step;    ///< [s]
     /// Of i relative to j at the contact point, over the step that led here [m]: dt times the velocity
     /// halfway, which is what the positions really did. A spring fed with anything else gains or loses
     /// energy.
@@ -154,6 +156,24 @@ const PairLaw<L>& law_between(const L& laws, [[maybe_unused]] MaterialPair mater
 /// Asks for the spin of its contacts and answers with a couple. `resists_rolling` may be left out.
 template <class L>
 concept ResistsRolling = L::resists_rolling;
+
+// clang-format off
+/// Can be told to set its dashpots by the mass of what is free (`DampingMass::free`). `damps_free_mass()` may
+/// be left out.
+template <class L>
+concept MayDampFreeMass = requires(const L& law) {
+    { law.damps_free_mass() } noexcept -> std::same_as<bool>;
+};
+// clang-format on
+
+/// Whether a law, or one of a table, sets its dashpots by the mass of what is free.
+template <class L>
+bool damps_free_mass(const L& law) noexcept {
+    if constexpr (MayDampFreeMass<L>)
+        return law.damps_free_mass();
+    else
+        return false;
+}
 
 // --- pieces that contact and bond laws share -------------------------------------------------------
 

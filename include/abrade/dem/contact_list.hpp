@@ -43,6 +43,20 @@ inline ContactKinematics<Real> contact_between(const SphereLines& lines, std::sp
     return contact;
 }
 
+/// The same as the law sees it that is in charge, of a contact that touches.
+template <class Law>
+ContactKinematics<Real> contact_seen_by(const Law& law, const SphereLines& lines,
+                                        std::span<const Plane> planes, const TouchingContact<Law>& touching,
+                                        Real dt) noexcept {
+    ContactKinematics<Real> contact = contact_between(lines, planes, touching.pair, dt);
+    if (damps_free_mass(law) && (touching.held == HeldSides::first || touching.held == HeldSides::second)) {
+        const Index other = touching.held == HeldSides::first ? touching.pair.second : touching.pair.first;
+        const Real free = other < 0 ? 0 : lines.motion[static_cast<std::size_t>(other)].inverse_mass;
+        if (free > 0) contact.inverse_mass = free;
+    }
+    return contact;
+}
+
 /// The contacts of all slabs.
 template <ContactLaw Law>
 class ContactList {
@@ -52,10 +66,11 @@ public:
     struct Build {
         const Particles& particles;
         std::span<const Plane> planes;
-        std::span<const char> passive;  ///< [sphere]
-        Real skin = 0;                  ///< [m]
-        Vec3 period = Vec3::Zero();     ///< [m]; 0 where space is open
-        bool by_material = false;       ///< whether each pair of materials has packs of its own
+        std::span<const Seeks> seeks;     ///< [sphere]
+        std::span<const NearPair> known;  ///< pairs of spheres that are found already
+        Real skin = 0;                    ///< [m]
+        Vec3 period = Vec3::Zero();       ///< [m]; 0 where space is open
+        bool by_material = false;         ///< whether each pair of materials has packs of its own
     };
 
     /// Puts aside what touching pairs remember, before the store is arranged anew. `moved` [sphere] says
@@ -139,6 +154,7 @@ private:
         Index spheres_low = 0, spheres_high = 0;           ///< lasting indices
         ImageShift shift{};                                ///< of the other
         bool needs_image = false, own_is_high = false;
+        bool own_held = false, other_held = false;  ///< concrete that bonds hold
         MaterialPair materials{};
         std::uint8_t concrete_sides = 0;
         SphereStore::ImageRequest image() const noexcept { return {other, chunk, shift}; }
@@ -149,21 +165,29 @@ private:
         std::vector<Vec3> centre(count);
         std::vector<Real> radius(count);
         std::vector<Index> body(count);
-        std::vector<char> passive(count);
+        std::vector<Seeks> seeks(count);
         for (std::size_t s = 0; s < count; ++s) {
             const auto sphere = at(store.sphere_of(static_cast<Index>(s)));
             centre[s] = store.lines.place[s].centre, radius[s] = store.lines.place[s].radius;
-            body[s] = build.particles.body[sphere], passive[s] = build.passive[sphere];
+            body[s] = build.particles.body[sphere], seeks[s] = build.seeks[sphere];
         }
-        slab_.resize(count), concrete_.resize(count);
+        slab_.resize(count), concrete_.resize(count), held_.resize(count);
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
             std::fill(slab_.begin() + store.first_slot(slab), slab_.begin() + store.first_slot(slab + 1),
                       slab);
-        for (std::size_t s = 0; s < count; ++s) concrete_[s] = build.particles.site[at(body[s])] >= 0 ? 1 : 0;
+        for (std::size_t s = 0; s < count; ++s) {
+            concrete_[s] = build.particles.site[at(body[s])] >= 0 ? 1 : 0;
+            held_[s] = build.particles.kind[at(body[s])] == Kind::concrete;
+        }
         material_.assign(count, 0);
         if (build.by_material)
             for (std::size_t s = 0; s < count; ++s) material_[s] = build.particles.material[at(body[s])];
-        return near_pairs({centre, radius, body, passive, build.skin, build.period});
+        std::vector<NearPair> near = near_pairs({centre, radius, body, seeks, build.skin, build.period});
+        near.reserve(near.size() + build.known.size());
+        for (const NearPair& pair : build.known)
+            near.push_back(
+                detail::ordered(at(store.slot_of(pair.first)), at(store.slot_of(pair.second)), pair.shift));
+        return near;
     }
 
     /// Which slab a pair belongs to: the first of its two, across the edge of a periodic axis the last slab.
@@ -183,6 +207,7 @@ private:
         one.own_is_high = one.spheres_low > one.spheres_high;
         if (one.own_is_high) std::swap(one.spheres_low, one.spheres_high);
         one.concrete_sides = static_cast<std::uint8_t>(concrete_[at(one.own)] + concrete_[at(one.other)]);
+        one.own_held = held_[at(one.own)], one.other_held = held_[at(one.other)];
         one.materials = MaterialPair::of(material_[at(one.own)], material_[at(one.other)]);
         return one;
     }
@@ -191,10 +216,10 @@ private:
         if (build.planes.empty()) return;
         for (Index slot = 0; slot < store.spheres(); ++slot) {
             const Index sphere = store.sphere_of(slot);
-            if (build.passive[at(sphere)]) continue;
+            if (build.seeks[at(sphere)] != Seeks::all) continue;
             const SpherePlace& place = store.lines.place[at(slot)];
             for (Index p = 0; p < static_cast<Index>(build.planes.size()); ++p) {
-                if (!(build.planes[at(p)].distance(place.centre) < place.radius + build.skin)) continue;
+                if (!(build.planes[at(p)].distance(place.centre) < place.radius + 0.5 * build.skin)) continue;
                 Listed one;
                 one.section = slab_[at(slot)];
                 one.own = slot, one.other = -1 - p;
@@ -263,13 +288,16 @@ private:
         for (Index k = first_kept[low]; k < first_kept[low + 1]; ++k)
             if (kept_[at(k)].second == one.spheres_high) kept = k;
         const SlotPair pair = one.own_is_high ? SlotPair{one.other, one.own} : SlotPair{one.own, one.other};
-        return {pair, one.materials, one.concrete_sides, kept};
+        const HeldSides held = one.own_is_high ? held_sides(one.other_held, one.own_held)
+                                               : held_sides(one.own_held, one.other_held);
+        return {pair, one.materials, one.concrete_sides, held, kept};
     }
 
     std::vector<ContactSection<Law>> sections_;  ///< [slab]
     std::vector<KeptContact<Law>> kept_;         ///< sorted by first sphere
     std::vector<Index> slab_;                    ///< [slot]
     std::vector<std::uint8_t> concrete_;         ///< [slot] 1 where its body is concrete
+    std::vector<char> held_;                     ///< [slot] whether bonds hold it as part of the concrete
     std::vector<Index> material_;                ///< [slot]
 };
 

@@ -61,6 +61,7 @@ template <class Law>
 struct TouchingContact {
     SlotPair pair{};
     MaterialPair materials{};
+    HeldSides held = HeldSides::none;
     typename Law::template Memory<Real> memory{};
     SeenMotion<Law, Real> before{};
 };
@@ -77,6 +78,7 @@ public:
         SlotPair pair;
         MaterialPair materials{};
         std::uint8_t concrete_sides = 0;
+        HeldSides held = HeldSides::none;
         Index kept = -1;  ///< into what contacts of the last list remember, -1: nothing
     };
 
@@ -134,7 +136,7 @@ public:
             const Law& law = law_between(laws, kind.materials);
             const auto packs = std::span(packs_).subspan(run.first, run.last - run.first);
             const PackRun shared{kind.plane < 0 ? nullptr : &planes[static_cast<std::size_t>(kind.plane)],
-                                 concrete_sides_.data() + run.first * lanes};
+                                 concrete_sides_.data() + run.first * lanes, held_of(run)};
             if (kind.plane < 0 && kind.wears)
                 sums += abrade::respond<KernelKind{false, true}>(law, wear, packs, shared, lines, step);
             else if (kind.plane < 0)
@@ -159,7 +161,7 @@ public:
             if (lane_[l] < 0 || !pack.touched[lane]) continue;
             const Near& near = near_[static_cast<std::size_t>(lane_[l])];
             if (!wanted(near.pair)) continue;
-            visit(TouchingContact<Law>{near.pair, near.materials,
+            visit(TouchingContact<Law>{near.pair, near.materials, near.held,
                                        detail::memory_of_lane<Memory>(pack.memory, lane),
                                        detail::memory_of_lane<Seen>(pack.before, lane)});
         }
@@ -182,14 +184,17 @@ private:
         std::size_t kind, first, last;
     };
 
-    /// Whether the surfaces of near pair n are nearer than `skin` [m].
+    /// Whether the surfaces of near pair n are nearer than `skin` [m], or half of it where one never moves.
     bool are_within(Real skin, const SphereLines& lines, std::span<const Plane> planes,
                     std::size_t n) const noexcept {
         const auto [first, second] = near_[n].pair;
         const SpherePlace& a = lines.place[static_cast<std::size_t>(first)];
         if (second < 0)
-            return planes[static_cast<std::size_t>(-1 - second)].distance(a.centre) < a.radius + skin;
+            return planes[static_cast<std::size_t>(-1 - second)].distance(a.centre) < a.radius + 0.5 * skin;
         const SpherePlace& b = lines.place[static_cast<std::size_t>(second)];
+        if (lines.motion[static_cast<std::size_t>(first)].inverse_mass == 0 ||
+            lines.motion[static_cast<std::size_t>(second)].inverse_mass == 0)
+            skin *= 0.5;
         return (a.centre - b.centre).squaredNorm() < square(a.radius + b.radius + skin);
     }
 
@@ -201,7 +206,7 @@ private:
     }
 
     void begin_packs() {
-        packs_.clear(), lane_.clear(), runs_.clear(), concrete_sides_.clear();
+        packs_.clear(), lane_.clear(), runs_.clear(), concrete_sides_.clear(), held_sides_.clear();
         filled_ = lanes, candidates_ = touching_ = at_rest_ = 0;
     }
 
@@ -243,6 +248,10 @@ private:
         if (near_[n].pair.second >= 0) pack.second[filled_] = line_offset(near_[n].pair.second);
         const std::size_t place = (packs_.size() - 1) * lanes + filled_;
         lane_[place] = static_cast<Index>(n), concrete_sides_[place] = near_[n].concrete_sides;
+        if constexpr (MayDampFreeMass<Law>) {
+            held_sides_.resize(lane_.size(), HeldSides::none);
+            held_sides_[place] = near_[n].held;
+        }
         ++filled_;
         if (rests)
             ++at_rest_;
@@ -252,6 +261,10 @@ private:
         detail::set_memory_of_lane(pack.memory, lane, memory);
         detail::set_memory_of_lane(pack.before, lane, before);
         pack.touched.set(lane);
+    }
+
+    const HeldSides* held_of(const Run& run) const noexcept {
+        return MayDampFreeMass<Law> ? held_sides_.data() + run.first * lanes : nullptr;
     }
 
     static bool is_of(const Near& near, const ContactKind& kind) noexcept {
@@ -264,6 +277,7 @@ private:
     std::vector<ContactPack<Law>> packs_, old_packs_;
     std::vector<Index> lane_;                   ///< [pack x lane] into near_, -1: left over
     std::vector<std::uint8_t> concrete_sides_;  ///< [pack x lane]
+    std::vector<HeldSides> held_sides_;         ///< [pack x lane], of laws that may damp free mass
     std::vector<Run> runs_;
     std::vector<Index> where_;  ///< [near] its lane before, while lists are refined
     std::size_t filled_ = lanes, candidates_ = 0, touching_ = 0, at_rest_ = 0;

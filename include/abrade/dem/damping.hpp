@@ -20,6 +20,21 @@ inline void require_rest_damping(Real value, std::string_view field) {
             value);
 }
 
+/// Which masses set the dashpot of a contact, c = 2 zeta sqrt(k m).
+enum class DampingMass {
+    both,  ///< 1/m = 1/m_i + 1/m_j, whatever else holds the two; restitution e between two free bodies
+    /// 1/m = sum of 1/m over the free bodies: a concrete sphere that bonds tie to the ground counts as held,
+    /// like a fixed one. Where both are held, as `both`.
+    free
+};
+
+inline void require_damping_mass(DampingMass value, std::string_view field) {
+    require(value == DampingMass::both || value == DampingMass::free,
+            {field, "DampingMass::both or DampingMass::free", "",
+             "free counts a bonded concrete sphere as held, both as if no bond held it"},
+            static_cast<Real>(value));
+}
+
 /// Ratio of critical damping zeta that gives restitution e when the contact cannot pull.
 /// A contact that ends when its force falls to zero has
 ///   e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),             zeta < 1,

@@ -7,7 +7,8 @@
 
 namespace abrade {
 
-/// Hertz-Mindlin with Coulomb's slider. delta overlap [m], R effective radius [m], m effective mass [kg]:
+/// Hertz-Mindlin with Coulomb's slider. delta overlap [m], R effective radius [m], m effective mass [kg],
+/// 1/m = 1/m_i + 1/m_j or, with `DampingMass::free`, the sum over the free bodies alone (see LinearSpring):
 ///   f_n = 4/3 E* sqrt(R delta) delta + c_n v_n,    stored 2/5 of f_elastic delta
 ///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,       k_t = 8 G* sqrt(R delta)
 ///   1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2,     1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2
@@ -57,6 +58,7 @@ public:
         Real poisson_other = 0.25;
         /// Overlap over radius up to which `stable_dt` is stable [-]. Contacts stiffen as they are pressed.
         Real largest_overlap = 0.01;
+        DampingMass damping_mass = DampingMass::both;  ///< what m counts
 
         void validate() const {
             require_positive(youngs, "HertzMindlin.youngs", "Pa", "1e7 Pa is soft, stone is near 5e10 Pa");
@@ -70,6 +72,7 @@ public:
                     {"HertzMindlin.largest_overlap", "in (0, 0.2]", "",
                      "it is a share of the radius; beyond 0.2 a run ends"},
                     largest_overlap);
+            require_damping_mass(damping_mass, "HertzMindlin.damping_mass");
         }
         void visit(auto&& f) const {
             f("youngs", youngs, "Pa");
@@ -82,6 +85,7 @@ public:
             f("youngs_other", youngs_other, "Pa");
             f("poisson_other", poisson_other, "-");
             f("largest_overlap", largest_overlap, "-");
+            f("damping_mass_free", damping_mass == DampingMass::free ? 1 : 0, "-");
         }
     };
 
@@ -163,6 +167,7 @@ public:
     Real effective_youngs() const noexcept { return effective_youngs_; }  ///< E* [Pa]
     Real effective_shear() const noexcept { return effective_shear_; }    ///< G* [Pa]
     Real damping_ratio() const noexcept { return damping_ratio_; }
+    bool damps_free_mass() const noexcept { return params_.damping_mass == DampingMass::free; }
     /// Of a normal impact: the same at any speed [m/s], effective mass [kg] and effective radius [m].
     Real restitution(Real /*speed*/, Real /*mass*/, Real /*radius*/) const noexcept {
         return params_.restitution;
@@ -203,7 +208,7 @@ private:
     Real width_over_tangential_ = 0, tangential_over_normal_dashpot_ = 0;  ///< [m2/N], [-]
 };
 
-static_assert(ContactLaw<HertzMindlin>);
+static_assert(ContactLaw<HertzMindlin> && MayDampFreeMass<HertzMindlin>);
 static_assert(!ContactLaw<HertzMindlin::Params>);
 
 }  // namespace abrade

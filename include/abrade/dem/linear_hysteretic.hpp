@@ -145,7 +145,7 @@ private:
     Real dashpot_normal_ = 0, dashpot_tangential_ = 0;  ///< 2 zeta sqrt(k); times sqrt(m) [N s/m]
 };
 
-static_assert(ContactLaw<LinearHysteretic>);
+static_assert(ContactLaw<LinearHysteretic> && !MayDampFreeMass<LinearHysteretic>);
 static_assert(!ContactLaw<LinearHysteretic::Params>);
 
 }  // namespace abrade

@@ -11,8 +11,13 @@ namespace abrade {
 ///   f_n = max(k_n delta + c_n v_n, 0),  c_n = 2 zeta sqrt(k_n m_eff)
 ///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,  c_t = 2 zeta sqrt(k_t m_eff)
 /// delta overlap [m], v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s], m_eff
-/// effective mass [kg]. Throws InputError for parameters out of their range.
+/// effective mass [kg], 1/m_eff = 1/m_i + 1/m_j. Throws InputError for parameters out of their range.
 /// Contact time pi sqrt(m_eff / k_n) (undamped); rigid enough when the overlap stays far below the radius.
+///
+/// `DampingMass::free` takes 1/m_eff over the free bodies alone. On a concrete sphere of `dynamic` concrete
+/// (mass m_j) the dashpot is then sqrt(1 + m_i/m_j) times as strong, and a stone (mass m_i) on stiff bonds
+/// loses 1 - e^2 of its energy as on a rigid bed. The light sphere must follow that dashpot: with friction
+/// the engine's step falls to about m_j/(7 c_n) where that is less than the springs allow.
 class LinearSpring {
 public:
     static constexpr std::string_view name = "LinearSpring";
@@ -22,6 +27,7 @@ public:
         Real restitution = 1;             ///< of a normal impact, in (0, 1] [-]
         Real friction = 0;                ///< mu [-]
         Real tangential_ratio = 2.0 / 7;  ///< k_t / k_n [-]; 2/7 gives both directions the same period
+        DampingMass damping_mass = DampingMass::both;  ///< what m_eff counts
 
         void validate() const {
             require_positive(stiffness, "LinearSpring.stiffness", "N/m",
@@ -30,12 +36,14 @@ public:
             require_not_negative(friction, "LinearSpring.friction", "", "0 slides freely");
             require_positive(tangential_ratio, "LinearSpring.tangential_ratio", "",
                              "2/7 gives both directions the same period");
+            require_damping_mass(damping_mass, "LinearSpring.damping_mass");
         }
         void visit(auto&& f) const {
             f("stiffness", stiffness, "N/m");
             f("restitution", restitution, "-");
             f("friction", friction, "-");
             f("tangential_ratio", tangential_ratio, "-");
+            f("damping_mass_free", damping_mass == DampingMass::free ? 1 : 0, "-");
         }
     };
 
@@ -94,6 +102,7 @@ public:
     }
     Real tangential_stiffness() const noexcept { return params_.stiffness * params_.tangential_ratio; }
     Real damping_ratio() const noexcept { return damping_ratio_; }
+    bool damps_free_mass() const noexcept { return params_.damping_mass == DampingMass::free; }
     /// Of a normal impact: the same at any speed [m/s], effective mass [kg] and effective radius [m].
     Real restitution(Real /*speed*/, Real /*mass*/, Real /*radius*/) const noexcept {
         return params_.restitution;
@@ -113,7 +122,7 @@ private:
     Real dashpot_normal_ = 0, dashpot_tangential_ = 0;  ///< 2 zeta sqrt(k); times sqrt(m_eff) [N s/m]
 };
 
-static_assert(ContactLaw<LinearSpring>);
+static_assert(ContactLaw<LinearSpring> && MayDampFreeMass<LinearSpring>);
 static_assert(!ContactLaw<NoParams>);
 
 }  // namespace abrade

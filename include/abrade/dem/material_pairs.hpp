@@ -3,6 +3,7 @@
 
 #include <abrade/dem/contact_law.hpp>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,11 @@ public:
     /// The law of a pair that there is.
     const One& between(MaterialPair pair) const noexcept {
         return laws_[static_cast<std::size_t>(of_[at(pair)])];
+    }
+
+    /// Whether any law of the table does.
+    bool damps_free_mass() const noexcept requires MayDampFreeMass<One> {
+        return std::any_of(laws_.begin(), laws_.end(), [](const One& law) { return law.damps_free_mass(); });
     }
 
     /// The largest of each over the table.

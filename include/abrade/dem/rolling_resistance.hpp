@@ -133,6 +133,8 @@ public:
         return law_.normal_stiffness(overlap, curvature);
     }
 
+    bool damps_free_mass() const noexcept requires MayDampFreeMass<Law> { return law_.damps_free_mass(); }
+
     /// With the rolling spring's, as on a plane, where R is largest.
     ContactRigidity rigidity(Real radius) const noexcept { return with_rolling(law_.rigidity(radius)); }
     ContactRigidity rigidity(const ContactKinematics<Real>& contact) const noexcept requires

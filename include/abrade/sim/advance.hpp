@@ -1,8 +1,7 @@
 #pragma once
 // Bodies of a simulation moved on, and written back.
 
-#include <abrade/sim/motion.hpp>
-#include <abrade/sim/state.hpp>
+#include <abrade/sim/flight.hpp>
 
 namespace abrade {
 
@@ -72,7 +71,7 @@ template <class P>
     for (MovingClump& clump : clumps) {
         const auto first = static_cast<std::size_t>(clump.first_slot),
                    last = first + static_cast<std::size_t>(clump.count);
-        if (state.pace[first] == Pace::asleep) continue;
+        if (state.pace[first] > Pace::beside_sleeper) continue;
         if (clump.inverse_mass > 0) {
             FluidLoad fluid;
             if constexpr (P::has_fluid)
@@ -102,6 +101,27 @@ template <class P>
     }
 }
 
+/// The same as `publish_body`, of a clump in flight.
+template <class P>
+void publish_flying(State<P>& state, MovingClump clump, const Move& move, MotionSums& sums) noexcept {
+    const auto b = static_cast<std::size_t>(clump.body);
+    Particles& p = state.particles;
+    FreeFlight flight = state.flight;
+    flight.kicks += move.kick;
+    const detail::FlightLoad flown =
+        detail::flight_load(state, clump.body, clump.position, clump.velocity, flight);
+    detail::add_flight(state, clump.body, flown, flight.path(clump.velocity, flown.acceleration),
+                       flight.kicks, sums);
+    detail::fly_on(clump, flight.place(clump.position, clump.velocity, flown.acceleration), flight.drifts);
+    p.position[b] = clump.position, p.orientation[b] = clump.orientation;
+    const auto first = static_cast<std::size_t>(p.first_sphere[b]);
+    for (std::size_t m = first; m < first + static_cast<std::size_t>(clump.count); ++m)
+        p.centre[m] = clump.position + clump.rotation * p.offset[m];
+    p.velocity[b] = flight.velocity(clump.velocity, flown.acceleration);
+    p.angular_momentum[b] = clump.angular_momentum;
+    p.force[b] = p.mass[b] * flown.acceleration, p.torque[b].setZero();
+}
+
 /// Writes a body back into `particles`, its velocity `move.kick` further on; books the works of that kick,
 /// but moves nothing.
 template <class P>
@@ -125,6 +145,8 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
     };
     if (clump_index >= 0) {
         const MovingClump& clump = state.store.clumps[static_cast<std::size_t>(clump_index)];
+        if (state.pace[static_cast<std::size_t>(clump.first_slot)] == Pace::flying && !at_rest())
+            return publish_flying(state, clump, move, sums);
         for (std::size_t m = 0; m < static_cast<std::size_t>(clump.count); ++m)
             p.centre[first + m] = lines.place[static_cast<std::size_t>(clump.first_slot) + m].centre;
         p.position[b] = clump.position, p.orientation[b] = clump.orientation;
@@ -147,13 +169,15 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
     if (at_rest()) return;
     if (state.pace[slot] == Pace::flying) {
         FreeFlight flight = state.flight;
-        p.centre[first] = p.position[b] = flight.place(place.centre, motion.velocity, state.scene.gravity);
         flight.kicks += move.kick;
-        p.velocity[b] = flight.velocity(motion.velocity, state.scene.gravity);
+        const detail::FlightLoad flown =
+            detail::flight_load(state, body, place.centre, motion.velocity, flight);
+        p.centre[first] = p.position[b] = flight.place(place.centre, motion.velocity, flown.acceleration);
+        p.velocity[b] = flight.velocity(motion.velocity, flown.acceleration);
         p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * motion.rim;
-        p.force[b] = p.mass[b] * state.scene.gravity, p.torque[b].setZero();
-        sums.path =
-            sums.path + detail::quad(Vec3(p.mass[b] * flight.path(motion.velocity, state.scene.gravity)));
+        p.force[b] = p.mass[b] * flown.acceleration, p.torque[b].setZero();
+        detail::add_flight(state, body, flown, flight.path(motion.velocity, flown.acceleration), flight.kicks,
+                           sums);
         return;
     }
     const Vec3 other = sample(place.centre, motion.velocity);

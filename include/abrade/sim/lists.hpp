@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <numeric>
+#include <ranges>
 
 namespace abrade {
 
@@ -26,11 +27,13 @@ public:
 
     /// Makes the lists good for the places of now. Steps are of dt.
     void freshen(State<P>& state, Real t, Real dt) {
-        const bool traffic = state.feed || state.scene.outlet;
+        const bool traffic =
+            state.feed || state.scene.outlet || state.sites.recede() || !state.sites.worn_out.empty();
         const bool due = state.feed && age_ >= shortest_life && state.feed->due(t);
         if ((traffic && age_ >= longest_life) || due || state.loosened)
             renew(state, t, dt);
-        else if (2 * moved_ > inner_skin_ && !refine(state, dt))
+        else if ((2 * moved_ > inner_skin_ || state.flight.drifts > state.flight.horizon) &&
+                 !refine(state, dt))
             renew(state, t, dt);
         else if (state.sleep.stirred && wake_stirred(state))
             repack(state);
@@ -39,13 +42,16 @@ public:
     /// Renews what changes seldom: bodies that left, supply, near pairs.
     void renew(State<P>& state, Real t, Real dt) {
         const auto start = std::chrono::steady_clock::now();
-        state.land();
+        land(state);
         wrap(state);
         const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
-        if (state.feed || has_broken_bonds || state.sites.stand) state.publish_places();
+        if (state.feed || has_broken_bonds || state.sites.stand) publish_places(state);
         choose_skin(state, dt);
         detail::SiteMarks near(state.sites.marks);
-        if (state.sites.stand) mark_near(state, 0, list_skin_, near);
+        near_sites_.clear();
+        if (state.sites.stand) mark_near(state, 0, near);
+        if (!state.sites.worn_out.empty()) mark_touched(state, near);
+        reshape(state, near);
         const Departure departure = departing(state, dt, near);
         state.accounts.left_stored +=
             state.contacts.keep(state.policies.contact, state.store, state.scene.walls, departure.moved);
@@ -56,14 +62,21 @@ public:
         const Index known = state.particles.bodies();
         supply(state, t, dt);
         for (const Fragment& fragment : departure.fragments) add_fragment(state, fragment);
-        if (state.sites.stand) mark_near(state, known, list_skin_, near), stand_by(state, near);
+        if (state.sites.stand) {
+            const auto left =
+                static_cast<Index>(std::count(departure.moved.begin(), departure.moved.end(), -1));
+            for (Index& sphere : std::views::transform(near_sites_, &SitePair::sphere))
+                sphere = sphere < static_cast<Index>(departure.moved.size()) ? departure.moved[at(sphere)]
+                                                                             : sphere - left;
+            mark_near(state, known, near), stand_by(state, near);
+        }
         grow_columns(state);
         state.store.arrange(state.particles, departure.moved, list_skin_, state.scene.periodic());
         const auto [smallest, largest] =
             std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
         if (largest != state.particles.radius.end())
             state.smallest_radius = *smallest, state.size_ratio = *smallest / *largest;
-        state.find_flyers();
+        find_flyers(state);
         find_pairs(state);
         built_at_.resize(at(state.store.spheres()));
         parallel_for(state.store.spheres(),
@@ -75,10 +88,10 @@ public:
     }
     /// Sorts contacts by who rests, as far as lists are good.
     void repack(State<P>& state) {
-        state.land();
+        land(state);
         mark_resting(state);
         state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_, state.sleep.rests);
-        state.take_off();
+        take_off(state, 2 * inner_life_ * dt_);
     }
     Real skin() const noexcept { return list_skin_; }   ///< of near pairs [m]
     Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
@@ -105,6 +118,25 @@ private:
             return way2 = std::max(way2, o.way2), speed2 = std::max(speed2, o.speed2), *this;
         }
     };
+
+    /// Finds what stands near the bodies from `first` on. Of such a pair one alone comes nearer.
+    void mark_near(const State<P>& state, Index first, detail::SiteMarks& near) {
+        const std::size_t known = near_sites_.size();
+        find_near_sites(state, first, 0.5 * list_skin_, near_sites_);
+        for (const SitePair& pair : std::span(near_sites_).subspan(known)) {
+            near.add_near(pair.site);
+            if (pair.touches) near.add_touched(pair.site);
+        }
+    }
+    /// Marks the concrete that is in contact with anything, as of the last evaluation.
+    static void mark_touched(const State<P>& state, detail::SiteMarks& near) {
+        state.contacts.each_touching([&](const auto& touching) {
+            for (const Index slot : {touching.pair.first, touching.pair.second})
+                if (slot >= 0)
+                    if (const Index site = state.particles.site[at(state.body_in(slot))]; site >= 0)
+                        near.add_touched(site);
+        });
+    }
 
     /// As wide as speeds ask for, and no wider than the period of space has room for.
     void choose_skin(const State<P>& state, Real dt) {
@@ -138,7 +170,8 @@ private:
 
     /// Picks candidates; false where the list of near pairs would not last.
     bool refine(State<P>& state, Real dt) {
-        state.land();
+        dt_ = dt;
+        land(state);
         const Extremes most = extremes(state);
         const Real left = list_skin_ - 2 * std::sqrt(most.way2);
         const Real way = 2 * dt * std::sqrt(most.speed2);
@@ -294,8 +327,18 @@ private:
 
     void find_pairs(State<P>& state) {
         const Particles& p = state.particles;
-        std::vector<char> passive(at(p.spheres()));
-        parallel_for(p.spheres(), [&](Index s) { passive[at(s)] = state.keeps_its_place(p.body[at(s)]); });
+        std::vector<Seeks> seeks(at(p.spheres()));
+        parallel_for(p.spheres(), [&](Index s) {
+            const Index body = p.body[at(s)];
+            const bool stands = state.sites.stand && p.kind[at(body)] == Kind::concrete;
+            seeks[at(s)] = stands                        ? Seeks::left_out
+                           : state.keeps_its_place(body) ? Seeks::passive
+                                                         : Seeks::all;
+        });
+        std::vector<NearPair> known;
+        for (const SitePair& pair : near_sites_)
+            if (const Index body = state.sites.body_of[at(pair.site)]; body >= 0 && pair.sphere >= 0)
+                known.push_back({pair.sphere, p.first_sphere[at(body)], pair.shift});
         std::vector<SphereStore::ImageRequest> requests;
         if constexpr (P::has_bonds) {
             state.network.arrange(state.store);
@@ -306,7 +349,7 @@ private:
         }
         state.contacts.rebuild(
             state.store,
-            {p, state.scene.walls, passive, list_skin_, state.scene.periodic().period, P::has_materials},
+            {p, state.scene.walls, seeks, known, list_skin_, state.scene.periodic().period, P::has_materials},
             std::move(requests), [&](Index first, Index second) {
                 return P::has_bonds && state.network.holds({first, second});
             });
@@ -332,8 +375,10 @@ private:
     Real inner_skin_ = 0, moved_ = 0;     ///< of the candidates; how far anything may have come since [m]
     Real seconds_ = 0, inner_life_ = 32;  ///< [s], [steps]
     bool outrun_ = false;
-    Index age_ = 0;               ///< steps since the last renewal
-    std::vector<Vec3> built_at_;  ///< [slot] where the list was made [m]
+    Real dt_ = 0;                       ///< the step [s]
+    Index age_ = 0;                     ///< steps since the last renewal
+    std::vector<SitePair> near_sites_;  ///< found by the last renewal
+    std::vector<Vec3> built_at_;        ///< [slot] where the list was made [m]
 };
 
 }  // namespace abrade

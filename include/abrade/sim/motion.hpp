@@ -4,6 +4,7 @@
 #include <abrade/coupling/drag.hpp>
 #include <abrade/dem/rotation.hpp>
 #include <abrade/dem/sphere_store.hpp>
+#include <abrade/sim/ledger.hpp>
 
 #include <limits>
 
@@ -45,6 +46,14 @@ struct MotionSums {
     }
     Real gravity_work(const Vec3& gravity) const noexcept { return gravity.dot(detail::first_three(path)); }
 };
+
+/// Books the works of moving bodies.
+inline void book(Ledger& to, const MotionSums& motion, const Vec3& gravity) noexcept {
+    to.interaction_work += motion.interaction_work();
+    to.gravity_work += motion.gravity_work(gravity);
+    to.drag_work += motion.drag, to.drag_input += motion.drag_input;
+    to.buoyancy_work += motion.buoyancy;
+}
 
 /// What a kick does to a single sphere, and the works it does: a force is paired with the mean of the
 /// velocities before and after, so works add up to the change in kinetic energy exactly.
@@ -106,12 +115,17 @@ inline KickedClump kick(const MovingClump& clump, const ClumpLoad& load, const V
     return {velocity, momentum, path, load.force.dot(path) + load.torque.dot(turn)};
 }
 
-/// Turns and moves a clump and its member spheres over dt.
-inline void drift(MovingClump& clump, Real dt, SphereStore& store, const Particles& particles) noexcept {
-    const Vec3 before = clump.angular_velocity(clump.angular_momentum);
+/// Turns a clump on which no torque acts over dt.
+inline void turn_freely(MovingClump& clump, Real dt) noexcept {
     const Vec3 in_body = clump.rotation.transpose() * clump.angular_momentum;
     clump.orientation = turned(clump.orientation, midpoint_spin(in_body, clump.inverse_inertia, dt), dt);
     clump.rotation = clump.orientation.toRotationMatrix();
+}
+
+/// Turns and moves a clump and its member spheres over dt.
+inline void drift(MovingClump& clump, Real dt, SphereStore& store, const Particles& particles) noexcept {
+    const Vec3 before = clump.angular_velocity(clump.angular_momentum);
+    turn_freely(clump, dt);
     clump.position += dt * clump.velocity;
     const Vec3 after = clump.angular_velocity(clump.angular_momentum);
     store.place_members(clump, particles, 0.5 * (before + after), dt);

@@ -4,6 +4,7 @@
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace abrade {
@@ -11,34 +12,45 @@ namespace abrade {
 /// `beside_sleeper` takes every step, and tells when it becomes fast. What comes after it takes none.
 enum class Pace : std::uint8_t { every_step, beside_sleeper, flying, asleep };
 
-/// Single spheres that nothing can touch before lists are looked through again, and on which only their
-/// weight acts, take all steps until then as one. So do fixed ones, which take none.
+/// Bodies that nothing can touch before lists are looked through again, and on which only their weight and a
+/// fluid act, take all steps until then as one, at the acceleration of halfway. Fixed ones take none.
 struct FreeFlight {
     bool allowed = true;
     Real kicks = 0;    ///< since they took off: sum of kicks [s]
     Real drifts = 0;   ///< of drifts [s]
     Real area = 0;     ///< of each drift times the kicks before it [s2]
+    Real last = 0;     ///< the last drift [s]
+    Real start = 0;    ///< time of the first kick's loads [s]
+    Real now = 0;      ///< that of the places reached [s]
     Real fastest = 0;  ///< as they took off [m/s]
-    Real margin = 0;   ///< from there to the nearest bound of space [m]
-    Index held = 0;    ///< spheres that fly but for their candidates
+    Real hardest = 0;  ///< no acceleration of theirs is beyond this [m/s2]
+    Real margin = 0;   ///< from where they took off to the nearest bound of space [m]
+    Real horizon = std::numeric_limits<Real>::infinity();  ///< drag is slow over so long a flight [s]
+    Index held = 0;                                        ///< spheres that fly but for their candidates
 
-    void note(Real kick, Real drift) noexcept { kicks += kick, drifts += drift, area += drift * kicks; }
+    void note(Real kick, Real drift, Real time) noexcept {
+        if (kicks == 0) start = time;
+        kicks += kick, drifts += drift, area += drift * kicks, last = drift, now = time + drift;
+    }
     /// Begins anew from the places reached.
-    void begin(const Vec3& gravity) noexcept {
-        margin -= furthest(gravity), fastest += kicks * gravity.norm();
-        kicks = drifts = area = 0;
+    void begin() noexcept {
+        margin -= furthest(), fastest += kicks * hardest;
+        kicks = drifts = area = last = 0, start = now;
     }
 
     /// No further than this have they come [m].
-    Real furthest(const Vec3& gravity) const noexcept { return fastest * drifts + area * gravity.norm(); }
+    Real furthest() const noexcept { return fastest * drifts + area * hardest; }
+    Real fastest_now() const noexcept { return fastest + kicks * hardest; }  ///< [m/s]
 
-    Vec3 velocity(const Vec3& start, const Vec3& gravity) const noexcept { return start + kicks * gravity; }
-    Vec3 place(const Vec3& start, const Vec3& velocity, const Vec3& gravity) const noexcept {
-        return start + drifts * velocity + area * gravity;
+    Vec3 velocity(const Vec3& from, const Vec3& acceleration) const noexcept {
+        return from + kicks * acceleration;
     }
-    /// What weight is paired with in the ledger: the sum of kicks times mean velocities [m].
-    Vec3 path(const Vec3& velocity, const Vec3& gravity) const noexcept {
-        return kicks * (velocity + 0.5 * kicks * gravity);
+    Vec3 place(const Vec3& from, const Vec3& velocity, const Vec3& acceleration) const noexcept {
+        return from + drifts * velocity + area * acceleration;
+    }
+    /// What forces are paired with in the ledger: the sum of kicks times mean velocities [m].
+    Vec3 path(const Vec3& velocity, const Vec3& acceleration) const noexcept {
+        return kicks * (velocity + 0.5 * kicks * acceleration);
     }
 };
 

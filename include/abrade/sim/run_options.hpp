@@ -29,8 +29,8 @@ struct RunOptions {
     Real safety = 0.5;       ///< share of the stable step that is taken [-]
     Real observe_every = 0;  ///< [s]; 0: at the start and at the end only
     Real skin = 0;           ///< of the neighbour list [m]; 0: a quarter of the smallest radius
-    /// Whether bodies that nothing can touch soon take their steps as one: faster where most fly, the same
-    /// but for round-off.
+    /// Whether bodies that nothing can touch soon take their steps as one: faster where most fly. The same but
+    /// for round-off for spheres under their weight; to second order for clumps and in a fluid.
     bool free_flight = true;
     /// Bodies slower than this, centre and rim, that touch something are put to sleep: they take no steps
     /// until something stirs them [m/s]. 0: never. What they still move with is the ledger's `lost_asleep`.

@@ -141,6 +141,10 @@ struct Scene {
                     {"Scene.concrete.fragments", "Fragments::bonded where concrete stands", "",
                      "clumps are for ConcreteLevel::dynamic"},
                     1);
+            require(concrete->level != ConcreteLevel::dynamic || concrete->worn_out != WornOut::recedes,
+                    {"Scene.concrete.worn_out", "not WornOut::recedes where concrete moves", "",
+                     "take ConcreteLevel::quasi_static, or WornOut::fines"},
+                    static_cast<Index>(concrete->worn_out));
             abrade::validate(concrete->overflow);
         }
         if (feed) feed->validate();

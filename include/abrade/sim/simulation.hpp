@@ -116,7 +116,7 @@ public:
     const Particles& particles() const { return world().particles(); }
     const Concrete& concrete() const { return world().concrete(); }
     /// Where the sphere of a site of the concrete is, a body or not; where it was built if it left [m].
-    const Vec3& concrete_place(Index site) const { return world().state().place_of(site); }
+    Vec3 concrete_place(Index site) const { return world().state().place_of(site); }
     Index bonds_broken() const { return world().state().bonds_broken(); }
     Index spheres_let_go() const { return world().state().let_go_count; }  ///< of concrete that stood
     /// The time acceleration at which the largest collision so far would have worn half of its sphere's cell

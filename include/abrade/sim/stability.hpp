@@ -60,6 +60,20 @@ inline Extent extent_of(const Particles& particles, Index body) {
     return e;
 }
 
+/// Where dashpots are set by the mass of what is free: of the heaviest body that moves or is still to be fed,
+/// the largest effective mass of a contact with bonded concrete; else 0 [kg].
+template <ContactPolicy C>
+Real mass_on_concrete(const C& contact, const Particles& particles, const std::optional<FeedParams>& feed) {
+    if (!damps_free_mass(contact)) return 0;
+    Real heaviest = 0;
+    for (std::size_t b = 0; b < particles.mass.size(); ++b)
+        if (particles.inverse_mass[b] > 0) heaviest = std::max(heaviest, particles.mass[b]);
+    if (feed)
+        for (const StoneClass& stones : feed->classes)
+            heaviest = std::max(heaviest, feed->density * make_stone(stones.shape, stones.size).volume);
+    return heaviest;
+}
+
 /// Calls `visit(body, normal, arm, link, partner_moves)` for both ends of each bond.
 template <BondLaw B, class Visit>
 void each_end(const Network<B>& network, const B& law, const Particles& particles, Visit&& visit) {
@@ -94,6 +108,7 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
     const auto at = [](Index i) { return static_cast<std::size_t>(i); };
     std::vector<Index> held(at(particles.bodies()), -1);  // [body] its place among the bonded
     std::vector<BodyStiffness> bonded;
+    const Real heaviest = detail::mass_on_concrete(contact, particles, feed);
     detail::each_end(network, bond, particles,
                      [&](Index b, const Vec3& n, const Vec3& arm, const LinkRigidity& link, bool moves) {
                          if (particles.inverse_mass[at(b)] == 0) return;
@@ -120,7 +135,7 @@ StableStep stable_step(const C& contact, const B& bond, const Particles& particl
         const ContactRigidity touch = contact.rigidity(extent.largest);
         BodyStiffness& own = bonded[at(held[i])];
         own.add_anywhere(detail::stiff_body(particles, b, particles.orientation[i]), contacts_of_concrete,
-                         detail::link_of(touch, mass, extent.largest));
+                         detail::link_of(touch, std::max(mass, heaviest), extent.largest));
         step.lower(own.step(step.seconds), "bonded concrete", b);
         step.lower(contact.stable_dt(mass, extent.largest), "contacts of loose concrete", b);
     }
@@ -147,14 +162,16 @@ public:
         const StableStep step = first_touch(most);
         hold_doubtful(most);
         const Particles& p = state_.particles;
+        const Real heaviest = detail::mass_on_concrete(state_.policies.contact, p, state_.scene.feed);
         for (Index b = 0; b < p.bodies(); ++b) {
             if (p.site[at(b)] < 0 || p.inverse_mass[at(b)] == 0) continue;
             hold(b);
             if (p.kind[at(b)] != Kind::concrete) continue;  // loose, yet it may have bonds
             const Real radius = detail::extent_of(p, b).largest;
             const ContactRigidity touch = state_.policies.contact.rigidity(radius);
-            own_[at(held_[at(b)])].add_anywhere(body_of(b), contacts_of_concrete,
-                                                detail::link_of(touch, p.mass[at(b)], radius));
+            own_[at(held_[at(b)])].add_anywhere(
+                body_of(b), contacts_of_concrete,
+                detail::link_of(touch, std::max(p.mass[at(b)], heaviest), radius));
         }
         return lowered(step);
     }
@@ -227,7 +244,8 @@ private:
         return step;
     }
 
-    /// One contact of each body with one like it, at any point of its surface.
+    /// One contact of each body with one like it, at any point of its surface; of a stone with a sphere that
+    /// bonds hold, where that makes the dashpot stronger.
     StableStep first_touch(Real most) const {
         StableStep step{most, "nothing moves"};
         const Particles& p = state_.particles;
@@ -236,7 +254,8 @@ private:
             if (p.inverse_mass[i] == 0) continue;
             const detail::Extent extent = detail::extent_of(p, b);
             const ContactRigidity touch = state_.policies.contact.rigidity(extent.largest);
-            const LinkRigidity link = detail::link_of(touch, 0.5 * p.mass[i], extent.largest);
+            const Real share = damps_free_mass(state_.policies.contact) && p.site[i] < 0 ? 1 : 0.5;
+            const LinkRigidity link = detail::link_of(touch, share * p.mass[i], extent.largest);
             const Real inverse_inertia = p.inverse_inertia[i].maxCoeff();
             const bool sphere = p.sphere_count[i] == 1;
             const Real turning = p.inverse_mass[i] + square(extent.reach) * inverse_inertia;
@@ -257,11 +276,10 @@ private:
         const SphereLines& lines = state_.store.lines;
         state_.contacts.each_touching([&](const auto& touching) {
             const SlotPair& pair = touching.pair;
-            const auto contact = contact_between(lines, state_.scene.walls, pair, 0);
+            const auto& law = law_between(state_.policies.contact, touching.materials);
+            const auto contact = contact_seen_by(law, lines, state_.scene.walls, touching, 0);
             if (!(contact.inverse_mass > 0)) return;
-            const ContactRigidity touch =
-                rigidity_of(law_between(state_.policies.contact, touching.materials), contact,
-                            lines.place[at(pair.first)].radius);
+            const ContactRigidity touch = rigidity_of(law, contact, lines.place[at(pair.first)].radius);
             // The effective radius is less than that of either sphere.
             const auto link =
                 detail::link_of(touch, 1 / contact.inverse_mass, lines.place[at(pair.first)].radius);

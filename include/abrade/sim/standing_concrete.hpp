@@ -7,29 +7,42 @@ namespace abrade {
 
 namespace detail {
 
-/// Calls `visit(site)` for standing sites nearer than `skin` [m] to a sphere of a body, some of them more
-/// than once; `particles` must be as of now.
+/// Calls `visit(sphere, site, shift, square of the distance of the centres)` for the spheres of a body and
+/// the standing ones whose surfaces are nearer than `skin` [m], as they stand or as they will once they have
+/// sunk.
 template <class P>
 void each_site_near(const State<P>& state, Index body, Real skin, auto&& visit) {
     const Particles& p = state.particles;
-    const Lattice& lattice = state.concrete.lattice();
+    const SiteBodies& sites = state.sites;
+    const Real own = state.concrete.lattice().radius;
     const Vec3 period = state.scene.periodic().period;
-    const auto first = static_cast<std::size_t>(p.first_sphere[static_cast<std::size_t>(body)]);
-    const auto count = static_cast<std::size_t>(p.sphere_count[static_cast<std::size_t>(body)]);
-    for (std::size_t s = first; s < first + count; ++s) {
-        const Real reach = p.radius[s] + lattice.radius + skin;
-        const auto look = [&](const Vec3& x) {
-            state.sites.grid.each_about(x, reach, [&](Index site) {
-                if (state.concrete.gone(site)) return;
-                if ((lattice.sites[static_cast<std::size_t>(site)].centre - x).squaredNorm() < square(reach))
-                    visit(site);
-            });
-        };
-        look(p.centre[s]);
-        each_shift(
-            period, [](int, int) { return true; },
-            [&](const ImageShift& shift) { look(p.centre[s] + shift.times(period)); });
+    const auto first = p.first_sphere[static_cast<std::size_t>(body)],
+               last = first + p.sphere_count[static_cast<std::size_t>(body)];
+    Real extent = 0;
+    for (Index s = first; s < last; ++s) {
+        const auto n = static_cast<std::size_t>(s);
+        extent = std::max(extent, p.offset[n].norm() + p.radius[n]);
     }
+    const Real reach = extent + own + skin;
+    const auto look = [&](const ImageShift& shift) {
+        const Vec3 away = shift.times(period), x = p.position[static_cast<std::size_t>(body)] + away;
+        sites.grid.each_about(x, reach + sites.longest_way, [&](Index site) {
+            const auto at_site = static_cast<std::size_t>(site);
+            const Vec3& now = sites.place[at_site];
+            const bool sinks = sites.recede() && sites.worn[at_site] && !state.concrete.gone(site);
+            const Vec3 then = sinks ? state.place_once_sunk(site) : now;
+            if ((now - x).squaredNorm() >= square(reach) && (then - x).squaredNorm() >= square(reach)) return;
+            for (Index s = first; s < last; ++s) {
+                const auto n = static_cast<std::size_t>(s);
+                const Vec3 centre = p.centre[n] + away;
+                const Real distance2 = std::min((centre - now).squaredNorm(), (centre - then).squaredNorm());
+                if (distance2 < square(p.radius[n] + own + skin)) visit(s, site, -shift, distance2);
+            }
+        });
+    };
+    look({});
+    each_shift(
+        period, [](int, int) { return true; }, look);
 }
 
 }  // namespace detail
@@ -40,37 +53,73 @@ Real height_above_standing(const State<P>& state, const Vec3& x, Real reach) {
     Real lowest = -std::numeric_limits<Real>::infinity();
     if (!state.sites.stand) return lowest;
     const Real both = state.concrete.lattice().radius + reach;
-    const Vec3 column(both, both, std::numeric_limits<Real>::infinity());
+    const Real wide = both + state.sites.longest_way;
+    const Vec3 column(wide, wide, std::numeric_limits<Real>::infinity());
     state.sites.grid.each_about(x, column, [&](Index site) {
         if (state.concrete.gone(site)) return;
-        const Vec3& centre = state.place_of(site);
+        const Vec3 centre = state.place_of(site);
         const Real room2 = square(both) - (centre - x).template head<2>().squaredNorm();
         if (room2 > 0) lowest = std::max(lowest, centre.z() + std::sqrt(room2));
     });
     return lowest;
 }
 
-/// Marks the standing sites that are nearer than `skin` [m] to what moves among the bodies from `first` on;
+/// Adds the standing spheres that are nearer than `skin` [m] to what moves among the bodies from `first` on;
 /// `particles` must be as of now.
 template <class P>
-void mark_near(const State<P>& state, Index first, Real skin, detail::SiteMarks& near) {
-    for (Index b = first; b < state.particles.bodies(); ++b)
-        if (state.particles.inverse_mass[static_cast<std::size_t>(b)] > 0)
-            detail::each_site_near(state, b, skin, [&](Index site) { near.add(site); });
+void find_near_sites(const State<P>& state, Index first, Real skin, std::vector<SitePair>& pairs) {
+    const Particles& p = state.particles;
+    const Index bodies = p.bodies() - first;
+    std::vector<std::vector<SitePair>> found(static_cast<std::size_t>(block_count(bodies)));
+    const Real own = state.concrete.lattice().radius;
+    parallel_blocks(bodies, [&](Index block, Index from, Index to) {
+        for (Index b = first + from; b < first + to; ++b)
+            if (p.inverse_mass[static_cast<std::size_t>(b)] > 0)
+                detail::each_site_near(
+                    state, b, skin, [&](Index sphere, Index site, const ImageShift& shift, Real distance2) {
+                        const Real both = p.radius[static_cast<std::size_t>(sphere)] + own;
+                        found[static_cast<std::size_t>(block)].push_back(
+                            {sphere, site, shift, distance2 < square(both)});
+                    });
+    });
+    for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());
+}
+
+/// The concrete's surface changes between collisions, never within one: what is worn out vanishes once
+/// nothing touches it, and where worn spheres recede, those that nothing touches sink. `near` has the spheres
+/// that are near and touched.
+template <class P>
+void reshape(State<P>& state, const detail::SiteMarks& near) {
+    SiteBodies& sites = state.sites;
+    std::erase_if(sites.worn_out, [&](Index site) {
+        if (near.touched(site)) return false;
+        if (!state.concrete.gone(site)) {
+            state.wear_away(site);
+            if (sites.stand) sites.emptied.push_back(site);
+        }
+        return true;
+    });
+    if (!sites.recede()) return;
+    for (const Index site : near.all())
+        if (sites.worn[static_cast<std::size_t>(site)] && !near.touched(site) && !state.concrete.gone(site))
+            state.sink(site);
 }
 
 /// Makes bodies of the marked spheres that are none.
 template <class P>
-void stand_by(State<P>& state, detail::SiteMarks& near) {
-    std::sort(near.all().begin(), near.all().end());
-    for (const Index site : near.all()) state.body_at(site);
+void stand_by(State<P>& state, const detail::SiteMarks& near) {
+    std::vector<Index> all;
+    for (const Index site : near.all())
+        if (near.near(site) && !state.concrete.gone(site)) all.push_back(site);
+    std::sort(all.begin(), all.end());
+    for (const Index site : all) state.body_at(site);
 }
 
 /// Marks in `gone` [body] the standing spheres that are not marked as near.
 template <class P>
 void retire(const State<P>& state, const detail::SiteMarks& near, std::vector<char>& gone) {
     for (std::size_t b = 0; b < gone.size(); ++b)
-        if (state.particles.kind[b] == Kind::concrete && !near.has(state.particles.site[b])) gone[b] = 1;
+        if (state.particles.kind[b] == Kind::concrete && !near.near(state.particles.site[b])) gone[b] = 1;
 }
 
 /// Places the wear that waits, takes out what is worn out, and lets go what bonds no longer hold. Loads must
@@ -80,11 +129,12 @@ void settle_concrete(State<P>& state, Real time) {
     if (!state.scene.concrete) return;
     Concrete& concrete = state.concrete;
     const WornOut worn_out = state.scene.concrete->worn_out;
-    std::vector<Index> emptied, loose;
+    std::vector<Index> emptied = std::exchange(state.sites.emptied, {}), loose;
     if (concrete.unsettled()) {
         const std::vector<Index> full = concrete.settle(time);
-        if (worn_out == WornOut::fines)
-            for (const Index site : full) state.wear_away(site), emptied.push_back(site);
+        if (worn_out == WornOut::fines || worn_out == WornOut::recedes)
+            state.sites.worn_out.insert(state.sites.worn_out.end(), full.begin(), full.end());
+        for (const Index site : concrete.taken_from()) state.sites.note_worn(site);
         if (worn_out == WornOut::grain && state.sites.stand)
             for (const Index site : full) emptied.push_back(site), loose.push_back(site);
         if constexpr (P::has_bonds)

@@ -53,7 +53,7 @@ struct State {
         velocity_in_fluid;  ///< [body] that drag was last reckoned with [m/s]; empty without a fluid
     Index broken_tension = 0, broken_shear = 0;
     bool pattern_changed = false;  ///< a bond broke
-    bool loosened = false;         ///< concrete came loose, or may meet others than those it is bonded to
+    bool loosened = false;         ///< concrete came loose or is gone
     Real smallest_radius = 0;      ///< of a sphere [m]
     Real size_ratio = 1;           ///< smallest radius over largest [-]
     Real gauge_volume = 0;         ///< solid, net downstream [m3]
@@ -124,99 +124,10 @@ struct State {
                           {position, now, particles.volume[at(body)]}, scene.gravity);
     }
 
-    /// Brings all that flies up to the present, and books what its weight did.
-    void land() {
-        if (pace.empty()) flight.begin(scene.gravity);  // nobody was there
-        if (flight.kicks == 0 && flight.drifts == 0) return;
-        struct Path {
-            Vec3 sum = Vec3::Zero();
-            Path& operator+=(const Path& o) noexcept { return sum += o.sum, *this; }
-        };
-        const auto all = parallel_sum<Path>(store.spheres(), [&](Index slot) {
-            if (pace[at(slot)] != Pace::flying || store.lines.motion[at(slot)].inverse_mass == 0)
-                return Path{};
-            SphereMotion& motion = store.lines.motion[at(slot)];
-            SpherePlace& place = store.lines.place[at(slot)];
-            const Vec3 path = flight.path(motion.velocity, scene.gravity);
-            place.centre = flight.place(place.centre, motion.velocity, scene.gravity);
-            motion.velocity = flight.velocity(motion.velocity, scene.gravity);
-            return Path{store.lines.load[at(slot)].mass * path};
-        });
-        accounts.gravity_work += scene.gravity.dot(all.sum);
-        flight.begin(scene.gravity);
-        store.refresh_images();
-    }
-
-    /// Sees which slots could fly, once the store is arranged.
-    void find_flyers() {
-        pace_if_alone.resize(at(store.spheres()));
-        parallel_for(store.spheres(), [&](Index slot) {
-            const Index body = particles.body[at(store.sphere_of(slot))];
-            const bool bonded = P::has_bonds && !sites.stand && particles.kind[at(body)] == Kind::concrete;
-            const bool flies = flight.allowed && store.clump_of(body) < 0 && !feels_fluid(body) && !bonded;
-            pace_if_alone[at(slot)] = flies ? Pace::flying : Pace::every_step;
-        });
-    }
-
-    /// Lets fly what is in no candidate contact; `land` must have been called.
-    void take_off() {
-        pace = pace_if_alone;
-        if (sleep.count > 0)
-            for (Index slot = 0; slot < store.spheres(); ++slot)
-                if (sleep.asleep(particles.body[at(store.sphere_of(slot))])) pace[at(slot)] = Pace::asleep;
-        const auto ground = [&](Index slot) {
-            if (slot < 0 || slot >= store.phantom()) return;
-            Pace& own = pace[at(store.owner_of(slot))];
-            if (own != Pace::flying) return;
-            own = Pace::every_step;
-            flight.held += store.lines.motion[at(slot)].inverse_mass > 0;
-        };
-        flight.held = 0;
-        contacts.each_candidate([&](const SlotPair& pair) {
-            ground(pair.first), ground(pair.second);
-            if (const Index other = awake_beside_sleeper(pair); other >= 0)
-                pace[at(first_slot_of(other))] = Pace::beside_sleeper;
-        });
-        if constexpr (P::has_bonds)
-            network.each_bond([&](const auto& bond) { ground(bond.slots.first), ground(bond.slots.second); });
-        const Box space = scene.open_bounds();
-        const bool bounded = space.low.array().isFinite().any() || space.high.array().isFinite().any();
-        struct Outlook {
-            Real fastest2 = 0, margin = std::numeric_limits<Real>::infinity();
-            Outlook& operator+=(const Outlook& o) noexcept {
-                return fastest2 = std::max(fastest2, o.fastest2), margin = std::min(margin, o.margin), *this;
-            }
-        };
-        const auto all = parallel_sum<Outlook>(store.spheres(), [&](Index slot) {
-            Outlook one;
-            if (pace[at(slot)] != Pace::flying || store.lines.motion[at(slot)].inverse_mass == 0) return one;
-            one.fastest2 = store.lines.motion[at(slot)].velocity.squaredNorm();
-            const Vec3& x = store.lines.place[at(slot)].centre;
-            if (bounded) one.margin = std::min((x - space.low).minCoeff(), (space.high - x).minCoeff());
-            return one;
-        });
-        flight.margin = all.margin, flight.fastest = std::sqrt(all.fastest2);
-    }
-
-    /// Positions, and velocities as the lines have them.
-    void publish_places() {
-        land();
-        if (store.spheres() == 0) return;  // nothing has moved yet
-        for (std::size_t b = 0; b < particles.position.size(); ++b) {
-            const auto body = static_cast<Index>(b);
-            particles.position[b] = store.position_of(particles, body);
-            particles.velocity[b] = store.velocity_of(particles, body);
-            const auto first = at(particles.first_sphere[b]);
-            for (std::size_t s = first; s < first + at(particles.sphere_count[b]); ++s)
-                particles.centre[s] = store.lines.place[at(store.slot_of(static_cast<Index>(s)))].centre;
-        }
-    }
-
     /// Lets concrete go whose last bond to the ground broke.
     void free_loose_concrete() {
         if constexpr (P::has_bonds) {
             if (!std::exchange(pattern_changed, false)) return;
-            loosened = store.spheres() > 0;  // what has lost a bond looks for others now
             for (const Ties::Piece& piece : network.take_loose()) {
                 if (piece.size() > 1 && scene.concrete->fragments == Fragments::clumps)
                     pieces.push_back(piece);
@@ -235,14 +146,16 @@ struct State {
     void wear_away(Index site) {
         if constexpr (P::has_bonds)
             if (!sites.stand) network.sever(site), pattern_changed = true;
-        concrete.set_gone(site);
+        leave_place(site);
         if (sites.body_of[at(site)] >= 0) worn_away.push_back(site);
         loosened = true;
     }
 
-    /// The sphere of a site that stands is free from now on: a grain.
+    /// The sphere of a site that stands is free from now on: a grain. One that has sunk into another, or that
+    /// another has sunk into, would be shot out as such: it crumbles and vanishes.
     void let_go(Index site) {
         if (concrete.gone(site)) return;
+        if (sites.recede() && overlaps_standing(site)) return wear_away(site);
         const Index body = body_at(site);
         const Real mass = particles.mass[at(body)],
                    inertia = 0.4 * mass * square(particles.radius[at(particles.first_sphere[at(body)])]);
@@ -252,24 +165,46 @@ struct State {
         if (const Index sphere = particles.first_sphere[at(body)]; sphere < store.spheres())
             store.lines.motion[at(store.slot_of(sphere))].inverse_mass = 1 / mass;
         accounts.fed_potential += potential_energy(body, particles.position[at(body)]);
-        concrete.set_gone(site);
+        leave_place(site);
         ++let_go_count;
         loosened = true;
     }
 
-    /// Bonded concrete that is sound cannot come to touch its like: its neighbours look after that.
+    /// Concrete that is where it was built touches nobody but those it is bonded to. Bonds that hold are no
+    /// reason to stay: they let spheres roll about each other, as far as into others that they do not touch
+    /// as built.
     bool keeps_its_place(Index body) const noexcept {
         const Kind kind = particles.kind[at(body)];
         if (kind == Kind::fixed || (kind == Kind::concrete && sites.stand)) return true;
-        if constexpr (P::has_bonds)
-            return kind == Kind::concrete && !network.ties().damaged(particles.site[at(body)]);
-        return kind == Kind::concrete;
+        if (kind != Kind::concrete) return false;
+        constexpr Real share = 0.05;  // of the radius; two of them have come as near as `lattice_of` bonds
+        const Vec3& now = store.lines.place[at(first_slot_of(body))].centre;
+        const Vec3& built = concrete.lattice().sites[at(particles.site[at(body)])].centre;
+        return (now - built).squaredNorm() < square(share * concrete.lattice().radius);
     }
 
-    /// Where a site's sphere stands, a body or not; where it was built if it is gone and no body [m].
-    const Vec3& place_of(Index site) const noexcept {
+    /// Where a site's sphere stands, a body or not; where it was built if it is gone and no body [m]. A worn
+    /// one that recedes and that nobody is near stands where it will once somebody is.
+    Vec3 place_of(Index site) const noexcept {
         const Index body = sites.body_of[at(site)];
-        return body >= 0 ? particles.position[at(body)] : concrete.lattice().sites[at(site)].centre;
+        if (body >= 0) return particles.position[at(body)];
+        return sites.recede() && !concrete.gone(site) ? place_once_sunk(site)
+                                                      : concrete.lattice().sites[at(site)].centre;
+    }
+
+    /// Where a standing sphere will be once it has sunk as far as its wear has it [m].
+    Vec3 place_once_sunk(Index site) const noexcept {
+        return concrete.lattice().sites[at(site)].centre + concrete.fracture(site) * sites.way[at(site)];
+    }
+    /// Lets a standing sphere sink that far; nothing may touch it before or then.
+    void sink(Index site) {
+        sites.worn[at(site)] = 0;
+        const Vec3& there = sites.place[at(site)] = place_once_sunk(site);
+        const Index body = sites.body_of[at(site)];
+        if (body < 0) return;
+        const Index sphere = particles.first_sphere[at(body)];
+        particles.position[at(body)] = particles.centre[at(sphere)] = there;
+        if (sphere < store.spheres()) store.lines.place[at(store.slot_of(sphere))].centre = there;
     }
 
     /// The body of a site that stands, made where there is none.
@@ -294,6 +229,22 @@ struct State {
     }
 
 private:
+    void leave_place(Index site) {
+        concrete.set_gone(site);
+        if (sites.stand) sites.place[at(site)].setConstant(1e100);
+    }
+
+    /// Whether a standing sphere overlaps another, because either has sunk.
+    bool overlaps_standing(Index site) const {
+        const Vec3& own = sites.place[at(site)];
+        const Real diameter = 2 * concrete.lattice().radius;
+        bool found = false;
+        sites.grid.each_about(own, diameter + sites.longest_way, [&](Index other) {
+            found |= other != site && (sites.place[at(other)] - own).squaredNorm() < square(0.999 * diameter);
+        });
+        return found;
+    }
+
     void add_concrete(ConcreteBlock& block) {
         const Lattice& lattice = block.lattice;
         const auto count = static_cast<Index>(lattice.sites.size());
@@ -314,6 +265,12 @@ private:
             stand(block, centre);
         else
             set_moving(block);
+        if (sites.stand && block.worn_out == WornOut::recedes) {
+            sites.way = detail::ways_down(lattice);
+            sites.worn.assign(at(count), 0);
+            for (const Vec3& way : sites.way) sites.longest_way = std::max(sites.longest_way, way.norm());
+        }
+        if (sites.stand) sites.place = std::move(centre);
         concrete = Concrete(std::move(block.lattice), block.fracture_volume, block.overflow, block.worn_out);
         if (sites.stand) return;
         pattern_changed = true;  // a packing may have spheres that nothing ties

@@ -24,7 +24,8 @@ public:
                 then.place[slot].centre -= last.drift * then.motion[slot].velocity;
         state_.contacts.each_touching([&](const auto& touching) {
             const SlotPair& pair = touching.pair;
-            const auto contact = contact_between(then, state_.scene.walls, pair, 0);
+            const auto contact = contact_seen_by(law_between(state_.policies.contact, touching.materials),
+                                                 then, state_.scene.walls, touching, 0);
             const Real first = then.place[at(pair.first)].radius,
                        second = pair.second < 0 ? 0 : then.place[at(pair.second)].radius;
             DeepContact deep{.reach = first + second,
@@ -71,9 +72,7 @@ public:
         if (state_.particles.bodies() == 1 && state_.scene.walls.empty()) return found;
         for (Index slot = 0; slot < state_.store.spheres(); ++slot) {
             if (!(lines.motion[at(slot)].inverse_mass > 0)) continue;
-            Vec3 v = lines.motion[at(slot)].velocity;
-            if (state_.pace[at(slot)] == Pace::flying) v = state_.flight.velocity(v, state_.scene.gravity);
-            const Real share = dt * v.norm() / lines.place[at(slot)].radius;
+            const Real share = dt * lines.motion[at(slot)].velocity.norm() / lines.place[at(slot)].radius;
             if (share > std::max(1.0, found.measure))
                 found = {Trouble::Cause::long_stride, body_in(slot), -1, share};
         }

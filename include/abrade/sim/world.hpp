@@ -73,12 +73,12 @@ public:
     }
 
     /// Places, and velocities as the lines have them, for what cannot wait for forces.
-    void publish_places() { state_.publish_places(); }
+    void publish_places() { abrade::publish_places(state_); }
 
     void set_skin(Real skin) noexcept { lists_.set_skin(skin); }
     void set_free_flight(bool allowed) {
         state_.flight.allowed = allowed;
-        state_.find_flyers();
+        find_flyers(state_);
     }
     /// As RunOptions says.
     void set_sleep(Real speed, Real after) {
@@ -108,11 +108,10 @@ public:
     void each_contact(Visit&& visit) const {
         state_.contacts.each_touching([&](const auto& touching) {
             const SlotPair& pair = touching.pair;
-            const auto contact = contact_between(state_.store.lines, state_.scene.walls, pair, 0);
+            const auto& law = law_between(state_.policies.contact, touching.materials);
+            const auto contact = contact_seen_by(law, state_.store.lines, state_.scene.walls, touching, 0);
             visit(body_in(pair.first), body_in(pair.second), contact,
-                  law_between(state_.policies.contact, touching.materials)
-                      .respond(contact, touching.memory)
-                      .load);
+                  law.respond(contact, touching.memory).load);
         });
     }
 
@@ -226,14 +225,13 @@ private:
         if (move) {
             book(state_.accounts, all.motion);
             FreeFlight& flight = state_.flight;
-            flight.note(move->kick, move->drift);
+            flight.note(move->kick, move->drift, move->time);
             state_.sleep.stirred |= all.motion.stirs;
-            const Real way =
-                move->drift * std::max(std::sqrt(all.motion.fastest2),
-                                       flight.fastest + flight.kicks * state_.scene.gravity.norm());
+            const Real way = move->drift * std::max(std::sqrt(all.motion.fastest2), flight.fastest_now());
             lists_.note_step(way);
             check(all.motion);
-            if (way > state_.smallest_radius) report(TroubleFinder(state_).longest_stride(move->drift));
+            if (way > state_.smallest_radius)
+                land(state_), report(TroubleFinder(state_).longest_stride(move->drift));
             if (lists_.outrun()) report(TroubleFinder(state_).fastest());
         }
     }
@@ -281,6 +279,7 @@ private:
         if (site >= 0) {
             const Real before = state_.concrete.fracture(site);
             state_.concrete.wear(site, load.worn, now_, led_here_);
+            state_.sites.note_worn(site);
             constexpr Real per_step = 1 / StandingBonds<decltype(P::bond)>::strength_step;
             if (state_.standing &&
                 std::floor(per_step * before) != std::floor(per_step * state_.concrete.fracture(site)))
@@ -313,12 +312,7 @@ private:
         too_deep_ |= contacts.deepest > overlap_limit * (1 + state_.size_ratio);
         if (bonds.deepest > overlap_limit) report(TroubleFinder(state_).crushed_bond(bonds));
     }
-    void book(Ledger& to, const MotionSums& motion) const {
-        to.interaction_work += motion.interaction_work();
-        to.gravity_work += motion.gravity_work(state_.scene.gravity);
-        to.drag_work += motion.drag, to.drag_input += motion.drag_input;
-        to.buoyancy_work += motion.buoyancy;
-    }
+    void book(Ledger& to, const MotionSums& motion) const { abrade::book(to, motion, state_.scene.gravity); }
 
     /// What is first stays, but for overlaps: the deepest counts.
     void report(const Trouble& found) noexcept {
@@ -334,8 +328,8 @@ private:
         const Box space = state_.scene.open_bounds();
         const Vec3 low = detail::first_three(motion.low), high = detail::first_three(motion.high);
         const bool nobody = !(low.x() <= high.x());
-        const bool near_bounds = state_.flight.furthest(state_.scene.gravity) >= state_.flight.margin;
-        if (near_bounds) state_.land();
+        const bool near_bounds = state_.flight.furthest() >= state_.flight.margin;
+        if (near_bounds) land(state_);
         const bool sound = motion.fastest2 < square(TroubleFinder<P>::fastest_of_this_field) &&
                            detail::first_three(motion.finite).allFinite();
         if (sound && !near_bounds && (nobody || (space.contains(low) && space.contains(high)))) return;

@@ -114,10 +114,7 @@ public:
         } else {
             for (const Index site : waiting_.take()) spread(site, std::exchange(worn_[at(site)].waiting, 0));
         }
-        std::vector<Index> worn_out = newly_worn_out_.take();
-        if (worn_out_ == WornOut::fines && std::isfinite(time))
-            for (const Index site : worn_out) hand_on_collision(site, time);
-        return worn_out;
+        return newly_worn_out_.take();
     }
 
     /// The sites that the last `settle` placed volume on, some more than once.
@@ -247,23 +244,6 @@ private:
             volume = wear_evenly(volume);
         }
         fill_crater(struck, volume);
-    }
-
-    /// Where a sphere vanishes under a stone, what the stone wears next belongs to the same collision: by the
-    /// neighbours, within the time that it takes to fall a few centimetres.
-    void hand_on_collision(Index site, Real time) {
-        constexpr Real fall = 0.02;  // [s]
-        const Real collision = worn_[at(site)].collision, reach = 3 * lattice_.radius;
-        if (!(collision > 0)) return;
-        const Vec3& x = lattice_.sites[at(site)].centre;
-        const auto has = [&](Index other) { return has_some(other); };
-        by_place_.nearest_first(lattice_, site, reach, has, [&](Index other) {
-            if ((lattice_.sites[at(other)].centre - x).norm() > reach) return false;
-            Worn& worn = worn_[at(other)];
-            worn.collision = std::max(worn.last >= time ? worn.collision : 0, collision);
-            worn.last = time + fall;
-            return true;
-        });
     }
 
     void fill_crater(Index struck, Real volume) {
