@@ -20,6 +20,9 @@ struct Statistics {
     PatchAnswers mean, deviation;  ///< standard deviation of one run
     int seeds = 0, failed = 0;     ///< runs that count, and those that went wrong
     Real standard_error(Real PatchAnswers::*of) const { return deviation.*of / std::sqrt(seeds); }
+    std::string seeds_text() const {
+        return std::to_string(seeds) + (failed > 0 ? " and " + std::to_string(failed) + " failed" : "");
+    }
 };
 
 class PatchRuns {

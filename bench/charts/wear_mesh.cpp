@@ -1,6 +1,7 @@
 // Whether wear depends on the stone or on how the concrete is cut and computed; draws the pictures of
 // docs/convergence.md on that, prints its tables and writes summary.json:
-// chart_wear_mesh [FOLDER [drops|patch|beta]...]; all parts where none is named.
+// chart_wear_mesh [FOLDER [drops|patch|beta|slow_patch]...]; all but the last, which takes hours, where none
+// is named.
 //
 // Results of runs are kept in FOLDER as wear_mesh*.csv, and taken from there the next time. A part leaves
 // what summary.json says of the others.
@@ -18,9 +19,11 @@ namespace {
 
 nlohmann::ordered_json make(const std::string& part, const std::filesystem::path& folder, PatchRuns& runs) {
     if (part == "drops") return DropChart(folder, 50).make();
-    if (part == "patch") return PatchChart(folder, runs).make();
+    if (part == "patch") return PatchChart(folder, runs, 0).make();
+    if (part == "slow_patch") return PatchChart(folder, runs, 2).make();
     if (part == "beta") return BetaChart(folder, runs).make();
-    throw InputError("chart_wear_mesh: there is no part '" + part + "'; parts are drops, patch and beta");
+    throw InputError("chart_wear_mesh: there is no part '" + part +
+                     "'; parts are drops, patch, beta and slow_patch");
 }
 
 }  // namespace

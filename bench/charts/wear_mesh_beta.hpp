@@ -103,7 +103,7 @@ private:
         return one;
     }
     /// So many that standard errors are some 3 %.
-    static int seeds(Real beta) { return beta < 50 ? 3 : beta < 500 ? 8 : beta < 2000 ? 24 : 48; }
+    static int seeds(Real beta) { return beta < 50 ? 3 : beta < 500 ? 8 : beta < 2000 ? 32 : 150; }
 
     Statistics of(const Way& way, Real beta) {
         const std::string label = way.title + ", beta " + to_text(beta);
@@ -163,7 +163,7 @@ private:
                   << std::setprecision(3)
                   << a.max_depth / (beta * a.fed) / (truth.mean.max_depth / truth.mean.fed) << " | "
                   << 100 * a.overflow / (a.overflow + a.worn) << " | " << a.share << " | " << guard(a, beta)
-                  << " | " << s.seeds << " | " << a.processor << " |\n"
+                  << " | " << s.seeds_text() << " | " << a.processor << " |\n"
                   << std::flush;
     }
 
