@@ -23,18 +23,14 @@ FlightLoad flight_load(const State<P>& state, Index body, const Vec3& position, 
     found.acceleration = state.scene.gravity;
     if constexpr (P::has_fluid)
         if (state.feels_fluid(body)) {
-            const auto b = static_cast<std::size_t>(body);
-            const Real inverse_mass = state.particles.inverse_mass[b];
-            const auto fluid_at = [&](const Vec3& x, const Vec3& v, Real t) {
-                return fluid_load(state.policies.drag, state.policies.fluid.sample(x, t),
-                                  {x, v, state.particles.volume[b]}, state.scene.gravity);
-            };
-            const FluidLoad first = fluid_at(position, velocity, flight.start);
+            const Real inverse_mass = state.particles.inverse_mass[static_cast<std::size_t>(body)];
+            const FluidLoad first = state.fluid_on(body, position, velocity, flight.start, 0);
             const Vec3 half =
                 velocity +
                 0.5 * flight.kicks * (state.scene.gravity + inverse_mass * (first.drag + first.buoyancy));
             const Real to_middle = 0.5 * (flight.drifts - flight.last);
-            found.fluid = fluid_at(position + to_middle * half, half, flight.start + to_middle);
+            found.fluid =
+                state.fluid_on(body, position + to_middle * half, half, flight.start + to_middle, 0);
             found.acceleration += inverse_mass * (found.fluid.drag + found.fluid.buoyancy);
         }
     return found;
@@ -167,11 +163,8 @@ std::optional<Real> hardest_in_flight(const State<P>& state, Index body, const V
     Real hardest = state.scene.gravity.norm();
     if constexpr (P::has_fluid)
         if (state.feels_fluid(body)) {
-            const auto b = static_cast<std::size_t>(body);
-            const FluidLoad load =
-                fluid_load(state.policies.drag, state.policies.fluid.sample(position, state.flight.now),
-                           {position, velocity, state.particles.volume[b]}, state.scene.gravity);
-            const Real inverse_mass = state.particles.inverse_mass[b];
+            const FluidLoad load = state.fluid_on(body, position, velocity, state.flight.now, 0);
+            const Real inverse_mass = state.particles.inverse_mass[static_cast<std::size_t>(body)];
             const Real against = (load.fluid_velocity - velocity).norm(),
                        drag = inverse_mass * load.drag.norm();
             // Of quadratic drag, twice the force over the speed against the fluid.
@@ -227,7 +220,6 @@ void take_off(State<P>& state, Real horizon) {
         const Index first = state.first_slot_of(body);
         const SphereMotion& motion = store.lines.motion[at(first)];
         if (pace[at(first)] != Pace::flying || motion.inverse_mass == 0) return one;
-        const Index c = store.clump_of(body);
         const Vec3 position = store.position_of(state.particles, body),
                    velocity = store.velocity_of(state.particles, body);
         const std::optional<Real> hardest = detail::hardest_in_flight(state, body, position, velocity);
@@ -236,7 +228,7 @@ void take_off(State<P>& state, Real horizon) {
             return one;
         }
         one.hardest = *hardest, one.fastest = velocity.norm();
-        if (c >= 0) {
+        if (const Index c = store.clump_of(body); c >= 0) {
             const MovingClump& clump = store.clumps[at(c)];
             const Real spin = clump.angular_velocity(clump.angular_momentum).norm();
             Real reach = 0;

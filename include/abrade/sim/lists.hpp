@@ -8,7 +8,6 @@
 
 #include <chrono>
 #include <numeric>
-#include <ranges>
 
 namespace abrade {
 
@@ -65,9 +64,10 @@ public:
         if (state.sites.stand) {
             const auto left =
                 static_cast<Index>(std::count(departure.moved.begin(), departure.moved.end(), -1));
-            for (Index& sphere : std::views::transform(near_sites_, &SitePair::sphere))
-                sphere = sphere < static_cast<Index>(departure.moved.size()) ? departure.moved[at(sphere)]
-                                                                             : sphere - left;
+            const auto known_spheres = static_cast<Index>(departure.moved.size());  // those after are new
+            for (SitePair& pair : near_sites_)
+                pair.sphere =
+                    pair.sphere < known_spheres ? departure.moved[at(pair.sphere)] : pair.sphere - left;
             mark_near(state, known, near), stand_by(state, near);
         }
         grow_columns(state);

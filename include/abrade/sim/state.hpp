@@ -207,13 +207,14 @@ struct State {
         if (sphere < store.spheres()) store.lines.place[at(store.slot_of(sphere))].centre = there;
     }
 
-    /// The body of a site that stands, made where there is none.
+    /// The body of a site that stands, made where there is none: where it stands now, though it may be worn
+    /// and wait to sink.
     Index body_at(Index site) {
         if (sites.body_of[at(site)] < 0) {
             const Index next_id = particles.next_id;
             sites.body_of[at(site)] = particles.add(
                 sites.sphere, scene.concrete->density,
-                {.position = place_of(site), .material = scene.concrete->material}, Kind::fixed);
+                {.position = sites.place[at(site)], .material = scene.concrete->material}, Kind::fixed);
             particles.kind.back() = Kind::concrete;
             particles.site.back() = particles.id.back() =
                 site;  // as if it had been built: concrete comes first
