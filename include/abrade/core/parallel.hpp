@@ -30,21 +30,25 @@ inline void set_thread_count([[maybe_unused]] int count) noexcept {
 
 /// Items per block. Small enough to share out, large enough that a block repays its bookkeeping.
 inline constexpr Index block_size = 256;
+/// The same where an item is a body of many spheres, or as much work.
+inline constexpr Index block_of_bodies = 16;
 
-constexpr Index block_count(Index items) noexcept { return (items + block_size - 1) / block_size; }
+constexpr Index block_count(Index items, Index size = block_size) noexcept {
+    return (items + size - 1) / size;
+}
 
 /// Calls `body(block, first, last)` for each block of [0, items); blocks run in any order, in parallel.
 /// `body` must not throw.
 template <class Body>
-void parallel_blocks(Index items, Body&& body) {
-    const Index blocks = block_count(items);
+void parallel_blocks(Index items, Body&& body, Index size = block_size) {
+    const Index blocks = block_count(items, size);
     // Below a few blocks waking the other threads costs more than it saves.
 #if defined(_OPENMP)
 #pragma omp parallel for schedule(dynamic) if (blocks > 2)
 #endif
     for (Index block = 0; block < blocks; ++block) {
-        const Index first = block * block_size;
-        body(block, first, std::min(items, first + block_size));
+        const Index first = block * size;
+        body(block, first, std::min(items, first + size));
     }
 }
 
@@ -69,13 +73,16 @@ void parallel_for(Index items, Body&& body) {
 /// Sum of `term(i)` over [0, items), the same bits for every number of threads.
 /// `Sum` is default-constructed as zero and has `+=`.
 template <class Sum, class Term>
-Sum parallel_sum(Index items, Term&& term) {
-    std::vector<Sum> partial(static_cast<std::size_t>(block_count(items)), Sum{});
-    parallel_blocks(items, [&](Index block, Index first, Index last) {
-        Sum sum{};
-        for (Index i = first; i < last; ++i) sum += term(i);
-        partial[static_cast<std::size_t>(block)] = sum;
-    });
+Sum parallel_sum(Index items, Term&& term, Index size = block_size) {
+    std::vector<Sum> partial(static_cast<std::size_t>(block_count(items, size)), Sum{});
+    parallel_blocks(
+        items,
+        [&](Index block, Index first, Index last) {
+            Sum sum{};
+            for (Index i = first; i < last; ++i) sum += term(i);
+            partial[static_cast<std::size_t>(block)] = sum;
+        },
+        size);
     Sum total{};
     for (const Sum& sum : partial) total += sum;
     return total;

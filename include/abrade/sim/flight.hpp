@@ -99,26 +99,29 @@ void land(State<P>& state) {
         note(body, motion.velocity, load.acceleration);
         return one;
     });
-    sums += parallel_sum<MotionSums>(static_cast<Index>(store.clumps.size()), [&](Index c) {
-        MotionSums one;
-        MovingClump& clump = store.clumps[static_cast<std::size_t>(c)];
-        if (!flies(clump.first_slot)) return one;
-        const detail::FlightLoad load =
-            detail::flight_load(state, clump.body, clump.position, clump.velocity, flight);
-        detail::add_flight(state, clump.body, load, flight.path(clump.velocity, load.acceleration),
-                           flight.kicks, one);
-        const Vec3 to = flight.place(clump.position, clump.velocity, load.acceleration);
-        clump.velocity = flight.velocity(clump.velocity, load.acceleration);
-        note(clump.body, clump.velocity, load.acceleration);
-        if (!(flight.last > 0)) return one;
-        // Members' velocities are those of the last step: it is taken as any other.
-        if (const Real before = flight.drifts - flight.last; before > 0) {
-            detail::fly_on(clump, to - flight.last * clump.velocity, before);
-            store.place_members(clump, state.particles, Vec3::Zero(), flight.last);
-        }
-        drift(clump, flight.last, store, state.particles);
-        return one;
-    });
+    sums += parallel_sum<MotionSums>(
+        static_cast<Index>(store.clumps.size()),
+        [&](Index c) {
+            MotionSums one;
+            MovingClump& clump = store.clumps[static_cast<std::size_t>(c)];
+            if (!flies(clump.first_slot)) return one;
+            const detail::FlightLoad load =
+                detail::flight_load(state, clump.body, clump.position, clump.velocity, flight);
+            detail::add_flight(state, clump.body, load, flight.path(clump.velocity, load.acceleration),
+                               flight.kicks, one);
+            const Vec3 to = flight.place(clump.position, clump.velocity, load.acceleration);
+            clump.velocity = flight.velocity(clump.velocity, load.acceleration);
+            note(clump.body, clump.velocity, load.acceleration);
+            if (!(flight.last > 0)) return one;
+            // Members' velocities are those of the last step: it is taken as any other.
+            if (const Real before = flight.drifts - flight.last; before > 0) {
+                detail::fly_on(clump, to - flight.last * clump.velocity, before);
+                store.place_members(clump, state.particles, Vec3::Zero(), flight.last);
+            }
+            drift(clump, flight.last, store, state.particles);
+            return one;
+        },
+        block_of_bodies);
     book(state.accounts, sums, state.scene.gravity);
     flight.begin();
     store.refresh_images();
@@ -215,35 +218,39 @@ void take_off(State<P>& state, Real horizon) {
             [&](const auto& bond) { ground(bond.slots.first), ground(bond.slots.second); });
     const Box space = state.scene.open_bounds();
     const bool bounded = space.low.array().isFinite().any() || space.high.array().isFinite().any();
-    const auto all = parallel_sum<detail::Outlook>(state.particles.bodies(), [&](Index body) {
-        detail::Outlook one;
-        const Index first = state.first_slot_of(body);
-        const SphereMotion& motion = store.lines.motion[at(first)];
-        if (pace[at(first)] != Pace::flying || motion.inverse_mass == 0) return one;
-        const Vec3 position = store.position_of(state.particles, body),
-                   velocity = store.velocity_of(state.particles, body);
-        const std::optional<Real> hardest = detail::hardest_in_flight(state, body, position, velocity);
-        if (!hardest) {
-            set_pace(body, Pace::every_step);
-            return one;
-        }
-        one.hardest = *hardest, one.fastest = velocity.norm();
-        if (const Index c = store.clump_of(body); c >= 0) {
-            const MovingClump& clump = store.clumps[at(c)];
-            const Real spin = clump.angular_velocity(clump.angular_momentum).norm();
-            Real reach = 0;
-            for (Index n = 0; n < clump.count; ++n)
-                reach = std::max(
-                    reach, state.particles.offset[at(state.particles.first_sphere[at(body)] + n)].norm());
-            one.fastest += 1.5 * spin * reach;  // it may turn faster about another axis
-        }
-        if (bounded)
-            for (Index n = first; n < first + state.particles.sphere_count[at(body)]; ++n) {
-                const Vec3& x = store.lines.place[at(n)].centre;
-                one.margin = std::min({one.margin, (x - space.low).minCoeff(), (space.high - x).minCoeff()});
+    const auto all = parallel_sum<detail::Outlook>(
+        state.particles.bodies(),
+        [&](Index body) {
+            detail::Outlook one;
+            const Index first = state.first_slot_of(body);
+            const SphereMotion& motion = store.lines.motion[at(first)];
+            if (pace[at(first)] != Pace::flying || motion.inverse_mass == 0) return one;
+            const Vec3 position = store.position_of(state.particles, body),
+                       velocity = store.velocity_of(state.particles, body);
+            const std::optional<Real> hardest = detail::hardest_in_flight(state, body, position, velocity);
+            if (!hardest) {
+                set_pace(body, Pace::every_step);
+                return one;
             }
-        return one;
-    });
+            one.hardest = *hardest, one.fastest = velocity.norm();
+            if (const Index c = store.clump_of(body); c >= 0) {
+                const MovingClump& clump = store.clumps[at(c)];
+                const Real spin = clump.angular_velocity(clump.angular_momentum).norm();
+                Real reach = 0;
+                for (Index n = 0; n < clump.count; ++n)
+                    reach = std::max(
+                        reach, state.particles.offset[at(state.particles.first_sphere[at(body)] + n)].norm());
+                one.fastest += 1.5 * spin * reach;  // it may turn faster about another axis
+            }
+            if (bounded)
+                for (Index n = first; n < first + state.particles.sphere_count[at(body)]; ++n) {
+                    const Vec3& x = store.lines.place[at(n)].centre;
+                    one.margin =
+                        std::min({one.margin, (x - space.low).minCoeff(), (space.high - x).minCoeff()});
+                }
+            return one;
+        },
+        block_of_bodies);
     flight.margin = all.margin, flight.fastest = all.fastest, flight.hardest = all.hardest;
 }
 

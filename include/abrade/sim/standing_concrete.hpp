@@ -31,12 +31,15 @@ void each_site_near(const State<P>& state, Index body, Real skin, auto&& visit) 
             const Vec3& now = sites.place[at_site];
             const bool sinks = sites.recede() && sites.worn[at_site] && !state.concrete.gone(site);
             const Vec3 then = sinks ? state.place_once_sunk(site) : now;
-            if ((now - x).squaredNorm() >= square(reach) && (then - x).squaredNorm() >= square(reach)) return;
+            const auto distance2 = [&](const Vec3& from) {
+                const Real of_now = (now - from).squaredNorm();
+                return sinks ? std::min(of_now, (then - from).squaredNorm()) : of_now;
+            };
+            if (distance2(x) >= square(reach)) return;
             for (Index s = first; s < last; ++s) {
                 const auto n = static_cast<std::size_t>(s);
-                const Vec3 centre = p.centre[n] + away;
-                const Real distance2 = std::min((centre - now).squaredNorm(), (centre - then).squaredNorm());
-                if (distance2 < square(p.radius[n] + own + skin)) visit(s, site, -shift, distance2);
+                if (const Real d2 = distance2(p.centre[n] + away); d2 < square(p.radius[n] + own + skin))
+                    visit(s, site, -shift, d2);
             }
         });
     };
@@ -70,18 +73,22 @@ template <class P>
 void find_near_sites(const State<P>& state, Index first, Real skin, std::vector<SitePair>& pairs) {
     const Particles& p = state.particles;
     const Index bodies = p.bodies() - first;
-    std::vector<std::vector<SitePair>> found(static_cast<std::size_t>(block_count(bodies)));
+    std::vector<std::vector<SitePair>> found(static_cast<std::size_t>(block_count(bodies, block_of_bodies)));
     const Real own = state.concrete.lattice().radius;
-    parallel_blocks(bodies, [&](Index block, Index from, Index to) {
-        for (Index b = first + from; b < first + to; ++b)
-            if (p.inverse_mass[static_cast<std::size_t>(b)] > 0)
-                detail::each_site_near(
-                    state, b, skin, [&](Index sphere, Index site, const ImageShift& shift, Real distance2) {
-                        const Real both = p.radius[static_cast<std::size_t>(sphere)] + own;
-                        found[static_cast<std::size_t>(block)].push_back(
-                            {sphere, site, shift, distance2 < square(both)});
-                    });
-    });
+    parallel_blocks(
+        bodies,
+        [&](Index block, Index from, Index to) {
+            for (Index b = first + from; b < first + to; ++b)
+                if (p.inverse_mass[static_cast<std::size_t>(b)] > 0)
+                    detail::each_site_near(
+                        state, b, skin,
+                        [&](Index sphere, Index site, const ImageShift& shift, Real distance2) {
+                            const Real both = p.radius[static_cast<std::size_t>(sphere)] + own;
+                            found[static_cast<std::size_t>(block)].push_back(
+                                {sphere, site, shift, distance2 < square(both)});
+                        });
+        },
+        block_of_bodies);
     for (const auto& some : found) pairs.insert(pairs.end(), some.begin(), some.end());
 }
 
