@@ -201,12 +201,12 @@ struct State {
     /// Positions, and velocities as the lines have them.
     void publish_places() {
         land();
-        if (store.spheres() == 0) return;  // nothing has moved yet
         for (std::size_t b = 0; b < particles.position.size(); ++b) {
             const auto body = static_cast<Index>(b);
+            const auto first = at(particles.first_sphere[b]);
+            if (particles.first_sphere[b] >= store.spheres()) return;  // it and those behind it are new
             particles.position[b] = store.position_of(particles, body);
             particles.velocity[b] = store.velocity_of(particles, body);
-            const auto first = at(particles.first_sphere[b]);
             for (std::size_t s = first; s < first + at(particles.sphere_count[b]); ++s)
                 particles.centre[s] = store.lines.place[at(store.slot_of(static_cast<Index>(s)))].centre;
         }
