@@ -70,6 +70,8 @@ struct PatchAnswers {
     Real fed = 0;                            ///< stones
     Real steps = 0, processor = 0;           ///< [-], time of one core [s]
     Real residual = 0;                       ///< of the ledger, relative
+    Real loosened = 0;                       ///< spheres that came loose before they were worn out
+    Real untied = 0;  ///< likewise, and those that no sound bond ties to the ground, but a seat holds
 
     /// Calls f(name, member) for each.
     static void visit(auto&& f) {
@@ -81,6 +83,7 @@ struct PatchAnswers {
         f("largest_share", &PatchAnswers::share), f("fed", &PatchAnswers::fed);
         f("steps", &PatchAnswers::steps);
         f("processor_s", &PatchAnswers::processor), f("residual", &PatchAnswers::residual);
+        f("loosened", &PatchAnswers::loosened), f("untied", &PatchAnswers::untied);
     }
     Real lost() const { return lost_normal + lost_sliding; }
 };
@@ -107,7 +110,13 @@ PatchAnswers answers_of(Sim sim, const Patch& patch) {
                    .steps = static_cast<Real>(sim.steps()),
                    .processor = static_cast<Real>(std::clock() - start) / CLOCKS_PER_SEC,
                    .residual = e.residual_relative()};
-    for (Index s = 0; s < concrete.sites(); ++s) a.grains += concrete.gone(s);
+    const auto& state = sim.world().state();
+    for (Index s = 0; s < concrete.sites(); ++s) {
+        a.grains += concrete.gone(s);
+        if (!(concrete.fracture(s) < 1)) continue;
+        a.loosened += concrete.gone(s);
+        a.untied += state.standing ? state.standing->ties().loose(s) : concrete.gone(s);
+    }
     // Over squares of one size, so that spheres of any size can be compared.
     constexpr auto across = static_cast<std::size_t>(Patch::side / Patch::square + 0.5);
     std::vector<Real> lost(across * across, 0);
