@@ -81,6 +81,8 @@ struct PatchAnswers {
     Real removed = 0;                        ///< worn and detached [m3]
     Real impact_share = 0;                   ///< of what was lost [-]
     std::array<Real, places> profile{};      ///< mean depth along the slope, for each place across [m]
+    Real loosened = 0;                       ///< spheres that came loose before they were worn out
+    Real untied = 0;  ///< likewise, and those that no sound bond ties to the ground, but a seat holds
 
     /// Calls f(name, answer) for each; answer(a) is the one of a.
     static void visit(auto&& f) {
@@ -108,6 +110,8 @@ struct PatchAnswers {
         for (std::size_t n = 0; n < places; ++n)
             f(
                 "depth_" + std::to_string(n + 1) + "_m", [n](auto&& a) -> auto& { return a.profile[n]; });
+        member("loosened", &PatchAnswers::loosened);
+        member("untied", &PatchAnswers::untied);
     }
     Real lost() const { return lost_normal + lost_sliding; }
 };
@@ -136,7 +140,13 @@ PatchAnswers answers_of(Sim sim, const Patch& patch) {
                    .processor = static_cast<Real>(std::clock() - start) / CLOCKS_PER_SEC,
                    .residual = e.residual_relative()};
     a.removed = a.worn + a.detached, a.impact_share = a.lost_normal / a.lost();
-    for (Index s = 0; s < concrete.sites(); ++s) a.grains += concrete.gone(s);
+    const auto& state = sim.world().state();
+    for (Index s = 0; s < concrete.sites(); ++s) {
+        a.grains += concrete.gone(s);
+        if (!(concrete.fracture(s) < 1)) continue;
+        a.loosened += concrete.gone(s);
+        a.untied += state.standing ? state.standing->ties().loose(s) : concrete.gone(s);
+    }
     // Over squares of one size, so that spheres of any size can be compared.
     const auto across = static_cast<std::size_t>(patch.side / Patch::square + 0.5);
     std::vector<Real> lost(across * across, 0);
