@@ -284,9 +284,8 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
     return rows;
 }
 
-}  // namespace
-
-std::string validity(const ChannelConfig& c, const ChannelResults& r) {
+/// Whether the bed that stones run on is that of the model.
+std::string bed_validity(const ChannelConfig& c, const ChannelResults& r) {
     const std::string size = short_number(c.lattice.sphere_diameter) + " m";
     if (c.concrete.worn_out == WornOut::recorded)
         return "Recorded on a frozen bed, which neither stones nor water feel: outside the model's validity "
@@ -300,6 +299,16 @@ std::string validity(const ChannelConfig& c, const ChannelResults& r) {
                short_number(r.largest_safe_beta, 2) +
                ". How much of the worn volume such collisions brought is not known: see docs/convergence.md.";
     return "No collision wore more than half of its cell: beta was safe.";
+}
+
+}  // namespace
+
+std::string validity(const ChannelConfig& c, const ChannelResults& r) {
+    if (!r.breaks_by_blows) return bed_validity(c, r);
+    return "Warning: blows broke " + std::to_string(r.bonds_broken) +
+           " bonds of standing concrete; moving concrete would break several times as many, and more of it "
+           "would come loose (docs/standing_concrete.md). " +
+           bed_validity(c, r);
 }
 
 void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputFolder& folder) {

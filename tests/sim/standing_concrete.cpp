@@ -9,6 +9,7 @@
 #include "../message_of.hpp"
 
 #include <cstring>
+#include <sstream>
 
 using namespace abrade;
 
@@ -223,6 +224,12 @@ TEST_CASE("pressed straight down into its seat it stays, however weak its bonds 
         CHECK(gone(between) == 0);
         CHECK(between.concrete().detached_volume() == 0);
         CHECK(between.ledger().residual_relative() < 1e-12);
+        std::ostringstream text;
+        text << between;
+        CHECK(text.str().find("warning  blows broke bonds") != std::string::npos);
+        auto sound = simulate(block).contact(law).bond(strong);
+        sound.run({.end_time = 5e-3});
+        CHECK(!sound.breaks_by_blows());
     }
 }
 

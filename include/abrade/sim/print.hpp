@@ -32,6 +32,10 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
             out << ", and does not at " << short_text(sim.largest_safe_acceleration()) << " or less";
         out << "\n";
     }
+    if (sim.breaks_by_blows())
+        out << "warning  blows broke bonds of standing concrete: moving concrete would break several times "
+               "as "
+               "many, and more of it would come loose; see docs/standing_concrete.md\n";
     out << "ledger   [J]\n";
     sim.ledger_.visit([&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
