@@ -175,7 +175,7 @@ private:
                                .min = 0.8,
                                .max = 8000,
                                .logarithmic = true},
-                         .y = {.label = "over beta = 1", .unit = "-", .min = 0.0, .max = 1.6},
+                         .y = {.label = "over beta = 1", .unit = "-", .min = 0.0, .max = 1.8},
                          .columns = 3,
                          .panel_width = 420};
         Panel removed{.title = "volume removed"}, share{.title = "share of impacts"},

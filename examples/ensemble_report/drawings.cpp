@@ -42,7 +42,15 @@ void add_bracket(charts::Plot& plot, const DepthChart& chart) {
     plot.row({chart.to, chart.bracket.low, chart.bracket.high});
 }
 
-const Axis depth_axis{.label = "depth per converted sediment", .unit = "mm/m3", .min = 0.0};
+/// As high as the compared part of `lines` asks for: far down the channel the first stones to pass divide by
+/// nearly nothing.
+Axis depth_axis(const DepthChart& chart, const std::vector<Curve>& lines) {
+    Real highest = chart.bracket.high;
+    for (const Curve& line : lines)
+        for (std::size_t i = 0; i < line.x.size(); ++i)
+            if (line.x[i] >= chart.from && line.x[i] <= chart.to) highest = std::max(highest, line.y[i]);
+    return {.label = "depth per converted sediment", .unit = "mm/m3", .min = 0.0, .max = 1.25 * highest};
+}
 
 void finish(charts::Plot& plot, const std::string& title, const Axis& x, const Axis& y, charts::Layout layout,
             const std::string& more, const fs::path& picture) {
@@ -108,26 +116,29 @@ void draw(const DepthChart& chart, const EnsembleCase& one, const fs::path& pict
     for (std::size_t i = 0; i < along.size(); ++i)
         plot.row({place[i], along[i].mean - drawn_error(along[i]), along[i].mean + drawn_error(along[i])});
     plot.begin("1:2", std::string("lines linewidth 0.8 linecolor '") + seed_colour + "'", "each seed");
+    std::vector<Curve> lines;
     for (const auto& depth : depths) {
+        lines.push_back({.title = "", .x = place, .y = depth});
         for (std::size_t i = 0; i < depth.size(); ++i) plot.row({place[i], depth[i]});
         plot.row({gap, gap});
     }
     plot.begin("1:2", std::string("lines linewidth 3 linecolor '") + mean_colour + "'", "mean");
     for (std::size_t i = 0; i < along.size(); ++i) plot.row({place[i], along[i].mean});
-    finish(plot, chart.title, chart.place, depth_axis, {}, "", picture);
+    finish(plot, chart.title, chart.place, depth_axis(chart, lines), {}, "", picture);
 }
 
 void draw_means(const DepthChart& chart, const std::vector<const EnsembleCase*>& cases,
                 const fs::path& picture) {
     charts::Plot plot;
     add_bracket(plot, chart);
-    std::size_t index = 0;
+    std::vector<Curve> means;
     for (const EnsembleCase* one : cases) {
         Curve mean{.title = one->label(), .x = one->places(chart.line), .y = {}};
         for (const Statistics& s : statistics_along(smoothed_depths(*one, chart))) mean.y.push_back(s.mean);
-        plot.curve(mean, index++);
+        plot.curve(mean, means.size());
+        means.push_back(std::move(mean));
     }
-    finish(plot, chart.title, chart.place, depth_axis, {}, "", picture);
+    finish(plot, chart.title, chart.place, depth_axis(chart, means), {}, "", picture);
 }
 
 void draw_against_value(const Ensemble& e, const Metric& metric, const fs::path& picture) {

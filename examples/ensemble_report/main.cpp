@@ -136,7 +136,7 @@ DepthChart depth_chart(const std::vector<const EnsembleCase*>& cases, bool along
             .title = "Abrasion depth along the centre line",
             .place = {.label = "distance along the channel", .unit = "m", .min = 0.0, .max = reach.length},
             .line = &EnsembleRun::along,
-            .half = 2,
+            .half = std::max<std::size_t>(2, cases.front()->places(&EnsembleRun::along).size() / 200),
             .bracket = bracket,
             .bracket_title = "physical bracket" + on_width,
             .from = reach.compared_from,
