@@ -112,7 +112,7 @@ void land(State<P>& state) {
             const Vec3 to = flight.place(clump.position, clump.velocity, load.acceleration);
             clump.velocity = flight.velocity(clump.velocity, load.acceleration);
             note(clump.body, clump.velocity, load.acceleration);
-            if (!(flight.last > 0)) return one;
+            if (!(flight.drifts > 0)) return one;
             // Members' velocities are those of the last step: it is taken as any other.
             if (const Real before = flight.drifts - flight.last; before > 0) {
                 detail::fly_on(clump, to - flight.last * clump.velocity, before);
@@ -123,6 +123,7 @@ void land(State<P>& state) {
         },
         block_of_bodies);
     book(state.accounts, sums, state.scene.gravity);
+    flight.sound &= detail::first_three(sums.path).allFinite();
     flight.begin();
     store.refresh_images();
 }
@@ -150,8 +151,11 @@ namespace detail {
 
 /// What flyers may come to.
 struct Outlook {
-    Real fastest = 0, hardest = 0, margin = std::numeric_limits<Real>::infinity();
+    Real fastest = 0, hardest = 0;                        ///< [m/s], [m/s2]
+    Real margin = std::numeric_limits<Real>::infinity();  ///< to the nearest bound of space [m]
+    bool in_fluid = false;                                ///< somebody whose drag changes
     Outlook& operator+=(const Outlook& o) noexcept {
+        in_fluid |= o.in_fluid;
         fastest = std::max(fastest, o.fastest), hardest = std::max(hardest, o.hardest);
         margin = std::min(margin, o.margin);
         return *this;
@@ -159,21 +163,31 @@ struct Outlook {
 };
 
 /// How hard the fluid can push a body in a flight no longer than the horizon; nothing where drag would change
-/// by more than a tenth in that time: such a body takes each step.
+/// by more than a tenth in that time, where the body goes into the fluid or out of it, and where the fluid's
+/// answer is no number: such a body takes each step.
 template <class P>
 std::optional<Real> hardest_in_flight(const State<P>& state, Index body, const Vec3& position,
                                       const Vec3& velocity) noexcept {
     Real hardest = state.scene.gravity.norm();
     if constexpr (P::has_fluid)
         if (state.feels_fluid(body)) {
-            const FluidLoad load = state.fluid_on(body, position, velocity, state.flight.now, 0);
-            const Real inverse_mass = state.particles.inverse_mass[static_cast<std::size_t>(body)];
-            const Real against = (load.fluid_velocity - velocity).norm(),
-                       drag = inverse_mass * load.drag.norm();
-            // Of quadratic drag, twice the force over the speed against the fluid.
-            if (2 * drag * state.flight.horizon > 0.1 * against) return std::nullopt;
-            // Drag itself may double where the fluid is faster.
-            hardest += 2 * (drag + inverse_mass * load.buoyancy.norm());
+            const Real inverse_mass = state.particles.inverse_mass[static_cast<std::size_t>(body)],
+                       horizon = state.flight.horizon;
+            const FluidLoad here = state.fluid_on(body, position, velocity, state.flight.now, 0),
+                            there = state.fluid_on(body, position + horizon * velocity, velocity,
+                                                   state.flight.now + horizon, 0);
+            const auto wet = [](const FluidLoad& load) { return !load.buoyancy.isZero(0); };
+            if (wet(here) != wet(there)) return std::nullopt;
+            Real strongest = 0;
+            for (const FluidLoad& load : {here, there}) {
+                const Real against = (load.fluid_velocity - velocity).norm(),
+                           drag = inverse_mass * load.drag.norm();
+                // Of quadratic drag, twice the force over the speed against the fluid. Not a number is too
+                // much.
+                if (!(2 * drag * horizon <= 0.1 * against)) return std::nullopt;
+                strongest = std::max(strongest, drag + inverse_mass * load.buoyancy.norm());
+            }
+            hardest += 2 * strongest;  // drag itself may double where the fluid is faster
         }
     return hardest;
 }
@@ -232,7 +246,7 @@ void take_off(State<P>& state, Real horizon) {
                 set_pace(body, Pace::every_step);
                 return one;
             }
-            one.hardest = *hardest, one.fastest = velocity.norm();
+            one.hardest = *hardest, one.fastest = velocity.norm(), one.in_fluid = state.feels_fluid(body);
             if (const Index c = store.clump_of(body); c >= 0) {
                 const MovingClump& clump = store.clumps[at(c)];
                 const Real spin = clump.angular_velocity(clump.angular_momentum).norm();
@@ -251,6 +265,7 @@ void take_off(State<P>& state, Real horizon) {
             return one;
         },
         block_of_bodies);
+    if (!all.in_fluid) flight.horizon = std::numeric_limits<Real>::infinity();
     flight.margin = all.margin, flight.fastest = all.fastest, flight.hardest = all.hardest;
 }
 

@@ -42,6 +42,7 @@ public:
     void renew(State<P>& state, Real t, Real dt) {
         const auto start = std::chrono::steady_clock::now();
         land(state);
+        if (!state.flight.sound) return;  // the step that follows tells
         wrap(state);
         const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
         if (state.feed || has_broken_bonds || state.sites.stand) publish_places(state);
@@ -114,8 +115,10 @@ private:
     /// Squares of the longest way since the list was made [m2], and of the highest speed [m2/s2].
     struct Extremes {
         Real way2 = 0, speed2 = 0;
+        bool strays = false;  ///< concrete that looked for nobody as the list was made has left its place
         Extremes& operator+=(const Extremes& o) noexcept {
-            return way2 = std::max(way2, o.way2), speed2 = std::max(speed2, o.speed2), *this;
+            way2 = std::max(way2, o.way2), speed2 = std::max(speed2, o.speed2), strays |= o.strays;
+            return *this;
         }
     };
 
@@ -153,7 +156,7 @@ private:
 
     static Real fastest2(const State<P>& state) {
         Real fastest = parallel_sum<Extremes>(state.store.spheres(), [&](Index s) {
-                           return Extremes{0, state.store.lines.motion[at(s)].velocity.squaredNorm()};
+                           return Extremes{.speed2 = state.store.lines.motion[at(s)].velocity.squaredNorm()};
                        }).speed2;
         if (state.store.spheres() < state.particles.spheres())  // new ones are not in the store yet
             for (const Vec3& v : state.particles.velocity) fastest = std::max(fastest, v.squaredNorm());
@@ -163,8 +166,10 @@ private:
     Extremes extremes(const State<P>& state) const {
         const SphereLines& lines = state.store.lines;
         return parallel_sum<Extremes>(state.store.spheres(), [&](Index slot) {
-            return Extremes{(lines.place[at(slot)].centre - built_at_[at(slot)]).squaredNorm(),
-                            lines.motion[at(slot)].velocity.squaredNorm()};
+            return Extremes{
+                (lines.place[at(slot)].centre - built_at_[at(slot)]).squaredNorm(),
+                lines.motion[at(slot)].velocity.squaredNorm(),
+                !passive_.empty() && passive_[at(slot)] && !state.keeps_its_place(state.body_in(slot))};
         });
     }
 
@@ -172,7 +177,9 @@ private:
     bool refine(State<P>& state, Real dt) {
         dt_ = dt;
         land(state);
+        if (!state.flight.sound) return true;
         const Extremes most = extremes(state);
+        if (most.strays && age_ > 0) return false;
         const Real left = list_skin_ - 2 * std::sqrt(most.way2);
         const Real way = 2 * dt * std::sqrt(most.speed2);
         if (left < 4 * way && age_ > 0) return false;
@@ -335,6 +342,12 @@ private:
                            : state.keeps_its_place(body) ? Seeks::passive
                                                          : Seeks::all;
         });
+        passive_.clear();
+        if (state.scene.concrete && !state.sites.stand) {
+            passive_.resize(seeks.size());
+            for (Index s = 0; s < p.spheres(); ++s)
+                passive_[at(state.store.slot_of(s))] = seeks[at(s)] == Seeks::passive;
+        }
         std::vector<NearPair> known;
         for (const SitePair& pair : near_sites_)
             if (const Index body = state.sites.body_of[at(pair.site)]; body >= 0 && pair.sphere >= 0)
@@ -379,6 +392,7 @@ private:
     Index age_ = 0;                     ///< steps since the last renewal
     std::vector<SitePair> near_sites_;  ///< found by the last renewal
     std::vector<Vec3> built_at_;        ///< [slot] where the list was made [m]
+    std::vector<char> passive_;         ///< [slot] looked for nobody then; empty but for moving concrete
 };
 
 }  // namespace abrade

@@ -27,10 +27,12 @@ struct FreeFlight {
     Real margin = 0;   ///< from where they took off to the nearest bound of space [m]
     Real horizon = std::numeric_limits<Real>::infinity();  ///< drag is slow over so long a flight [s]
     Index held = 0;                                        ///< spheres that fly but for their candidates
+    bool sound = true;                                     ///< all that landed is where numbers are finite
 
     void note(Real kick, Real drift, Real time) noexcept {
         if (kicks == 0) start = time;
-        kicks += kick, drifts += drift, area += drift * kicks, last = drift, now = time + drift;
+        kicks += kick, drifts += drift, area += drift * kicks, now = time + drift;
+        if (drift > 0) last = drift;
     }
     /// Begins anew from the places reached.
     void begin() noexcept {

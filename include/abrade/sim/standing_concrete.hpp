@@ -60,9 +60,11 @@ Real height_above_standing(const State<P>& state, const Vec3& x, Real reach) {
     const Vec3 column(wide, wide, std::numeric_limits<Real>::infinity());
     state.sites.grid.each_about(x, column, [&](Index site) {
         if (state.concrete.gone(site)) return;
-        const Vec3 centre = state.place_of(site);
-        const Real room2 = square(both) - (centre - x).template head<2>().squaredNorm();
-        if (room2 > 0) lowest = std::max(lowest, centre.z() + std::sqrt(room2));
+        // One that waits to sink is in the way until then.
+        for (const Vec3& centre : {state.place_of(site), state.sites.place[static_cast<std::size_t>(site)]}) {
+            const Real room2 = square(both) - (centre - x).template head<2>().squaredNorm();
+            if (room2 > 0) lowest = std::max(lowest, centre.z() + std::sqrt(room2));
+        }
     });
     return lowest;
 }
@@ -161,6 +163,7 @@ void settle_concrete(State<P>& state, Real time) {
             presses.clear();
         }
     std::sort(loose.begin(), loose.end());
+    if (!loose.empty()) land(state);  // what comes loose begins now, and not as those that fly took off
     // What is fully worn goes as fines, once nothing touches it, and not as a grain before.
     for (const Index site : loose)
         if (!as_fines || concrete.fracture(site) < 1) state.let_go(site);

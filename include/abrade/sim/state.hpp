@@ -155,6 +155,7 @@ struct State {
     /// another has sunk into, would be shot out as such: it crumbles and vanishes.
     void let_go(Index site) {
         if (concrete.gone(site)) return;
+        ++let_go_count;
         if (sites.recede() && overlaps_standing(site)) return wear_away(site);
         const Index body = body_at(site);
         const Real mass = particles.mass[at(body)],
@@ -166,7 +167,6 @@ struct State {
             store.lines.motion[at(store.slot_of(sphere))].inverse_mass = 1 / mass;
         accounts.fed_potential += potential_energy(body, particles.position[at(body)]);
         leave_place(site);
-        ++let_go_count;
         loosened = true;
     }
 

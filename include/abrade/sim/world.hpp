@@ -330,7 +330,8 @@ private:
         const bool nobody = !(low.x() <= high.x());
         const bool near_bounds = state_.flight.furthest() >= state_.flight.margin;
         if (near_bounds) land(state_);
-        const bool sound = motion.fastest2 < square(TroubleFinder<P>::fastest_of_this_field) &&
+        const bool sound = state_.flight.sound &&
+                           motion.fastest2 < square(TroubleFinder<P>::fastest_of_this_field) &&
                            detail::first_three(motion.finite).allFinite();
         if (sound && !near_bounds && (nobody || (space.contains(low) && space.contains(high)))) return;
         report(TroubleFinder(state_).unsound_or_lost());
