@@ -84,8 +84,10 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
                    .help = "fines: a fully worn sphere vanishes; recedes: and until then it sinks as it "
                            "wears; grain: it stays as a loose grain; recorded: wear is written down on a "
                            "bed that stays as it is"});
-    c.concrete.worn_out =
-        static_cast<WornOut>(std::find(worn_outs.begin(), worn_outs.end(), worn_out) - worn_outs.begin());
+    c.concrete.worn_out = worn_out == "fines"     ? WornOut::fines
+                          : worn_out == "recedes" ? WornOut::recedes
+                          : worn_out == "grain"   ? WornOut::grain
+                                                  : WornOut::recorded;
     if (c.concrete.worn_out == WornOut::recedes && level == "dynamic")
         fail({in.where("concrete.worn_out") + ": concrete.worn_out", "another where concrete moves", "",
               "take concrete.level = \"static\", or worn_out = \"fines\""},
