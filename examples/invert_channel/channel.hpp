@@ -107,7 +107,7 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     r.waiting_volume_m3 = concrete.waiting_volume();
     r.worn_through = concrete.worn_through();
     r.spheres_let_go = sim.spheres_let_go();
-    r.breaks_by_blows = sim.breaks_by_blows();
+    r.breaks_by_blows = breaks_by_blows(sim);
     r.restitution_at_1_m_per_s = restitution_at_1_m_per_s(c, sim.contact_law());
     for (Index site = 0; site < concrete.sites(); ++site) r.spheres_worn_out += concrete.fracture(site) >= 1;
     // Equation [1] for the whole run: half of what each contact with concrete lost, times Cw and beta.

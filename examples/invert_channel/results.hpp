@@ -86,7 +86,7 @@ struct ChannelResults {
     Real mean_stone_speed_m_per_s = 0;
     Real waiting_volume_m3 = 0;         ///< told to wear, its epoch has not ended
     Index spheres_let_go = 0;           ///< that bonds no longer held
-    bool breaks_by_blows = false;       ///< as of Simulation
+    bool breaks_by_blows = false;       ///< bonds gave way to blows rather than to wear
     Index spheres_worn_out = 0;         ///< fully fractured; of a recorded bed: whose cell was used up
     Real restitution_at_1_m_per_s = 0;  ///< of the middle stone on concrete
     Real wall_contacts_s = 0, wall_bonds_s = 0, wall_motion_s = 0, wall_lists_s = 0, wall_fluid_s = 0;

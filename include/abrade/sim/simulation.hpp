@@ -119,15 +119,6 @@ public:
     Vec3 concrete_place(Index site) const { return world().state().place_of(site); }
     Index bonds_broken() const { return world().state().bonds_broken(); }
     Index spheres_let_go() const { return world().state().let_go_count; }  ///< of concrete that stood
-    /// Whether bonds of concrete that stands gave way to blows rather than to wear: more than one for every
-    /// four cells that wore. Concrete that moves then breaks several times as many, and more of it comes
-    /// loose (docs/standing_concrete.md).
-    bool breaks_by_blows() const {
-        if (!world().state().sites.stand) return false;
-        Real cells = 0;
-        for (Index site = 0; site < concrete().sites(); ++site) cells += concrete().fracture(site);
-        return static_cast<Real>(bonds_broken()) > 0.25 * cells;
-    }
     /// The time acceleration at which the largest collision so far would have worn half of its sphere's cell
     /// [-], from where on the map of docs/convergence.md loses wear to overflow; infinite where nothing wore.
     /// More stones may bring a larger collision.

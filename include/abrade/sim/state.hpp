@@ -97,12 +97,12 @@ struct State {
     }
     /// What is left of the strength of a site's sphere.
     auto strength_of_site() const noexcept {
-        return [this](Index site) -> Real {
-            if constexpr (P::has_wear)
+        if constexpr (P::has_wear)
+            return [this](Index site) -> Real {
                 return policies.wear.strength_left(is_frozen() ? 0 : concrete.fracture(site));
-            else
-                return site >= 0 ? 1 : 0;
-        };
+            };
+        else
+            return [](Index) -> Real { return 1; };
     }
     /// The same of a body of concrete, for bonds.
     auto strength_left() const noexcept {
