@@ -247,6 +247,11 @@ void read_wear(TomlReader& in, ChannelConfig& c) {
         SpreadByEpoch epoch;
         epoch.length = wanted("wear.overflow_length", "m", "of the strips whose mean is worn");
         epoch.every = wanted("wear.overflow_every", "s", "between two changes of the bed");
+        require(epoch.every <= c.end_time,
+                {in.where("wear.overflow_every") + ": wear.overflow_every",
+                 "at most run.end_time (" + to_text(c.end_time) + " s)", "s",
+                 "what an epoch has collected as the run ends wears nothing"},
+                epoch.every);
         c.concrete.overflow = epoch;
     } else {
         refuse(in, {"wear.overflow_length"}, way);
@@ -388,8 +393,11 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
     feed.region = {{from, -half, 0.002}, {to, half, height}};
     feed.velocity = {speed, 0, 0};
     feed.bed = [invert = c.invert](Real, Real y) { return invert.bed_height(y); };
-    feed.seed = static_cast<std::uint32_t>(in.integer(
-        "run.seed", {.fallback = 1, .help = "of all that is random", .bound = Bound::not_negative}));
+    const auto seed = in.integer(
+        "run.seed", {.fallback = 1, .help = "of all that is random", .bound = Bound::not_negative});
+    require(seed <= std::numeric_limits<std::uint32_t>::max(),
+            {in.where("run.seed") + ": run.seed", "at most 4294967295", ""}, seed);
+    feed.seed = static_cast<std::uint32_t>(seed);
 }
 
 void read_comparison(TomlReader& in, ChannelConfig& c) {
@@ -430,6 +438,16 @@ void read_comparison(TomlReader& in, ChannelConfig& c) {
             {in.where("compare.to") + ": compare.to",
              "downstream of compare.from (" + to_text(compare.from) + " m)", "m"},
             compare.to);
+    // A section or a strip without a column of spheres in it would have a depth of nothing.
+    const Real sphere = c.lattice.sphere_diameter;
+    require(compare.to - compare.from >= sphere,
+            {in.where("compare.to") + ": compare.to",
+             "at least a sphere of the concrete (" + to_text(sphere) + " m) from compare.from", "m"},
+            compare.to);
+    require(compare.half_width >= 0.5 * sphere && compare.half_width <= 0.5 * c.invert.width,
+            {in.where("compare.half_width") + ": compare.half_width",
+             "from half a sphere of the concrete to half the channel's width", "m"},
+            compare.half_width);
 }
 
 }  // namespace
