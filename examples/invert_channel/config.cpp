@@ -396,7 +396,7 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
     const auto seed = in.integer(
         "run.seed", {.fallback = 1, .help = "of all that is random", .bound = Bound::not_negative});
     require(seed <= std::numeric_limits<std::uint32_t>::max(),
-            {in.where("run.seed") + ": run.seed", "at most 4294967295", ""}, seed);
+            {in.where("run.seed") + ": run.seed", "at most 4294967295", ""}, static_cast<Real>(seed));
     feed.seed = static_cast<std::uint32_t>(seed);
 }
 
