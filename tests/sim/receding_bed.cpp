@@ -49,7 +49,7 @@ template <class Sim>
 Vec3 surface(const Sim& sim, Index site) {
     return sim.world().state().sites.place[at(site)];
 }
-/// Of the bed as it is [m3]: spheres stand where their columns' record has them.
+/// What the bed has lost where its spheres have sunk or gone [m3].
 template <class Sim>
 Real volume_above_surface(const Sim& sim) {
     const Concrete& c = sim.concrete();

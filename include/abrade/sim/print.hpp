@@ -45,9 +45,8 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
         out << "\n";
     }
     if (breaks_by_blows(sim))
-        out << "warning  blows broke bonds of standing concrete: moving concrete would break several times "
-               "as "
-               "many, and more of it would come loose; see docs/standing_concrete.md\n";
+        out << "warning  blows broke bonds of standing concrete: moving concrete would break several "
+               "times as many, and more of it would come loose; see docs/standing_concrete.md\n";
     out << "ledger   [J]\n";
     sim.ledger_.visit([&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
