@@ -27,7 +27,7 @@ inline Scene make_scene(const ChannelConfig& c) {
     scene.gauge = c.comparison.gauge;
     // Stones may bounce off the upstream end and high above the water, but not through the concrete.
     const Real floor = -c.lattice.layers * c.lattice.sphere_diameter;
-    scene.bounds = {{-1, -1.2 * half, floor}, {c.invert.length + 1, 1.2 * half, 5}};
+    scene.bounds = {{-1, -1.2 * half, floor}, {c.invert.length + 1, 1.2 * half, ChannelConfig::ceiling}};
     return scene;
 }
 

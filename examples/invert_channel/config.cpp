@@ -304,7 +304,8 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
                                    .help = "that water runs before the stones begin, 0: three "
                                            "times what uniform flow takes down the channel, and 1 s",
                                    .bound = Bound::not_negative});
-    require(c.fluid.spacing <= 0.25 * c.invert.width,
+    const bool none_flows = c.fluid.model == "none" || c.fluid.model == "uniform";
+    require(none_flows || c.fluid.spacing <= 0.25 * c.invert.width,
             {in.where("fluid.spacing") + ": fluid.spacing",
              "at most a quarter of the channel's width of " + to_text(c.invert.width) + " m", "m"},
             c.fluid.spacing);
@@ -386,6 +387,16 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
     const Real until = in.number(
         "sediment.feed_until",
         {.unit = "s", .fallback = 0, .help = "end of the supply, 0: none", .bound = Bound::not_negative});
+    // Each stone drops in at its time; how many there may be is bounded as the concrete's spheres are.
+    Real per_volume = 0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) per_volume += fractions[i] / (pi / 6 * cube(sizes[i]));
+    const Real stones =
+        feed.volume_rate * (until > 0 ? std::min(until, c.end_time) : c.end_time) * per_volume;
+    require(stones <= 1e8,
+            {in.where("sediment.sizes") + ": sediment.sizes with sediment.rate and run.end_time",
+             "such that at most 1e8 stones are fed", "stones",
+             "leave out the smallest stones or run for a shorter time"},
+            stones);
     require(height > 0.002 && height <= 4,
             {in.where("sediment.feed_height") + ": sediment.feed_height", "above 0.002 m, at most 4 m", "m"},
             height);
@@ -475,6 +486,8 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
                                               .bound = Bound::not_negative});
     c.safety = in.number("run.safety",
                          {.fallback = 0.8, .help = "share of the stable step", .bound = Bound::positive});
+    require(c.safety <= 1, {in.where("run.safety") + ": run.safety", "in (0, 1]", "", "0.8 is common"},
+            c.safety);
     c.skin =
         in.number("run.skin",
                   {.unit = "m", .fallback = 0.03, .help = "of the neighbour list", .bound = Bound::positive});
@@ -502,7 +515,13 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
     check("concrete", [&] { MohrCoulomb{c.bond}, check_size(c.lattice, c.invert.length, c.invert.width); });
     check("contact", [&] { std::visit([](const auto& params) { params.validate(); }, c.contact); });
     check("wear", [&] { validate(c.concrete.overflow); });
-    check("water", [&] { UniformFlow{c.water}; });
+    check("water", [&] {
+        require(UniformFlow{c.water}.depth() < ChannelConfig::ceiling,
+                {"water.discharge of " + to_text(c.water.discharge) + " m3/s: depth of uniform flow",
+                 "below " + to_text(ChannelConfig::ceiling) + " m, which is as high as stones may go", "m",
+                 "take a smaller discharge or a steeper channel"},
+                UniformFlow{c.water}.depth());
+    });
     check("sediment", [&] { c.feed.validate(); });
     return c;
 }

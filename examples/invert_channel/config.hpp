@@ -38,6 +38,7 @@ struct WaterChoice {
 };
 
 struct ChannelConfig {
+    static constexpr Real ceiling = 5;  ///< over the invert, which stones must not reach [m]
     std::string title;
     std::string source;  ///< the TOML file
     Invert invert;

@@ -17,6 +17,7 @@
 #include "profiles.hpp"
 
 #include "../common/gnuplot.hpp"
+#include "../common/interrupt.hpp"
 #include "../common/measured_points.hpp"
 
 #include <abrade/core/parallel.hpp>
@@ -166,7 +167,8 @@ int run(const Options& options) {
         return run.code;
     }
     const ChannelResults& results = run.results;
-    std::string unfinished;  // what was computed is kept, whatever happens to its pictures
+    const Interrupt drawing;  // does not stop for a Ctrl-C, which would lose what was computed
+    std::string unfinished;   // the results are kept where their pictures fail
     try {
         write_summary(config, results, folder.path("summary.json"));
         write_profiles(config, results, folder.path("profiles.json"));
@@ -223,7 +225,9 @@ int main(int argc, char** argv) {
     app.add_option("--out", options.out, "folder of the results")->capture_default_str();
     app.add_option("--threads", options.threads, "0: OMP_NUM_THREADS or all cores")
         ->check(CLI::Range(0, 1024));
-    app.add_flag("--check", options.check, "reads and checks the configuration, and runs nothing");
+    app.add_flag("--check", options.check,
+                 "reads and checks the file and runs nothing; what only the whole scene tells, as the stable "
+                 "step, is checked as a run begins");
     H5dont_atexit();  // files are closed here; after a full disk HDF5's own clean-up at exit would crash
     try {
         app.parse(argc, argv);

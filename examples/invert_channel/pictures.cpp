@@ -298,6 +298,8 @@ std::string bed_validity(const ChannelConfig& c, const ChannelResults& r) {
                " times its sphere's cell: beta " + short_number(beta) + " is above the safe " +
                short_number(r.largest_safe_beta, 2) +
                ". How much of the worn volume such collisions brought is not known: see docs/convergence.md.";
+    if (r.largest_collision_share == 0)
+        return "No collision wore concrete: nothing tells which beta is safe.";
     return "No collision wore more than half of its cell: beta was safe.";
 }
 

@@ -140,6 +140,16 @@ sleep 2
 kill -INT $pid
 wait $pid || fail "Ctrl-C: exit code $?"
 [ "$(value stopped/summary.json stopped_early)" = true ] || fail "a stopped run does not say so"
+# ... and while pictures are drawn loses nothing
+mkdir -p slow
+printf '#!/bin/sh\n[ "$1" = --version ] && { echo gnuplot 5.4; exit 0; }\ntouch "%s/slow/draws"; sleep 1; exit 1\n' "$PWD" > slow/gnuplot
+chmod +x slow/gnuplot
+PATH="$PWD/slow:$PATH" "$program" "${short[@]}" --set run.end_time=0.01 --out drawn > drawn.log 2>&1 &
+pid=$!
+until [ -e slow/draws ]; do sleep 0.05; done
+kill -INT $pid
+wait $pid || true
+[ -s drawn/summary.json ] || fail "Ctrl-C while pictures are drawn: the results are lost"
 "$program" --fluid grid --set fluid.settle=1000 --out unsettled > unsettled.log 2>&1 &
 pid=$!
 sleep 2
@@ -169,6 +179,10 @@ PATH="$PWD/stub:$PATH" "$program" "${short[@]}" --set run.end_time=0.01 --out un
 [ $status -eq 1 ] || fail "no pictures: exit code $status"
 for file in summary.json series.h5; do [ -s unpainted/$file ] || fail "no pictures: $file is lost"; done
 grep -q 'null' unpainted/summary.json || fail "a depth per sediment without sediment"
+
+# --- no word on a safe beta where nothing wore
+"$program" "${short[@]}" --set run.end_time=0.001 --out untouched > /dev/null || fail "a run in which nothing wears"
+grep -q '"validity": "No collision wore concrete' untouched/summary.json || fail "nothing wore, and beta is called safe"
 
 # --- what a killed run left is mentioned
 mkdir -p .left.partial-1
@@ -215,6 +229,9 @@ refused "a cluster of rigid concrete" 'concrete.cluster.*static' --set 'concrete
 refused "a patch without a size" 'wear.overflow_length' --set 'wear.overflow="patch"'
 refused "an epoch's time for a crater" 'wear.overflow_every.*crater' --set wear.overflow_every=1
 refused "a gauge outside" 'compare.gauges.*inside the channel.*3 m' --set 'compare.gauges=[3]'
+refused "a step beyond the stable one" 'run.safety.*\(0, 1\].*got 5' --check --set run.safety=5
+refused "stones without number" 'sediment.sizes.*at most 1e8 stones' --check --set 'sediment.sizes=[1e-6,0.05,0.075,0.1,0.15]'
+refused "water over everything" 'water.discharge of 1e.?09 m3/s.*below 5 m' --check --set water.discharge=1e9
 refused "unknown option" 'help' --frobnicate
 mkdir -p readonly_is_a_file && touch readonly_is_a_file/inside
 code=0; "$program" --out readonly_is_a_file/inside > refused.log 2>&1 || code=$?

@@ -215,3 +215,30 @@ TEST_CASE("what a wall passes through stands in that wall") {
         if (p.position[b].x() > 0.036) CHECK(p.inverse_mass[b] == 0);
     CHECK(sim.bonds_broken() > 0);
 }
+
+TEST_CASE("concrete that strays from its place is looked for before it meets other concrete") {
+    constexpr Real d = 0.02;
+    std::vector<Vec3> centres;
+    for (int n = 0; n < 4; ++n) centres.push_back({n * d, 0, 0});
+    centres.push_back(
+        {3 * d, -1.3 * d, 0});  // stands beside the free end of the others, and is no end of a bond
+    Lattice lattice = lattice_of(centres, 0.5 * d, 5 * cube(d));
+    for (LatticeSite& site : lattice.sites) site.held = site.centre.x() < 0.5 * d || site.centre.y() < -d;
+    Scene scene;
+    scene.gravity = {0, -standard_gravity, 0};
+    scene.concrete = ConcreteBlock{.lattice = lattice};
+    auto sim = simulate(scene)
+                   .contact(LinearSpring{{.stiffness = 1e5, .restitution = 0.5}})
+                   .bond(MohrCoulomb{{.tensile = 1e12, .stiffness = 1e5}})
+                   .wear(SubParticleAbrasion{{.coefficient = 0, .acceleration = 1}});
+    Real nearest = 1, lowest = 0;
+    sim.run({.end_time = 0.15, .observe_every = 1e-3, .skin = 4 * d}, [&](const auto& now) {
+        const auto& x = now.particles().position;
+        for (std::size_t n = 0; n + 1 < x.size(); ++n) nearest = std::min(nearest, (x[n] - x.back()).norm());
+        lowest = std::min(lowest, x[3].y());
+    });
+    CHECK(sim.bonds_broken() == 0);
+    CHECK(lowest < -0.25 * d);
+    CHECK(nearest < 1.01 * d);
+    CHECK(nearest > 0.97 * d);
+}

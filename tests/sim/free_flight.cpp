@@ -140,6 +140,39 @@ TEST_CASE("clumps and spheres in water fly as they go step by step") {
     CHECK(flown.ledger().drag_work == doctest::Approx(each_step.ledger().drag_work).epsilon(1e-3));
 }
 
+TEST_CASE("a clump in flight goes on as it went where it lands as the step has changed") {
+    const auto fly = [](bool free_flight) {
+        Scene scene;
+        scene.add_stone(make_clump("pair", {{{-0.01, 0, 0}, 0.015}, {{0.012, 0, 0}, 0.012}}),
+                        {.position = {0, 0, 1}, .velocity = {1, 0, 0}, .angular_velocity = {3, 20, 40}});
+        scene.add_sphere(0.01, {.position = {0, 0, 0.01}}).add_wall({0, 0, 0}, {0, 0, 1});
+        auto sim = simulate(scene).contact(law);
+        // The first look for those who fall asleep comes with the first of the shorter steps: all land.
+        const Real first = (Sleep::steps_between_looks - 1) * 2e-5;
+        RunOptions options{.end_time = first,
+                           .time_step = 2e-5,
+                           .free_flight = free_flight,
+                           .sleep_speed = 0.1,
+                           .sleep_after = 1e-3};
+        sim.run(options);
+        CHECK(sim.world().state().sleep.count == 0);
+        options.end_time += 0.01, options.time_step = 1e-5;
+        sim.run(options);
+        CHECK(sim.world().state().sleep.count == 1);
+        return sim;
+    };
+    const auto flown = fly(true), each_step = fly(false);
+    CHECK(furthest_apart(flown, each_step) < 1e-7);
+    CHECK(flown.ledger().residual_relative() < 1e-12);
+}
+
+TEST_CASE("flights are cut short where drag changes them, and nowhere else") {
+    CHECK(std::isfinite(fly_in_water(2e-5).world().state().flight.horizon));
+    auto dry = simulate(in_water()).contact(law);
+    dry.run({.end_time = 0.01, .time_step = 2e-5});
+    CHECK(std::isinf(dry.world().state().flight.horizon));
+}
+
 TEST_CASE("who looks on changes no bit of a flight in water") {
     const auto alone = fly_in_water(2e-5), observed = fly_in_water(2e-5, 1.3e-3);
     for (std::size_t n = 0; n < alone.particles().position.size(); ++n) {

@@ -90,6 +90,22 @@ TEST_CASE("a worn sphere sinks by its fracture rate, once the stone has left it"
     CHECK(sim.ledger().left_stored == 0);
 }
 
+TEST_CASE("a stone is fed over a worn sphere where that stands, not where it will sink to") {
+    auto sim =
+        simulate(on_the_middle(WornOut::recedes)).contact(law).bond(strong).wear(abrasion(three_cells));
+    Index waiting = 0;  // one that the crater has reached, beside the stone's own and no body yet
+    sim.run({.end_time = 2e-3, .time_step = 1e-5, .observe_every = 1e-5}, [&](const auto& now) {
+        const auto& state = now.world().state();
+        for (Index site = 0; site < now.concrete().sites(); ++site) {
+            const Vec3 place = surface(now, site);
+            if (now.concrete().gone(site) || (place - state.place_of(site)).norm() < 0.1 * d) continue;
+            ++waiting;
+            CHECK(height_above_standing(state, place, radius) >= place.z() + 0.5 * d + radius);
+        }
+    });
+    CHECK(waiting > 0);
+}
+
 TEST_CASE("what one collision wears does not change its rebound") {
     const auto rebound = [](WornOut worn_out, Real beta) {
         auto sim = simulate(on_the_middle(worn_out)).contact(law).bond(strong).wear(abrasion(beta));
