@@ -304,8 +304,8 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
                                    .help = "that water runs before the stones begin, 0: three "
                                            "times what uniform flow takes down the channel, and 1 s",
                                    .bound = Bound::not_negative});
-    const bool none_flows = c.fluid.model == "none" || c.fluid.model == "uniform";
-    require(none_flows || c.fluid.spacing <= 0.25 * c.invert.width,
+    const bool on_a_grid = c.fluid.model == "shallow" || c.fluid.model == "grid";
+    require(!on_a_grid || c.fluid.spacing <= 0.25 * c.invert.width,
             {in.where("fluid.spacing") + ": fluid.spacing",
              "at most a quarter of the channel's width of " + to_text(c.invert.width) + " m", "m"},
             c.fluid.spacing);
@@ -387,7 +387,7 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
     const Real until = in.number(
         "sediment.feed_until",
         {.unit = "s", .fallback = 0, .help = "end of the supply, 0: none", .bound = Bound::not_negative});
-    // Each stone drops in at its time; how many there may be is bounded as the concrete's spheres are.
+    // As many as the concrete may have spheres; smaller stones would be fed for ever.
     Real per_volume = 0;
     for (std::size_t i = 0; i < sizes.size(); ++i) per_volume += fractions[i] / (pi / 6 * cube(sizes[i]));
     const Real stones =
@@ -516,11 +516,12 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
     check("contact", [&] { std::visit([](const auto& params) { params.validate(); }, c.contact); });
     check("wear", [&] { validate(c.concrete.overflow); });
     check("water", [&] {
-        require(UniformFlow{c.water}.depth() < ChannelConfig::ceiling,
+        const Real depth = UniformFlow{c.water}.depth();
+        require(depth < ChannelConfig::ceiling,
                 {"water.discharge of " + to_text(c.water.discharge) + " m3/s: depth of uniform flow",
                  "below " + to_text(ChannelConfig::ceiling) + " m, which is as high as stones may go", "m",
                  "take a smaller discharge or a steeper channel"},
-                UniformFlow{c.water}.depth());
+                depth);
     });
     check("sediment", [&] { c.feed.validate(); });
     return c;

@@ -10,6 +10,12 @@ value() { grep -oE "\"$2\": *[^,}]*" "$1" | head -1 | sed 's/.*: *//'; }
 # Compares numbers: holds NAME EXPRESSION, with awk's syntax.
 holds() { awk "BEGIN { exit !($2) }" || fail "$1: $2"; }
 
+broken_gnuplot() { # broken_gnuplot FOLDER COMMAND: a gnuplot that does this and draws nothing
+    mkdir -p "$1"
+    printf '#!/bin/sh\n[ "$1" = --version ] && { echo gnuplot 5.4; exit 0; }\n%s\nexit 1\n' "$2" > "$1/gnuplot"
+    chmod +x "$1/gnuplot"
+}
+
 short=(--set channel.length=0.5 --set run.end_time=0.3 --set compare.gauge=0.2 --set compare.from=0.2 --set compare.to=0.5)
 
 # --- a short run gives everything that is promised
@@ -140,14 +146,12 @@ sleep 2
 kill -INT $pid
 wait $pid || fail "Ctrl-C: exit code $?"
 [ "$(value stopped/summary.json stopped_early)" = true ] || fail "a stopped run does not say so"
-# ... and while pictures are drawn loses nothing
-mkdir -p slow
-printf '#!/bin/sh\n[ "$1" = --version ] && { echo gnuplot 5.4; exit 0; }\ntouch "%s/slow/draws"; sleep 1; exit 1\n' "$PWD" > slow/gnuplot
-chmod +x slow/gnuplot
+# ... and while pictures are drawn loses nothing; SIGTERM, since bash has what runs behind it ignore SIGINT
+broken_gnuplot slow "touch '$PWD/slow/draws'; sleep 1"
 PATH="$PWD/slow:$PATH" "$program" "${short[@]}" --set run.end_time=0.01 --out drawn > drawn.log 2>&1 &
 pid=$!
-until [ -e slow/draws ]; do sleep 0.05; done
-kill -INT $pid
+while [ ! -e slow/draws ] && kill -0 $pid; do sleep 0.05; done
+kill -TERM $pid
 wait $pid || true
 [ -s drawn/summary.json ] || fail "Ctrl-C while pictures are drawn: the results are lost"
 "$program" --fluid grid --set fluid.settle=1000 --out unsettled > unsettled.log 2>&1 &
@@ -171,11 +175,9 @@ status=0
 grep -q surface wet.failed/last_good.h5 || fail "the water of a failed run is not kept"
 
 # --- pictures that fail take nothing with them: exit 1, data and summary are kept
-mkdir -p stub
-printf '#!/bin/sh\n[ "$1" = --version ] && { echo gnuplot 5.4; exit 0; }\nexit 1\n' > stub/gnuplot
-chmod +x stub/gnuplot
+broken_gnuplot unable :
 status=0
-PATH="$PWD/stub:$PATH" "$program" "${short[@]}" --set run.end_time=0.01 --out unpainted > unpainted.log 2>&1 || status=$?
+PATH="$PWD/unable:$PATH" "$program" "${short[@]}" --set run.end_time=0.01 --out unpainted > unpainted.log 2>&1 || status=$?
 [ $status -eq 1 ] || fail "no pictures: exit code $status"
 for file in summary.json series.h5; do [ -s unpainted/$file ] || fail "no pictures: $file is lost"; done
 grep -q 'null' unpainted/summary.json || fail "a depth per sediment without sediment"

@@ -220,8 +220,7 @@ TEST_CASE("concrete that strays from its place is looked for before it meets oth
     constexpr Real d = 0.02;
     std::vector<Vec3> centres;
     for (int n = 0; n < 4; ++n) centres.push_back({n * d, 0, 0});
-    centres.push_back(
-        {3 * d, -1.3 * d, 0});  // stands beside the free end of the others, and is no end of a bond
+    centres.push_back({3 * d, -1.3 * d, 0});  // beside the free end of the row, bonded to nobody
     Lattice lattice = lattice_of(centres, 0.5 * d, 5 * cube(d));
     for (LatticeSite& site : lattice.sites) site.held = site.centre.x() < 0.5 * d || site.centre.y() < -d;
     Scene scene;
