@@ -5,9 +5,9 @@
 #include <abrade/fluid/narrow_faces.hpp>
 #include <abrade/fluid/open_friction.hpp>
 #include <abrade/fluid/projection.hpp>
-#include <abrade/fluid/resting_films.hpp>
 #include <abrade/fluid/velocity_extension.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/wall_films.hpp>
 #include <abrade/fluid/water_start.hpp>
 
 #include <memory>
@@ -26,9 +26,9 @@ class SurfaceWater {
 
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
-        : grid_(&grid), sides_(params.sides), films_(grid, params.sides, params.pressed_axes()),
+        : grid_(&grid), sides_(params.sides),
           liquid_(grid, params.sides, {.smallest_void = std::clamp(params.tolerance, 1e-6, 1e-4)}),
-          walls_(walls_inside(grid, params)), friction_(grid, params.sides, params.wall_law, walls_.get()),
+          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get()), friction_(grid, params.sides, params.wall_law, walls_.get()),
           before_(grid.layout().total), burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
           rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
           open_in_(static_cast<std::size_t>(grid.layout().planes())) {
@@ -379,9 +379,9 @@ private:
 
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
-    RestingFilms<Dim> films_;
     VolumeOfFluid<Dim> liquid_;
     std::shared_ptr<const Walls<Dim>> walls_;  ///< shared among copies; the liquid points to them
+    WallFilms<Dim> films_;
     WallFriction<Dim> friction_;
     PerAxis<FaceField<Dim, float>, Dim> open_friction_;  ///< of sides of momentum's control volumes
     Field<Real> held_, before_;
