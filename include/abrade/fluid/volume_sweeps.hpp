@@ -357,16 +357,19 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
     });
 }
 
-/// A film thinner than its cell whose plane lies at the end that it comes from, with nothing there to hold
-/// it: a slab of the other end would find nothing, for ever. It leaves as if it filled the cell evenly. At a
-/// side it is held, but where gravity pulls it off.
+/// A film thinner than its cell whose plane lies at the end that it comes from: a slab of the other end would
+/// find nothing, for ever. Unless as much liquid behind it holds it, or a closed face that gravity does not
+/// pull it off, it leaves as if it filled the cell evenly. A wall that cuts the cell holds nothing back: what
+/// moves there moves along it.
 template <int Dim>
 Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume) const noexcept {
-    if (fraction_[c] >= 0.5 || open_volumes_) return 0;
+    if (fraction_[c] >= 0.5) return 0;
+    const auto open = [&](Offset at) { return open_volumes_ ? (*open_volumes_)[at] : 1; };
     const Offset behind = c - way * layout_.stride[index(axis)];
     constexpr std::uint8_t room = cell_mark::inside | cell_mark::open;
-    const bool held = (marks_[behind] & room) == room || sides_.periodic(axis) ? fraction_[behind] > wisp
-                                                                               : !(gravity_[axis] * way > 0);
+    const bool held = (marks_[behind] & room) == room || sides_.periodic(axis)
+                          ? fraction_[behind] * open(behind) >= fraction_[c] * open(c)
+                          : open(c) == 1 && !(gravity_[axis] * way > 0);
     return held ? 0 : fraction_[c] * volume;
 }
 

@@ -50,7 +50,7 @@ void refuse_in_full_box(const GridFluidParams<Dim>& params) {
 template <int Dim>
 std::shared_ptr<const Walls<Dim>> walls_inside(const Grid<Dim>& grid, const GridFluidParams<Dim>& params) {
     if (!params.wall) return nullptr;
-    const typename Walls<Dim>::Params how{.called = "GridFluid.wall"};
+    const typename Walls<Dim>::Params how{.closed_below = 0.1, .called = "GridFluid.wall"};
     const auto walls = std::make_shared<Walls<Dim>>(grid, params.wall, how);
     walls->repeat(params.sides, params.wall);
     return walls;
