@@ -243,6 +243,7 @@ private:
             sides_.close(stage_[a], a);
         }
         water_->clear_walls(stage_);
+        carry_weight(stage_, falls);
         outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1], true});
         projection_.project(stage_, pressure_, {1, tolerance});
         water_->clear_air(stage_);
@@ -297,8 +298,10 @@ private:
             const auto open_faces = projection_.open_faces();
             parallel_for(static_cast<Index>(open_faces.size()), [&](Index n) {
                 const OpenFace& open = open_faces[static_cast<std::size_t>(n)];
-                if (open.plain != 0)
-                    result[open.axis][open.face] += push * (open.slope - open.plain) * pressure_[open.cell];
+                if (open.plain == 0) return;
+                Real& u = result[open.axis][open.face];
+                u += push * (open.slope - open.plain) * pressure_[open.cell];
+                u -= (kept == 0 ? 1 : -0.5) * (1 - open.weight) * dt * falls[open.axis];
             });
             for (const WaterFace& f : water.still())
                 result[f.axis][f.face] = record_.velocity()[f.axis][f.face] + kept * 2 * dt * falls[f.axis];
@@ -320,13 +323,19 @@ private:
         water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * falls);
         for (const WaterFace& f : water.still())
             velocity_[f.axis][f.face] = record_.velocity()[f.axis][f.face];
+        carry_weight(velocity_, dt * falls);
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // Whole sides: where they change there may not have been water before.
         if (!params_.steady_sides) sides_.fill(velocity_);
         report_ = projection_.project(
             velocity_, pressure_, {dt, params_.tolerance, true, &water.liquid().surplus(), late_.pace(dt)});
-        water.limit_narrow_faces(velocity_, projection_);
         finish(velocity_);
+    }
+
+    /// Takes back from open faces the fall of what is not below the surface.
+    void carry_weight(FaceField<Dim>& u, const Point<Dim>& fall) const {
+        for (const OpenFace& open : projection_.open_faces())
+            u[open.axis][open.face] -= (1 - open.weight) * fall[open.axis];
     }
 
     void advance(const PerAxis<WetRows<Dim>, Dim>& faces, Stage& stage) const {

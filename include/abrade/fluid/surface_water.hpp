@@ -2,7 +2,6 @@
 // Water below a free surface: where it is, what it touches, and what carries its momentum.
 
 #include <abrade/fluid/grid_fluid_params.hpp>
-#include <abrade/fluid/narrow_faces.hpp>
 #include <abrade/fluid/open_friction.hpp>
 #include <abrade/fluid/projection.hpp>
 #include <abrade/fluid/velocity_extension.hpp>
@@ -198,10 +197,6 @@ public:
         films_.hold(u, rows_, wet_, held());
     }
 
-    void limit_narrow_faces(FaceField<Dim>& u, const Projection<Dim, Real>& projection) const {
-        if (walls_) detail::limit_narrow_faces(u, *walls_, projection.open_faces());
-    }
-
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
     /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
     /// back.
@@ -367,7 +362,7 @@ private:
                 if (walls_ && liquid_.is_ashore(c))
                     open.push_back({face, wet, a});
                 else
-                    open.push_back({face, wet, a, plain / share, plain});
+                    open.push_back(open_face({face, wet, a, plain / share, plain}, share));
             };
             add(c + s, 1);
             add(c, -1);
@@ -375,6 +370,27 @@ private:
         add_along(outer, place.plane);
         add_along(inner, place.i);
         if constexpr (Dim == 3) add_along(Dim - 1, place.row);
+    }
+
+    /// A cell's pressure that is 0 at its surface pushes all that enters the cell through that face. Where
+    /// walls leave less of the face than of another one of the cell it would shoot out: so the face has the
+    /// inertia of half the way to the next centre at least, of which only what lies below the surface has
+    /// weight. At rest that is the same.
+    OpenFace open_face(OpenFace open, Real share) const {
+        constexpr Real least_way = 0.5;
+        if (!walls_ || share >= least_way) return open;
+        const CellNumber<Dim> cell = layout().number(open.cell);
+        const auto area = [&](int a, Offset face) {
+            return walls_->open_area()[a][face] / grid_->size(a, cell[a]);
+        };
+        const Real own = area(open.axis, open.face);
+        for (int a = 0; a < Dim; ++a)
+            for (const Offset face : {open.cell, open.cell + layout().stride[a]})
+                if (area(a, face) > own) {
+                    open.slope = open.plain / least_way, open.weight = share / least_way;
+                    return open;
+                }
+        return open;
     }
 
     const Grid<Dim>* grid_;
