@@ -61,12 +61,10 @@ public:
         look_at_walls();
         detail::give_velocity(*grid_, params_, velocity_);
         sides_.fill(velocity_);
-        if (params_.velocity) {
-            Field<State> potential(layout().total);
-            report_ = projection_.project(velocity_, potential, {1, 1e-12});
-            fastest_ = report_.courant;
-        }
-        finish(velocity_);
+        if (params_.velocity)
+            free_of_divergence(1e-12);
+        else
+            finish(velocity_);
         if constexpr (has_surface) {
             find_pressure_of_weight(1e-12);
             first_step_ = std::sqrt(2 * water_->liquid().stable_step(stage_));
@@ -165,12 +163,14 @@ public:
         detail::ChangedWalls<Dim> change(water_->liquid(), water_->walls(), water.walls(), params_.gravity);
         const auto [fraction, surplus] = change.run();
         water.restore(fraction, surplus, WetRows<Dim>::whole(layout()), water_->liquid().steps());
+        water.make_room();
         detail::check_inflows(next.params_, water.liquid(), water.walls());
         water.find(next.projection_, next.pressure_);
         next.find_pressure_of_weight(1e-3);  // the old one knows nothing of where the surface is now
         next.look_at_walls();
         next.heights_.find(*grid_, water.rows(), water.held());
         next.finish(next.velocity_);
+        next.free_of_divergence();  // or the liquid would flow into the new walls
         next.find_eddies();
         *this = std::move(next);
     }
@@ -229,6 +229,14 @@ private:
             heights_ = detail::SurfaceHeights<Dim>(*grid_, params_.sides.periodic_axes(), walls);
         }
         if constexpr (Turbulence::has_eddies) eddies_.emplace(*grid_, params_, turbulence_, walls);
+    }
+
+    /// A velocity that was given, or walls that have come.
+    void free_of_divergence(Real tolerance = 1e-6) {
+        Field<State> potential(layout().total);
+        report_ = projection_.project(velocity_, potential, {1, tolerance});
+        fastest_ = std::max(report_.courant, enters_);
+        finish(velocity_);
     }
 
     /// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage_`

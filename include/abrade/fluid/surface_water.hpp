@@ -245,6 +245,14 @@ public:
         }
     }
 
+    /// After walls have changed around the water.
+    void make_room() {
+        liquid_.make_room();
+        rows_before_.include(rows_);
+        find_rows();
+        find_held();
+    }
+
     /// Puts back fractions and surplus as they were saved, in the rows of then, after so many steps.
     void restore(const Field<Real>& fraction, const Field<Real>& surplus, const WetRows<Dim>& rows,
                  Index steps) {

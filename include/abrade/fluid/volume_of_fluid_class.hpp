@@ -120,6 +120,15 @@ public:
         locate();
     }
 
+    /// Brings what cells hold beyond their volume to where there is room: after walls have changed.
+    void make_room() {
+        grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) {
+            if (surplus_[c] > wisp) push_surplus(c, cell[vertical], static_cast<std::size_t>(layout_.total));
+        });
+        wet_.find(fraction_);
+        locate();
+    }
+
     /// One step. `velocity` [m/s]: component a of a cell on its lower face along a, also at the upper sides
     /// and, where cells at the surface have air beside them, on the faces of that air. Throws InputError
     /// beyond `courant_end`.
@@ -341,6 +350,7 @@ private:
     void even_out_rims(int axis);
     void settle(VolumeStep& step);
     Real share_out(Offset c, Index level, Real amount);
+    void push_surplus(Offset c, Index level, std::size_t reach);
 
     [[noreturn]] void fail_fraction(const CellNumber<Dim>& cell, Real f) const {
         fail({std::string("VolumeOfFluid.fraction") + text(cell), "from 0 to 1", "",

@@ -4,6 +4,7 @@
 #include <abrade/fluid/volume_of_fluid_class.hpp>
 
 #include <bit>
+#include <unordered_set>
 
 namespace abrade {
 
@@ -60,6 +61,64 @@ Real VolumeOfFluid<Dim>::share_out(Offset c, Index level, Real amount) {
     return amount;
 }
 
+/// Pushes liquid that a cell has no room for along full cells to the nearest ones that have room, in
+/// proportion to that; each cell on the way hands on to the next. What finds none among `reach` cells stays.
+template <int Dim>
+void VolumeOfFluid<Dim>::push_surplus(Offset c, Index level, std::size_t reach) {
+    struct Way {
+        Offset cell;
+        std::size_t from;  ///< the cell before, by its number
+        Index level;
+        int axis = 0, side = 0;
+        Offset face = 0, twin = -1;  ///< twin: the same face at the other end of a periodic axis, or none
+        Real room = 0;               ///< [m3]
+    };
+    std::vector<Way> ways{{c, 0, level}};
+    std::unordered_set<Offset> seen{c};
+    const auto look_beside = [&](std::size_t at) {
+        for (int a = 0; a < Dim; ++a)
+            for (const int side : {-1, 1}) {
+                const Way here = ways[at];
+                const Offset step = layout_.stride[index(a)], around = side * layout_.cells[index(a)] * step;
+                Way way{here.cell + side * step, at, here.level, a, side,
+                        side > 0 ? here.cell + step : here.cell};
+                if (a == vertical) way.level += side;
+                if ((marks_[way.cell] & cell_mark::inside) == 0) {
+                    if (!sides_.periodic(a)) continue;
+                    way.cell -= around, way.twin = way.face - around;
+                    if (a == vertical) way.level -= side * layout_.cells[index(a)];
+                }
+                if ((marks_[way.cell] & cell_mark::open) == 0 ||
+                    (open_faces_ && (*open_faces_)[index(a)][way.face] <= 0) || !seen.insert(way.cell).second)
+                    continue;
+                way.room = std::max(1 - fraction_[way.cell] - surplus_[way.cell], Real(0)) *
+                           open_volume(way.cell, way.level);
+                ways.push_back(way);
+            }
+    };
+    const auto give = [&](const Way& to, Real part) {
+        for (const Way* w = &to; w->side != 0; w = &ways[w->from]) {
+            moved_[index(w->axis)][w->face] += w->side * part;
+            if (w->twin >= 0) moved_[index(w->axis)][w->twin] += w->side * part;
+        }
+        settled_.push_back(static_cast<Index>(to.cell));
+        set_cell(to.cell, fraction_[to.cell] + surplus_[to.cell] + part / open_volume(to.cell, to.level));
+    };
+    // Layer by layer: cells as far away have the same right.
+    for (std::size_t first = 0, last = 1; first < last && last < reach && surplus_[c] > wisp;) {
+        for (; first < last; ++first) look_beside(first);  // which are full by now
+        Real room = 0;
+        for (std::size_t k = last; k < ways.size(); ++k) room += ways[k].room;
+        const Real amount = std::min(surplus_[c] * open_volume(c, level), room);
+        if (amount > 0) {
+            for (std::size_t k = last; k < ways.size(); ++k)
+                if (ways[k].room > 0) give(ways[k], amount * (ways[k].room / room));
+            surplus_[c] -= amount / open_volume(c, level);
+        }
+        last = ways.size();
+    }
+}
+
 /// Full cells beyond the band took it that what flows through their faces is all liquid. Where a cell of the
 /// band beside them holds a trace of air in this sweep, too little to be a surface, they have a trace less.
 template <int Dim>
@@ -108,6 +167,7 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
         Offset cell;
         Index level;
     };
+    const Pack most = Pack(1 + void_amid_water());
     std::vector<std::vector<Wrong>> wrong(static_cast<std::size_t>(layout_.planes()));
     for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
         const PackMask in_bulk = detail::flags_at(bulk.data() + c);
@@ -119,7 +179,8 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
         select(band, now, f).store(fraction_.data() + c);
         select(band, liquid - now, surplus).store(surplus_.data() + c);
         const Pack beyond = liquid - bounded;
-        const PackMask found = band & !in_bulk & ((beyond > Pack(wisp)) | (beyond < Pack(-wisp)));
+        const PackMask found =
+            band & ((!in_bulk & ((beyond > Pack(wisp)) | (beyond < Pack(-wisp)))) | (liquid > most));
         for (unsigned lanes = lanes_of(found); lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
             wrong[index(plane)].push_back({c + lane, Dim == 3 ? level : level + lane});
@@ -130,8 +191,9 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
         for (const auto& [c, level] : plane) {
             const Real room = open_volume(c, level), amount = surplus_[c] * room;
             if (std::abs(surplus_[c]) <= wisp) continue;  // a neighbour has evened it out
-            const Real left = share_out(c, level, amount);
-            surplus_[c] = left / room;
+            surplus_[c] = share_out(c, level, amount) / room;
+            if (surplus_[c] > wisp) push_surplus(c, level, Dim == 3 ? 2000 : 200);
+            const Real left = surplus_[c] * room;
             step.moved_aside += std::abs(amount - left);
             step.left_over += std::abs(surplus_[c]) > wisp;
         }
