@@ -159,6 +159,10 @@ public:
         GridFluidParams<Dim> dry = next.params_;
         dry.water = {};
         auto& water = next.water_.emplace(*grid_, dry);
+        if (water.has_walls_of(*water_)) {
+            params_.wall = std::move(next.params_.wall);
+            return;
+        }
         water.find(next.projection_, next.stage_[0]);  // nowhere, so that nothing stays of the old
         detail::ChangedWalls<Dim> change(water_->liquid(), water_->walls(), water.walls(), params_.gravity);
         const auto [fraction, surplus] = change.run();
@@ -327,7 +331,6 @@ private:
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.friction().take(velocity_, &water.rows(), taken, 0.5);
         water.find(projection_, pressure_);
-        water.weigh_reached(velocity_, 0.5 * dt * falls);
         water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * falls);
         for (const WaterFace& f : water.still())
             velocity_[f.axis][f.face] = record_.velocity()[f.axis][f.face];

@@ -9,6 +9,7 @@
 #include <abrade/fluid/wall_films.hpp>
 #include <abrade/fluid/water_start.hpp>
 
+#include <cstring>
 #include <memory>
 #include <utility>
 
@@ -26,7 +27,7 @@ class SurfaceWater {
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides),
-          liquid_(grid, params.sides, {.smallest_void = std::clamp(params.tolerance, 1e-6, 1e-4)}),
+          liquid_(grid, params.sides, liquid_params(params.tolerance)),
           walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get()), friction_(grid, params.sides, params.wall_law, walls_.get()),
           before_(grid.layout().total), burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
           rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
@@ -168,13 +169,13 @@ public:
         });
     }
 
-    /// Faces of cells cut by walls that have become wet: in both stages the pressure did not know them, and
-    /// air has no momentum. They begin as they were, `fallen` faster: so it finds what it finds beside them.
+    /// Faces that the pressure reaches now: in both stages it did not know them, and what they had of the
+    /// first one was carried on from others. They begin as they were, `fallen` faster: so it finds what it
+    /// finds beside them.
     void begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before, const Field<std::uint8_t>& was_wet,
                      const Point<Dim>& fallen) const {
-        if (!walls_) return;
-        for (const Index c : liquid_.planes().cell) {
-            if (wet_[c] == 0 || was_wet[c] != 0 || walls_->open_volume()[c] == 1) continue;
+        for (const Index c : liquid_.band().cells()) {
+            if (wet_[c] == 0 || was_wet[c] != 0) continue;
             const CellNumber<Dim> cell = layout().number(c);
             for (int a = 0; a < Dim; ++a)
                 for (const int end : {0, 1}) {
@@ -182,7 +183,7 @@ public:
                     const int number = cell[a] + end;
                     const bool at_side = number == 0 || number == grid_->cells(a);
                     if ((at_side && !sides_.periodic(a)) || was_wet[other] != 0 ||
-                        walls_->open_area()[a][face] == 0)
+                        (walls_ && walls_->open_area()[a][face] == 0))
                         continue;
                     const Offset inside = face - (number == grid_->cells(a) ? number * s : 0);
                     u[a][inside] = before[a][inside] + fallen[a];
@@ -229,20 +230,16 @@ public:
         });
     }
 
-    /// After `find`, in a step's second stage: faces that the water has just reached. What they had of the
-    /// first stage was carried on from others, on which pressure and weight balance; but the pressure is yet
-    /// to be pushed on them, so they get that half of their weight. Cells that walls cut have `begin_faces`.
-    /// `fall`: gravity times half a step [m/s].
-    void weigh_reached(FaceField<Dim>& velocity, const Point<Dim>& fall) const {
-        for (int a = 0; a < Dim; ++a) {
-            if (fall[a] == 0) continue;
-            Offset last = -1;  // a face has as many riders as carriers, one after the other
-            for (const auto& r : extension_.riders(a)) {
-                if (r.face == std::exchange(last, r.face)) continue;
-                if (walls_ && is_cut(r.face, layout().stride[a])) continue;
-                if ((wet_[r.face] | wet_[r.face - layout().stride[a]]) != 0) velocity[a][r.face] += fall[a];
-            }
-        }
+    /// To the bit.
+    bool has_walls_of(const SurfaceWater& other) const {
+        if (!walls_ || !other.walls_) return walls_ == other.walls_;
+        const auto same = [](const Field<Real>& a, const Field<Real>& b) {
+            return std::memcmp(a.data(), b.data(), sizeof(Real) * static_cast<std::size_t>(a.size())) == 0;
+        };
+        bool all = same(walls_->open_volume(), other.walls_->open_volume());
+        for (int a = 0; a < Dim; ++a)
+            all = all && same(walls_->open_area()[a], other.walls_->open_area()[a]);
+        return all;
     }
 
     /// After walls have changed around the water.
@@ -273,6 +270,10 @@ public:
     }
 
 private:
+    static typename VolumeOfFluid<Dim>::Params liquid_params(Real tolerance) noexcept {
+        const Real smallest = std::clamp(tolerance, 1e-6, 1e-4);
+        return {.smallest_void = smallest, .most_surplus = 10 * smallest};
+    }
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     bool is_cut(Offset c, Offset back) const noexcept {
         return walls_->open_volume()[c] < 1 || walls_->open_volume()[c - back] < 1;

@@ -61,6 +61,10 @@ public:
         /// take what a projection leaves, where that is more. Amid other water ten times as much is none.
         Real smallest_void = 1e-6;
 
+        /// What a full cell beside the surface may hold beyond its volume, in shares of that [-]: more goes
+        /// along full cells to where there is room. Infinite: none does, wherever the velocity diverges.
+        Real most_surplus = std::numeric_limits<Real>::infinity();
+
         void validate() const {
             require(smallest_void >= 0 && smallest_void <= 1e-3,
                     {"VolumeOfFluid.smallest_void", "from 0 to 1e-3", "", "1e-6 is usual"}, smallest_void);

@@ -167,7 +167,7 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
         Offset cell;
         Index level;
     };
-    const Pack most = Pack(1 + void_amid_water());
+    const Pack most = Pack(1 + params_.most_surplus);
     std::vector<std::vector<Wrong>> wrong(static_cast<std::size_t>(layout_.planes()));
     for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
         const PackMask in_bulk = detail::flags_at(bulk.data() + c);

@@ -14,10 +14,10 @@ namespace abrade::detail {
 /// Liquid between dry cells flies: nothing would ever hold it up on the wall that it lies on. A wall takes
 /// from it what moves into the wall, as an inelastic impact does, and leaves what moves along the wall or off
 /// it:
-///   v <- v - min(v . n, 0) n,   v: mean velocity of the cell's open faces, n: the wall's normal, which the
-///   divergence theorem gives from the apertures of the cell's faces, sides of the box included.
-/// The kinetic energy of a film falls by that, never grows. A face takes its change from both of its cells,
-/// in shares of the liquid that they hold.
+///   v <- v - min(v . n, 0) n,   v: velocity of the faces that the cell gives liquid to, n: the wall's normal,
+///   which the divergence theorem gives from the apertures of the cell's faces, sides of the box included.
+/// Where all of them are open or closed as a whole, each axis has a wall of its own: a corner. The kinetic
+/// energy of a film falls by that, never grows.
 template <int Dim>
 class WallFilms {
 public:
@@ -28,6 +28,7 @@ public:
         grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
             if (walls && walls->open_volume()[c] == 0) return;
             Cell film{.cell = c};
+            bool aligned = true;
             for (int a = 0; a < Dim; ++a) {
                 const Offset s = layout.stride[a];
                 PerAxis<Real, 2> open{{1, 1}};
@@ -36,6 +37,7 @@ public:
                     Offset face = c + end * s, beyond = end == 0 ? c - s : c + s;
                     if (walls) open[end] = walls->open_area()[a][face];
                     if (at_side && is_closed(sides[a][end])) open[end] = 0;
+                    aligned = aligned && (open[end] == 0 || open[end] == 1);
                     if (at_side && sides.periodic(a)) {
                         const Offset around = grid.cells(a) * s * (end == 0 ? 1 : -1);
                         beyond += around, face += end == 0 ? 0 : around;
@@ -47,38 +49,52 @@ public:
                 }
                 film.normal[a] = (open[1] - open[0]) / grid.size(a, cell[a]);
             }
+            film.corner = aligned;
             constexpr Real round_off = 1e-9;
             const Real length = film.normal.norm();
             if (!(length * grid.size(Dim - 1, cell[Dim - 1]) > round_off)) return;
             film.normal /= length;
             cells_.push_back(film);
         });
-        push_.resize(cells_.size());
+        push_.resize(cells_.size(), Point<Dim>::Zero());
         starts_ = {layout, cells_.size(), [&](std::size_t k) { return cells_[k].cell; }};
     }
 
     /// `wet`: 1 where there is a pressure; `held`: liquid of a cell, as a share of it [-]; `rows` hold it.
     void hold(FaceField<Dim>& u, const WetRows<Dim>& rows, const Field<std::uint8_t>& wet,
               const Field<Real>& held) {
-        std::fill(push_.begin(), push_.end(), 0);
+        // A face is a cell's where the cell gives liquid to it, or the next one has none to give.
+        const auto gives = [&](const Cell& film, int a, int end, Real speed) {
+            return film.face[a][end] >= 0 && wet[film.beyond[a][end]] == 0 &&
+                   (held[film.beyond[a][end]] <= liquid_of_a_face || (end == 0 ? speed < 0 : speed > 0));
+        };
         starts_.for_each(&rows, [&](std::size_t k) {
             const Cell& film = cells_[k];
+            push_[k].setZero();
             if (wet[film.cell] != 0 || held[film.cell] <= liquid_of_a_face) return;
-            Real into = 0;
-            for (int a = 0; a < Dim; ++a) into += mean(u[a], film.face[a]) * film.normal[a];
-            push_[k] = std::max(-into, Real(0));
+            Point<Dim> v = Point<Dim>::Zero();
+            for (int a = 0; a < Dim; ++a) {
+                int count = 0;
+                for (const int end : {0, 1})
+                    if (const Offset f = film.face[a][end]; f >= 0 && gives(film, a, end, u[a][f]))
+                        v[a] += u[a][f], ++count;
+                if (count == 2) v[a] *= 0.5;
+            }
+            if (film.corner)
+                for (int a = 0; a < Dim; ++a)
+                    push_[k][a] = film.normal[a] * v[a] < 0 ? -v[a] : Real(0);
+            else
+                push_[k] = std::max(-film.normal.dot(v), Real(0)) * film.normal;
         });
-        for (std::size_t k = 0; k < cells_.size(); ++k) {  // one after the other: faces are shared
-            if (push_[k] == 0) continue;
-            const Cell& film = cells_[k];
+        starts_.for_each(&rows, [&](std::size_t k) {
+            if (push_[k].isZero(0)) return;
             for (int a = 0; a < Dim; ++a)
                 for (const int end : {0, 1}) {
-                    const Offset face = film.face[a][end], beyond = film.beyond[a][end];
-                    if (face < 0 || wet[beyond] != 0) continue;
-                    const Real own = held[film.cell];
-                    u[a][face] += push_[k] * film.normal[a] * own / (own + held[beyond]);
+                    const Offset face = cells_[k].face[a][end];
+                    if (face >= 0 && gives(cells_[k], a, end, u[a][face] + push_[k][a]))
+                        u[a][face] += push_[k][a];
                 }
-        }
+        });
     }
 
 private:
@@ -87,14 +103,10 @@ private:
         PerAxis<PerAxis<Offset, 2>, Dim> face{};    ///< [axis][low, high]; -1: closed, or a side's own
         PerAxis<PerAxis<Offset, 2>, Dim> beyond{};  ///< cells there
         Point<Dim> normal = Point<Dim>::Zero();     ///< into the water
+        bool corner = false;                        ///< of walls along the grid's planes alone
     };
-    static Real mean(const Field<Real>& u, const PerAxis<Offset, 2>& face) noexcept {
-        const auto at = [&](int end) { return face[end] < 0 ? Real(0) : u[face[end]]; };
-        return (at(0) + at(1)) / std::max((face[0] >= 0) + (face[1] >= 0), 1);
-    }
-
     std::vector<Cell> cells_;  ///< beside a wall or a closed side, in the order of memory
-    std::vector<Real> push_;   ///< [m/s], of each
+    std::vector<Point<Dim>> push_;  ///< [m/s], of each
     RowStarts<Dim> starts_;
 };
 
