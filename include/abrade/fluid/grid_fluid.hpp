@@ -61,6 +61,7 @@ public:
         look_at_walls();
         detail::give_velocity(*grid_, params_, velocity_);
         sides_.fill(velocity_);
+        if constexpr (has_surface) give_discharge();
         if (params_.velocity)
             free_of_divergence(1e-12);
         else
@@ -233,6 +234,18 @@ private:
             heights_ = detail::SurfaceHeights<Dim>(*grid_, params_.sides.periodic_axes(), walls);
         }
         if constexpr (Turbulence::has_eddies) eddies_.emplace(*grid_, params_, turbulence_, walls);
+    }
+
+    /// Walls, and cells that are too small to stay open, take some of the faces that water comes through.
+    void give_discharge() {
+        if (params_.inflow_discharge == 0) return;
+        const Real carried = detail::inflow_of(velocity_, params_.sides, water_->liquid(), water_->walls());
+        require(carried > 0,
+                {"GridFluid.side_velocity: what it carries in", "> 0 where inflow_discharge is given",
+                 Dim == 3 ? "m3/s" : "m2/s", "point it into the box"},
+                carried);
+        sides_.scale_inflow(params_.inflow_discharge / carried);
+        sides_.fill(velocity_);
     }
 
     /// A velocity that was given, or walls that have come.

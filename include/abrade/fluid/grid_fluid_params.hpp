@@ -24,6 +24,9 @@ struct GridFluidParams {
     Sides<Dim> sides{};                 ///< walls unless told otherwise
     SideVelocity<Dim> side_velocity{};  ///< of walls and of what flows in; none: at rest
     bool steady_sides = true;           ///< side_velocity does not depend on time
+    /// What flows in at the start [m3/s]; in two dimensions [m2/s]: side_velocity is multiplied by what makes
+    /// the open, wet part of the faces carry it. 0: as side_velocity says.
+    Real inflow_discharge = 0;
     /// Distance from walls inside the box, > 0 in the water (WallShape); none: no walls. Steeper functions
     /// are found out, but for one that levels off near the wall: divide it by its steepest slope. Called from
     /// many threads, as `water` is.
@@ -102,6 +105,12 @@ struct GridFluidParams {
             fail({"GridFluid.side_velocity", "given where a side is an inflow", "m/s",
                   "give the velocity there"},
                  "none");
+        require_not_negative(inflow_discharge, "GridFluid.inflow_discharge", Dim == 3 ? "m3/s" : "m2/s",
+                             "0: what side_velocity carries");
+        if (inflow_discharge > 0 && !inflow_water)
+            fail({"GridFluid.inflow_discharge", "given together with inflow_water", "",
+                  "say where the water that flows in is"},
+                 short_text(inflow_discharge));
         if (inflow_water && !in)
             fail({"GridFluid.inflow_water", "left out where no side is an inflow", "",
                   "make a side an inflow"},

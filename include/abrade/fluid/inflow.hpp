@@ -92,12 +92,10 @@ public:
         const Real inside = g.low[0] + 0.5 * g.spacing[0];
         const Inflow stream = *this;
         water.sides[0][0] = Side::inflow;
-        // The mean over what is wet of a face, not the speed in its middle: so the discharge enters.
-        water.side_velocity = [stream, inside, g](const Point<Dim>& x, Real) {
-            Point<Dim> u = Point<Dim>::Zero();
-            if (x[0] < inside) u[0] = stream.mean_over(stream.face_about(g, x), x);
-            return u;
+        water.side_velocity = [stream, inside](const Point<Dim>& x, Real) -> Point<Dim> {
+            return x[0] < inside ? stream.velocity(x) : Point<Dim>::Zero();
         };
+        water.inflow_discharge = params_.discharge;
         water.inflow_water = [stream](const Point<Dim>& x) { return stream.depth_at(x); };
     }
 
@@ -130,32 +128,6 @@ private:
             if (h > 0) sum += dy * carried_below(h);
         }
         return sum;
-    }
-
-    struct Face {
-        Real side = 0, width = 0;  ///< lower y, size across [m]
-        Real low = 0, high = 0;    ///< heights [m]
-    };
-    Face face_about(const typename Grid<Dim>::Params& g, const Point<Dim>& x) const {
-        Face f{.low = x[vertical] - 0.5 * g.spacing[vertical],
-               .high = x[vertical] + 0.5 * g.spacing[vertical]};
-        if constexpr (Dim == 3) f.side = x[1] - 0.5 * g.spacing[1], f.width = g.spacing[1];
-        const auto above = std::upper_bound(g.levels.begin(), g.levels.end(), x[vertical]);
-        if (above != g.levels.begin() && above != g.levels.end()) f.low = above[-1], f.high = above[0];
-        return f;
-    }
-    /// Of the speed, over what is wet of a face; as at the surface above it, 0 in the bed.
-    Real mean_over(const Face& face, const Point<Dim>& x) const {
-        constexpr int strips = Dim == 3 ? 16 : 1;
-        Real sum = 0, wet = 0;
-        for (int i = 0; i < strips; ++i) {
-            const Real bed = params_.bed + bed_height(face.side + (i + 0.5) * face.width / strips);
-            const Real from = std::max(face.low, bed) - bed;
-            const Real to = std::min(face.high, params_.bed + params_.depth) - bed;
-            if (to > from) sum += carried_below(to) - carried_below(from), wet += to - from;
-        }
-        if (wet > 0) return scale_ * sum / wet;
-        return x[vertical] > params_.bed + params_.depth ? velocity(x)[0] : 0;
     }
 
     Params params_;

@@ -73,13 +73,22 @@ public:
                         const Real u = given_(x, time)[a];
                         if (!std::isfinite(u) && grid_->has(cell))
                             require_finite(u, velocity_at<Dim>("GridFluid.side_velocity", a, x, time), "m/s");
-                        values.push_back(through ? 0 : u);
+                        values.push_back(through ? 0 : side == Side::inflow ? inflow_scale_ * u : u);
                     });
                 }
             }
         std::swap(tables_, kept_);
         changed_ = true;
     }
+    /// Multiplies all that is given at inflows, now and later.
+    void scale_inflow(Real factor) {
+        inflow_scale_ *= factor;
+        for_sides(Side::inflow, [&](int b, bool high) {
+            for (int a = 0; a < Dim; ++a)
+                for (Real& u : tables_[number(a, b, high)]) u *= factor;
+        });
+    }
+
     /// What `back` leads to: the time, if one is set since, and what leaves through upper sides, faces of no
     /// cell inside. Neither asks the given function.
     template <class State>
@@ -300,6 +309,7 @@ private:
     SideVelocity<Dim> given_;
     std::array<std::vector<Real>, static_cast<std::size_t>(2 * Dim * Dim)> tables_, kept_;
     std::vector<Real> leaving_;
+    Real inflow_scale_ = 1;
     bool changed_ = false;
 };
 

@@ -118,4 +118,23 @@ void check_inflows(const GridFluidParams<Dim>& params, const VolumeOfFluid<Dim>&
         }
 }
 
+/// What flows in with a velocity [m3/s], of the liquid beyond inflows.
+template <int Dim>
+Real inflow_of(const FaceField<Dim>& u, const Sides<Dim>& sides, const VolumeOfFluid<Dim>& liquid,
+               const Walls<Dim>* walls) {
+    const Grid<Dim>& grid = liquid.grid();
+    Real sum = 0;
+    for (int a = 0; a < Dim; ++a)
+        for (const bool high : {false, true}) {
+            if (sides[a][high] != Side::inflow) continue;
+            grid.for_each_beside(a, high, [&](const CellNumber<Dim>& cell, Offset c) {
+                const Offset s = grid.layout().stride[a], face = high ? c + s : c;
+                const Real open = walls ? walls->open_area()[a][face] : 1;
+                const Real area = open * grid.volume(cell) / grid.size(a, cell[a]);
+                sum += (high ? -1 : 1) * u[a][face] * area * liquid.fraction()[high ? c + s : c - s];
+            });
+        }
+    return sum;
+}
+
 }  // namespace abrade::detail
