@@ -91,8 +91,10 @@ void VolumeOfFluid<Dim>::push_surplus(Offset c, Index level, std::size_t reach) 
                 if ((marks_[way.cell] & cell_mark::open) == 0 ||
                     (open_faces_ && (*open_faces_)[index(a)][way.face] <= 0) || !seen.insert(way.cell).second)
                     continue;
-                way.room = std::max(1 - fraction_[way.cell] - surplus_[way.cell], Real(0)) *
-                           open_volume(way.cell, way.level);
+                // A full cell may lack what the next projection draws in: that much is no room.
+                const Real lacks = 1 - fraction_[way.cell] - surplus_[way.cell];
+                if (fraction_[way.cell] < 1 || lacks > params_.most_surplus)
+                    way.room = std::max(lacks, Real(0)) * open_volume(way.cell, way.level);
                 ways.push_back(way);
             }
     };
@@ -101,8 +103,12 @@ void VolumeOfFluid<Dim>::push_surplus(Offset c, Index level, std::size_t reach) 
             moved_[index(w->axis)][w->face] += w->side * part;
             if (w->twin >= 0) moved_[index(w->axis)][w->twin] += w->side * part;
         }
+        const Real share = part / open_volume(to.cell, to.level);
         settled_.push_back(static_cast<Index>(to.cell));
-        set_cell(to.cell, fraction_[to.cell] + surplus_[to.cell] + part / open_volume(to.cell, to.level));
+        if (fraction_[to.cell] == 1)
+            surplus_[to.cell] += share;
+        else
+            set_cell(to.cell, fraction_[to.cell] + surplus_[to.cell] + share);
     };
     // Layer by layer: cells as far away have the same right.
     for (std::size_t first = 0, last = 1; first < last && last < reach && surplus_[c] > wisp;) {
