@@ -344,6 +344,7 @@ private:
         stage(stage_, velocity_, 0.5, 0.5 * dt);
         water.friction().take(velocity_, &water.rows(), taken, 0.5);
         water.find(projection_, pressure_);
+        water.weigh_reached(velocity_, 0.5 * dt * falls);
         water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * falls);
         for (const WaterFace& f : water.still())
             velocity_[f.axis][f.face] = record_.velocity()[f.axis][f.face];

@@ -169,13 +169,13 @@ public:
         });
     }
 
-    /// Faces that the pressure reaches now: in both stages it did not know them, and what they had of the
-    /// first one was carried on from others. They begin as they were, `fallen` faster: so it finds what it
-    /// finds beside them.
+    /// Faces of cells cut by walls that have become wet: in both stages the pressure did not know them, and
+    /// air has no momentum. They begin as they were, `fallen` faster: so it finds what it finds beside them.
     void begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before, const Field<std::uint8_t>& was_wet,
                      const Point<Dim>& fallen) const {
-        for (const Index c : liquid_.band().cells()) {
-            if (wet_[c] == 0 || was_wet[c] != 0) continue;
+        if (!walls_) return;
+        for (const Index c : liquid_.planes().cell) {
+            if (wet_[c] == 0 || was_wet[c] != 0 || walls_->open_volume()[c] == 1) continue;
             const CellNumber<Dim> cell = layout().number(c);
             for (int a = 0; a < Dim; ++a)
                 for (const int end : {0, 1}) {
@@ -183,7 +183,7 @@ public:
                     const int number = cell[a] + end;
                     const bool at_side = number == 0 || number == grid_->cells(a);
                     if ((at_side && !sides_.periodic(a)) || was_wet[other] != 0 ||
-                        (walls_ && walls_->open_area()[a][face] == 0))
+                        walls_->open_area()[a][face] == 0)
                         continue;
                     const Offset inside = face - (number == grid_->cells(a) ? number * s : 0);
                     u[a][inside] = before[a][inside] + fallen[a];
@@ -228,6 +228,22 @@ public:
                 result[a][r.carrier] -= viscous * shear * (1 / own - 1 / (own + more));
             }
         });
+    }
+
+    /// After `find`, in a step's second stage: faces that the water has just reached. What they had of the
+    /// first stage was carried on from others, on which pressure and weight balance; but the pressure is yet
+    /// to be pushed on them, so they get that half of their weight. Cells that walls cut have `begin_faces`.
+    /// `fall`: gravity times half a step [m/s].
+    void weigh_reached(FaceField<Dim>& velocity, const Point<Dim>& fall) const {
+        for (int a = 0; a < Dim; ++a) {
+            if (fall[a] == 0) continue;
+            Offset last = -1;  // a face has as many riders as carriers, one after the other
+            for (const auto& r : extension_.riders(a)) {
+                if (r.face == std::exchange(last, r.face)) continue;
+                if (walls_ && is_cut(r.face, layout().stride[a])) continue;
+                if ((wet_[r.face] | wet_[r.face - layout().stride[a]]) != 0) velocity[a][r.face] += fall[a];
+            }
+        }
     }
 
     /// To the bit.
