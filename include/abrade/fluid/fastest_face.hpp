@@ -38,14 +38,14 @@ inline std::string place_in_time(Index step, Real time, Real dt) {
 }
 
 /// What is wrong with a velocity that came out of a step, where it is, and what helps. `after`: what cells
-/// gain of their volume [-].
+/// gain of their volume [-], `most`: of what they may.
 template <int Dim, class State>
-std::string wrong_flow(const Grid<Dim>& grid, const FaceField<Dim, State>& velocity, Real after,
+std::string wrong_flow(const Grid<Dim>& grid, const FaceField<Dim, State>& velocity, Real after, Real most,
                        bool enters) {
     std::string cause, remedy;
     if (!std::isfinite(after))
         cause = "the velocity is not a number";
-    else if (after > 1)
+    else if (after > most)
         cause = "no pressure was found, cells gain " + short_text(after) + " of their volume" +
                 (enters ? " (can what flows in reach a surface or an outflow?)" : "");
     else

@@ -51,6 +51,7 @@ public:
           pressure_(layout().total),
           side_friction_(*grid_, params_.sides, side_law(params_.wall_law), nullptr),
           time_(params_.start_time) {
+        if (params_.courant == 0) params_.courant = has_surface ? 0.9 : 0.5;
         if constexpr (has_surface) {
             water_.emplace(*grid_, params_);
             detail::check_inflows(params_, water_->liquid(), water_->walls());
@@ -107,9 +108,9 @@ public:
             FluidStep step = detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_, &gravity});
             step.lower(water_->liquid().stable_step(velocity_), "volume of fluid");
             if (steps_ == 0) step.lower(first_step_, "volume of fluid");
-            return step;
+            return smooth(step);
         } else {
-            return detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_});
+            return smooth(detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_}));
         }
     }
 
@@ -125,9 +126,17 @@ public:
         }
     }
 
-    /// One step of dt [s]. Throws FluidError where it goes wrong, and leaves the flow as it was.
+    /// One step of dt [s]. Throws InputError where it is longer than `stable_step`, FluidError where it goes
+    /// wrong, and leaves the flow as it was.
     void step(Real dt) {
         require_positive(dt, "GridFluid.step: dt", "s");
+        const FluidStep stable = stable_step();
+        if (!(dt <= stable.seconds * (1 + 1e-9)))
+            fail({"GridFluid.step: dt at t = " + short_text(time_) + " s",
+                  "at most stable_step(), which " + std::string(stable.limit) + " limits to " +
+                      short_text(stable.seconds) + " s",
+                  "s", "advance() takes as many steps as it needs"},
+                 short_text(dt));
         sides_.keep(velocity_);
         try {
             if constexpr (has_surface)
@@ -226,6 +235,12 @@ private:
         return !has_surface && law.kind == WallLaw::Kind::logarithmic ? law : WallLaw{WallLaw::Kind::slip};
     }
 
+    FluidStep smooth(FluidStep step) const {
+        if (params_.body_force && std::isfinite(step.seconds))
+            step.lower(detail::smooth_step(params_, time_, step.seconds), "body force");
+        return step;
+    }
+
     /// What walls decide once, beside the water.
     void look_at_walls() {
         [[maybe_unused]] const Walls<Dim>* walls = nullptr;
@@ -293,8 +308,7 @@ private:
         side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
         std::swap(velocity_, saved_velocity_);
         if (!params_.steady_sides) sides_.fill(velocity_);
-        report_ = projection_.project(velocity_, pressure_,
-                                      {dt, params_.tolerance, false, nullptr, late_.pace(dt)});
+        project({dt, params_.tolerance, false, nullptr, late_.pace(dt)});
         if (late_.brief(dt)) pressure_ = saved_pressure_;  // what pushes so briefly is none to go on with
         finish(velocity_);
     }
@@ -352,10 +366,20 @@ private:
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // Whole sides: where they change there may not have been water before.
         if (!params_.steady_sides) sides_.fill(velocity_);
-        report_ = projection_.project(
-            velocity_, pressure_, {dt, params_.tolerance, true, &water.liquid().surplus(), late_.pace(dt)});
+        project({dt, params_.tolerance, true, &water.liquid().surplus(), late_.pace(dt)});
         finish(velocity_);
     }
+
+    /// What is left beyond `most_left` is solved for once more: single precision may have lost its way.
+    void project(typename Projection<Dim, State>::Demand demand) {
+        report_ = projection_.project(velocity_, pressure_, demand);
+        if (report_.after <= most_left()) return;
+        demand.push = false;
+        const auto first = std::exchange(report_, projection_.project(velocity_, pressure_, demand));
+        report_.iterations += first.iterations, report_.rounds += first.rounds;
+    }
+    /// Share of its volume that a cell may gain or lose in a step, root mean square, or the step fails [-].
+    Real most_left() const noexcept { return std::max(10 * params_.tolerance, Real(1e-5)); }
 
     /// Takes back from open faces the fall of what is not below the surface.
     void carry_weight(FaceField<Dim>& u, const Point<Dim>& fall) const {
@@ -395,16 +419,16 @@ private:
         Real size = 0;
         for (int a = 0; a < Dim; ++a) size = std::max(size, grid_->largest(a));
         // Without a surface and an outflow the pressure is known but for a constant, and takes no volume.
-        const bool brimful = enters_ > 0 && projection_.multigrid().floating() &&
-                             report_.after > std::max(10 * params_.tolerance, 1e-5);
-        const bool found = std::isfinite(report_.after) && report_.after <= 1 && !brimful;
+        const bool found = report_.after <= most_left();
+        const bool brimful = !found && enters_ > 0 && projection_.multigrid().floating();
         // The bound is cheap, the speed itself is not.
         if (found && (report_.courant / dt * size <= params_.fastest ||
                       detail::FastFace<Dim>(*grid_, velocity_).speed <= params_.fastest))
             return;
         const std::string cause = brimful ? "more flows in than out, and no surface is left to rise; make a "
                                             "side that it reaches an outflow"
-                                          : detail::wrong_flow(*grid_, velocity_, report_.after, enters_ > 0);
+                                          : detail::wrong_flow(*grid_, velocity_, report_.after, most_left(),
+                                                                        enters_ > 0);
         restore();
         throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);
     }

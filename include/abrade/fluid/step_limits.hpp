@@ -4,6 +4,7 @@
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/grid_fluid_params.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -31,15 +32,34 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
         if (surface) fall += std::abs((*causes.gravity)[a]) / size;
         shortest = std::min(shortest, size);
     }
-    // Heun's method is stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum 1/h^2. At
-    // the limit itself a pattern of cells would not decay, and a surface feeds it.
-    if (causes.viscosity > 0) step.lower((surface ? 0.4 : 0.5) / (causes.viscosity * per_h2), "viscosity");
+    // One limit for both, or what each of them allows alone would be too much together. Heun's method is stable
+    // for real eigenvalues down to -2/dt; those of friction reach -4 nu sum 1/h^2.
+    const Real friction = 2 * causes.viscosity * per_h2, rate = causes.fastest + friction;
     // At its end gravity may have made the water faster by g dt.
-    const Real twice = causes.fastest + std::sqrt(square(causes.fastest) + 4 * fall * params.courant);
-    if (twice > 0) step.lower(2 * params.courant / twice, "CFL");
+    const Real twice = rate + std::sqrt(square(rate) + 4 * fall * params.courant);
+    if (twice > 0) step.lower(2 * params.courant / twice, friction > causes.fastest ? "viscosity" : "CFL");
     // The shortest wave that the grid knows, of two cells, must not cross a cell.
     if (fall > 0) step.lower(std::sqrt(pi * shortest / causes.gravity->norm()), "gravity wave");
     return step;
+}
+
+/// The longest step up to `longest` [s] within which a body force goes on as it does: its path is no longer
+/// than its change by more than a tenth of its largest value.
+template <int Dim>
+Real smooth_step(const GridFluidParams<Dim>& params, Real time, Real longest) {
+    constexpr int parts = 8;
+    for (Real dt = longest;; dt *= 0.5) {
+        Point<Dim> last = params.acceleration(time) - params.gravity;
+        const Point<Dim> first = last;
+        Real path = 0, largest = last.norm();
+        for (int n = 1; n <= parts; ++n) {
+            const Point<Dim> now = params.acceleration(time + dt * n / parts) - params.gravity;
+            path += (now - last).norm(), largest = std::max(largest, now.norm());
+            last = now;
+        }
+        constexpr Real shortest = 1e-6;  // of the longest: what jumps is taken as it comes
+        if (path - (last - first).norm() <= 0.1 * largest || dt < shortest * longest) return dt;
+    }
 }
 
 }  // namespace abrade::detail
