@@ -58,6 +58,7 @@ class WallLoads {
     static constexpr int Dim = dimensions<Flow>;
     using Cell = CellNumber<Dim>;
     using Head = LinearHead<Dim>;
+    using HeldFace = typename WallFriction<Dim>::HeldFace;
 
 public:
     WallLoads(const Flow& flow, const Point<Dim>& about, std::string_view called)
@@ -197,17 +198,16 @@ private:
 
     /// Shear as WallFriction has it: each face is held by the nearest wall of its cells.
     void drag(WallLoad<Dim>& load, const std::vector<char>& counts) const {
-        const WallLaw& law = flow_.params().wall_law;
-        if (law.kind == WallLaw::Kind::slip) return;
+        if (flow_.params().wall_law.kind == WallLaw::Kind::slip) return;
         struct Held {
-            typename WallFriction<Dim>::HeldFace face;
+            HeldFace face;
             std::size_t wall;
         };
         std::vector<Held> all;
         const auto wall_cells = cells_.walls()->wall_cells();
         for (std::size_t n = 0; n < wall_cells.size(); ++n)
             WallFriction<Dim>::each_held_face(grid_, cells_.sides(), *cells_.walls(), wall_cells[n],
-                                              [&](const auto& face) {
+                                              [&](const HeldFace& face) {
                                                   all.push_back({face, n});
                                               });
         const auto key = [](const Held& h) { return std::tuple(h.face.axis, h.face.face); };
@@ -218,31 +218,71 @@ private:
             Real nearest = first->face.distance;
             for (auto h = first; h != end; ++h) nearest = std::min(nearest, h->face.distance);
             for (; first != end; ++first) {
-                const WallCell<Dim>& w = wall_cells[first->wall];
                 if (!counts[first->wall]) continue;
-                const auto& f = first->face;
-                const Real wet =
-                    liquid_about(f.axis, f.face) * grid_.volume(grid_.layout().number(w.cell)) / f.volume;
-                add(load.shear, w.point,
-                    wet * f.area * stress(law, f.axis, f.face, nearest, 0) * Point<Dim>::Unit(f.axis));
+                HeldFace face = first->face;
+                face.distance = nearest;
+                const WallCell<Dim>& w = wall_cells[first->wall];
+                const Cell of = grid_.layout().number(face.face);
+                const Real wet = about(of, face.axis, true) / about(of, face.axis, false);
+                if (wet > 0)
+                    add(load.shear, w.point,
+                        wet * face.area * stress_of(w, face, of) * Point<Dim>::Unit(face.axis));
             }
         }
     }
-    /// In the control volume of a face, a share of the whole [-].
-    Real liquid_about(int axis, Offset face) const {
-        Cell below = grid_.layout().number(face);
+    /// Share of a face's control volume that walls leave open, or that is liquid [-].
+    Real about(const Cell& face, int axis, bool liquid) const {
+        Cell below = face;
         --below[axis];
-        const Offset back = cells_.offset(below).value_or(face);
-        return 0.5 * (cells_.liquid(face) * cells_.open_volume(face) +
-                      cells_.liquid(back) * cells_.open_volume(back));
+        Real sum = 0;
+        for (const auto& cell : {below, face})
+            if (const auto c = cells_.offset(cell))
+                sum += cells_.open_volume(*c) * (liquid ? cells_.liquid(*c) : 1);
+        return 0.5 * sum;
     }
-    /// Along its axis, of a face at a distance from a wall that moves [N/m2].
+    /// The middle of what a wall leaves open about a face [m].
+    Point<Dim> middle(const WallCell<Dim>& w, const Cell& face, int axis) const {
+        Point<Dim> x = grid_.face_centre(axis, face);
+        const Real closed = 1 - about(face, axis, false);
+        for (int b = 0; b < Dim; ++b) x[b] += 0.5 * closed * w.normal[b] * grid_.size(b, face[b]);
+        return x;
+    }
+    /// On a wall, along the axis of a face that it holds [N/m2]. Where walls leave less than half of the
+    /// control volume open the solver bounds what changes its velocity in a step. What the friction of the
+    /// next face off the wall, gravity and the pressure give it beyond what the law takes goes to the wall.
+    Real stress_of(const WallCell<Dim>& w, const HeldFace& f, const Cell& face) const {
+        const Real taken = stress(flow_.params().wall_law, f.axis, f.face, f.distance, 0);
+        int across = 0;
+        w.normal.cwiseAbs().maxCoeff(&across);
+        Cell next = face, below = face;
+        next[across] += w.normal[across] > 0 ? 1 : -1;
+        --below[f.axis];
+        const auto off = cells_.offset(next), back = cells_.offset(below);
+        if (about(face, f.axis, false) >= 0.5 || across == f.axis || !off || !back ||
+            cells_.open_area(f.axis, *off) == 0)
+            return taken;
+        Real viscosity = flow_.params().viscosity;
+        if constexpr (requires { flow_.eddy_viscosity(); }) {
+            const Offset apart = *off - f.face;
+            Real sum = 0;
+            for (const Offset c : {f.face, *back, f.face + apart, *back + apart})
+                sum += static_cast<Real>(flow_.eddy_viscosity()[c]);
+            viscosity += 0.25 * cells_.density() * sum;
+        }
+        const Real gap = w.normal.dot(middle(w, next, f.axis) - middle(w, face, f.axis));
+        Real given = viscosity * (cells_.velocity(f.axis, *off) - cells_.velocity(f.axis, f.face)) / gap;
+        if (cells_.is_wet(f.face) && cells_.is_wet(*back))
+            given += cells_.density() * (cells_.head(below, *back) - cells_.head(face, f.face)) /
+                     grid_.gap(f.axis, face[f.axis]) * f.volume / w.area;
+        return std::abs(given) > std::abs(taken) ? given : taken;
+    }
+    /// Of a face at a distance from a wall that moves along its axis [N/m2].
     Real stress(const WallLaw& law, int axis, Offset face, Real distance, Real wall_velocity) const {
-        const auto& u = flow_.velocity();
-        const Real speed = law.kind == WallLaw::Kind::logarithmic
-                               ? cells_.density() * speed_at_face(grid_.layout(), u, axis, face)
-                               : flow_.params().viscosity;
-        return speed * law.drag(distance) * (cells_.velocity(axis, face) - wall_velocity);
+        const Real per_speed =
+            law.kind == WallLaw::Kind::logarithmic
+                ? cells_.density() * speed_at_face(grid_.layout(), flow_.velocity(), axis, face)
+                : flow_.params().viscosity;
+        return per_speed * law.drag(distance) * (cells_.velocity(axis, face) - wall_velocity);
     }
 
     /// A side that moves takes the water along where it is resolved.
@@ -280,7 +320,8 @@ private:
 ///   p    pressure of `pressure_on_wall`, linear over each cell's wall [Pa]
 ///   A    area of the wall in a cell [m2]
 ///   m    into the solid [-]
-///   tau  shear of the WallLaw, as the solver takes it from the water [Pa]; slip: 0
+///   tau  shear of the WallLaw, as the solver takes it from the water [Pa]; slip: 0. At faces of which walls
+///        leave less than half open also what their neighbours give them and the solver's bounds drop
 /// The pressure's part closes: with V what walls leave open of a cell, A_a and p_a its open faces and the
 /// mean pressures there, F_a = V dp/dx_a - (A_a p_a above - A_a p_a below), and neighbours have the same
 /// A_a p_a. So at rest the force on a solid under water is the weight of the volume that the grid has of it;
