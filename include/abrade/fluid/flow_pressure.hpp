@@ -112,8 +112,9 @@ public:
     std::optional<Offset> offset(Cell cell) const noexcept {
         for (int a = 0; a < Dim; ++a) {
             const int n = grid_.cells(a);
-            if (sides_.periodic(a)) cell[a] = (cell[a] % n + n) % n;
-            if (cell[a] < 0 || cell[a] >= n) return std::nullopt;
+            if (cell[a] >= 0 && cell[a] < n) continue;
+            if (!sides_.periodic(a)) return std::nullopt;
+            cell[a] = (cell[a] % n + n) % n;
         }
         return grid_.layout().at(cell);
     }

@@ -3,10 +3,9 @@
 
 #include <abrade/fluid/flat_patch.hpp>
 #include <abrade/fluid/flow_pressure.hpp>
+#include <abrade/fluid/wall_shear.hpp>
 
-#include <algorithm>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace abrade {
@@ -45,12 +44,6 @@ struct WithinBox {
         return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
     }
 };
-/// A side of the box: `{.axis = 0, .high = true}` is the one at the largest x.
-struct BoxSide {
-    int axis = 0;
-    bool high = false;
-};
-
 namespace detail {
 
 template <GridFlow Flow>
@@ -58,11 +51,10 @@ class WallLoads {
     static constexpr int Dim = dimensions<Flow>;
     using Cell = CellNumber<Dim>;
     using Head = LinearHead<Dim>;
-    using HeldFace = typename WallFriction<Dim>::HeldFace;
 
 public:
     WallLoads(const Flow& flow, const Point<Dim>& about, std::string_view called)
-        : flow_(flow), cells_(flow), grid_(flow.grid()), about_(about) {
+        : flow_(flow), cells_(flow), shear_(flow, cells_), grid_(flow.grid()), about_(about) {
         for (int a = 0; a < Dim; ++a)
             require_finite(about[a], std::string(called) + ": about." + Grid<Dim>::axis_name(a), "m");
     }
@@ -78,7 +70,9 @@ public:
             load.area += w.area;
             push(load, w);
         }
-        drag(load, counts);
+        shear_.on_walls(counts, [&](const WallCell<Dim>& w, const Point<Dim>& force) {
+            add(load.shear, w.point, force);
+        });
         return load;
     }
 
@@ -97,14 +91,14 @@ public:
             const Offset face = side.high ? c + grid_.layout().stride[side.axis] : c;
             const Real open = cells_.open_area(side.axis, face);
             if (open == 0) return;
-            FlatPatch<Dim> patch = open_face(cell, side.axis, side.high);
+            FlatPatch<Dim> patch = open_face(cell, side.axis, side.high, distances(cell, open < 1));
             auto m = patch.moments();
             if (m.area == 0 || !part(m.centre)) return;
             const Real area = open * face_area(side.axis, cell), scale = area / m.area;
             const Point<Dim> outward = (side.high ? 1 : -1) * Point<Dim>::Unit(side.axis);
             load.area += area;
             if (!cells_.has_water(c)) return;
-            if (kind == Side::wall) add(load.shear, m.centre, drag_of_side(side, cell, c, area));
+            if (kind == Side::wall) add(load.shear, m.centre, shear_.on_side(side, cell, c, area));
             const auto head = cells_.head_about(cell);
             if (!head) return;
             if (!cells_.is_full(c)) {
@@ -132,25 +126,25 @@ private:
         return grid_.volume(cell) / grid_.size(axis, cell[axis]);
     }
 
-    /// The open part of a cell's face, the same for both of its cells.
-    FlatPatch<Dim> open_face(const Cell& cell, int axis, bool upper) const {
+    /// Distances from the wall at the corners of a cell, all 1 where it cuts none of what is asked [m].
+    Corners<Dim> distances(const Cell& cell, bool cut) const {
         Corners<Dim> distance;
         distance.fill(1);
-        if (const Walls<Dim>* walls = cells_.walls()) {
-            const Offset c = grid_.layout().at(cell);
-            if (walls->open_area()[axis][upper ? c + grid_.layout().stride[axis] : c] < 1)
-                for (std::size_t k = 0; k < distance.size(); ++k) {
-                    Point<Dim> x;
-                    for (int a = 0; a < Dim; ++a)
-                        x[a] = grid_.face(a, cell[a] + static_cast<int>(k >> a & 1));
-                    distance[k] = flow_.params().wall(x);
-                }
+        if (!cut) return distance;
+        for (std::size_t k = 0; k < distance.size(); ++k) {
+            Point<Dim> x;
+            for (int a = 0; a < Dim; ++a) x[a] = grid_.face(a, cell[a] + static_cast<int>(k >> a & 1));
+            distance[k] = flow_.params().wall(x);
         }
+        return distance;
+    }
+    /// The open part of a cell's face, the same for both of its cells; all of it where corners miss that.
+    FlatPatch<Dim> open_face(const Cell& cell, int axis, bool upper, const Corners<Dim>& distance) const {
         const std::size_t end = upper ? 1 : 0;
         const auto corners = corners_of_face<Dim>(distance, axis, end);
         const auto patch = FlatPatch<Dim>::open_face(grid_, cell, axis, end, corners);
         if (!patch.empty()) return patch;
-        Corners<Dim - 1> all;  // corners miss what is open
+        Corners<Dim - 1> all;
         all.fill(1);
         return FlatPatch<Dim>::open_face(grid_, cell, axis, end, all);
     }
@@ -185,130 +179,22 @@ private:
     /// On the wall of a cell full of water, what its open faces leave over of the gradient's integral: faces
     /// have the same for both of their cells, so of water at rest sums are the weight of what is displaced.
     Point<Dim> closing_force(const Cell& cell, Offset c, const Head& head) const {
+        const Corners<Dim> distance = distances(cell, true);
         Point<Dim> force = cells_.open_volume(c) * grid_.volume(cell) * cells_.gradient(head);
         for (int a = 0; a < Dim; ++a)
             for (const bool upper : {false, true}) {
                 const Real open = cells_.open_area(a, upper ? c + grid_.layout().stride[a] : c);
                 if (open == 0) continue;
-                const Real pressure = cells_.pressure(head, open_face(cell, a, upper).moments().centre);
+                const Real pressure =
+                    cells_.pressure(head, open_face(cell, a, upper, distance).moments().centre);
                 force[a] -= (upper ? 1 : -1) * open * face_area(a, cell) * pressure;
-            }
-        return force;
-    }
-
-    /// Shear as WallFriction has it: each face is held by the nearest wall of its cells.
-    void drag(WallLoad<Dim>& load, const std::vector<char>& counts) const {
-        if (flow_.params().wall_law.kind == WallLaw::Kind::slip) return;
-        struct Held {
-            HeldFace face;
-            std::size_t wall;
-        };
-        std::vector<Held> all;
-        const auto wall_cells = cells_.walls()->wall_cells();
-        for (std::size_t n = 0; n < wall_cells.size(); ++n)
-            WallFriction<Dim>::each_held_face(grid_, cells_.sides(), *cells_.walls(), wall_cells[n],
-                                              [&](const HeldFace& face) {
-                                                  all.push_back({face, n});
-                                              });
-        const auto key = [](const Held& h) { return std::tuple(h.face.axis, h.face.face); };
-        std::ranges::stable_sort(all, {}, key);
-        for (auto first = all.begin(); first != all.end();) {
-            const auto end =
-                std::find_if(first, all.end(), [&](const Held& h) { return key(h) != key(*first); });
-            Real nearest = first->face.distance;
-            for (auto h = first; h != end; ++h) nearest = std::min(nearest, h->face.distance);
-            for (; first != end; ++first) {
-                if (!counts[first->wall]) continue;
-                HeldFace face = first->face;
-                face.distance = nearest;
-                const WallCell<Dim>& w = wall_cells[first->wall];
-                const Cell of = grid_.layout().number(face.face);
-                const Real wet = about(of, face.axis, true) / about(of, face.axis, false);
-                if (wet > 0)
-                    add(load.shear, w.point,
-                        wet * face.area * stress_of(w, face, of) * Point<Dim>::Unit(face.axis));
-            }
-        }
-    }
-    /// Share of a face's control volume that walls leave open, or that is liquid [-].
-    Real about(const Cell& face, int axis, bool liquid) const {
-        Cell below = face;
-        --below[axis];
-        Real sum = 0;
-        for (const auto& cell : {below, face})
-            if (const auto c = cells_.offset(cell))
-                sum += cells_.open_volume(*c) * (liquid ? cells_.liquid(*c) : 1);
-        return 0.5 * sum;
-    }
-    /// The middle of what a wall leaves open about a face [m].
-    Point<Dim> middle(const WallCell<Dim>& w, const Cell& face, int axis) const {
-        Point<Dim> x = grid_.face_centre(axis, face);
-        const Real closed = 1 - about(face, axis, false);
-        for (int b = 0; b < Dim; ++b) x[b] += 0.5 * closed * w.normal[b] * grid_.size(b, face[b]);
-        return x;
-    }
-    /// On a wall, along the axis of a face that it holds [N/m2]. Where walls leave less than half of the
-    /// control volume open the solver bounds what changes its velocity in a step. What the friction of the
-    /// next face off the wall, gravity and the pressure give it beyond what the law takes goes to the wall.
-    Real stress_of(const WallCell<Dim>& w, const HeldFace& f, const Cell& face) const {
-        const Real taken = stress(flow_.params().wall_law, f.axis, f.face, f.distance, 0);
-        int across = 0;
-        w.normal.cwiseAbs().maxCoeff(&across);
-        Cell next = face, below = face;
-        next[across] += w.normal[across] > 0 ? 1 : -1;
-        --below[f.axis];
-        const auto off = cells_.offset(next), back = cells_.offset(below);
-        if (about(face, f.axis, false) >= 0.5 || across == f.axis || !off || !back ||
-            cells_.open_area(f.axis, *off) == 0)
-            return taken;
-        Real viscosity = flow_.params().viscosity;
-        if constexpr (requires { flow_.eddy_viscosity(); }) {
-            const Offset apart = *off - f.face;
-            Real sum = 0;
-            for (const Offset c : {f.face, *back, f.face + apart, *back + apart})
-                sum += static_cast<Real>(flow_.eddy_viscosity()[c]);
-            viscosity += 0.25 * cells_.density() * sum;
-        }
-        const Real gap = w.normal.dot(middle(w, next, f.axis) - middle(w, face, f.axis));
-        Real given = viscosity * (cells_.velocity(f.axis, *off) - cells_.velocity(f.axis, f.face)) / gap;
-        if (cells_.is_wet(f.face) && cells_.is_wet(*back))
-            given += cells_.density() * (cells_.head(below, *back) - cells_.head(face, f.face)) /
-                     grid_.gap(f.axis, face[f.axis]) * f.volume / w.area;
-        return std::abs(given) > std::abs(taken) ? given : taken;
-    }
-    /// Of a face at a distance from a wall that moves along its axis [N/m2].
-    Real stress(const WallLaw& law, int axis, Offset face, Real distance, Real wall_velocity) const {
-        const Real per_speed =
-            law.kind == WallLaw::Kind::logarithmic
-                ? cells_.density() * speed_at_face(grid_.layout(), flow_.velocity(), axis, face)
-                : flow_.params().viscosity;
-        return per_speed * law.drag(distance) * (cells_.velocity(axis, face) - wall_velocity);
-    }
-
-    /// A side that moves takes the water along where it is resolved.
-    Point<Dim> drag_of_side(BoxSide side, const Cell& cell, Offset c, Real area) const {
-        const WallLaw& law = flow_.params().wall_law;
-        Point<Dim> force = Point<Dim>::Zero();
-        if (law.kind == WallLaw::Kind::slip) return force;
-        const auto& moves = flow_.params().side_velocity;
-        for (int a = 0; a < Dim; ++a)
-            for (const int end : {0, 1}) {
-                if (a == side.axis) continue;
-                Cell of = cell;
-                of[a] += end;
-                Point<Dim> x = grid_.face_centre(a, of);
-                x[side.axis] = side.high ? grid_.high(side.axis) : grid_.low(side.axis);
-                const bool taken_along = moves && law.kind == WallLaw::Kind::no_slip;
-                const Real wall = taken_along ? moves(x, flow_.time())[a] : 0;
-                const Offset face = c + end * grid_.layout().stride[a];
-                force[a] += 0.5 * area * cells_.liquid(c) *
-                            stress(law, a, face, 0.5 * grid_.size(side.axis, cell[side.axis]), wall);
             }
         return force;
     }
 
     const Flow& flow_;
     FlowCells<Flow> cells_;
+    WallShear<Flow> shear_;
     const Grid<Dim>& grid_;
     Point<Dim> about_;
 };
