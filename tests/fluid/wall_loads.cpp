@@ -336,24 +336,32 @@ TEST_CASE(
             return sum;
         };
         Point<2> impulse = Point<2>::Zero();
-        while (flow.time() < 0.5) {
-            const Real dt = flow.stable_step().seconds;
-            flow.step(dt);
-            Load<2> load;
-            if (pillar) load += wall_load(flow, {0, 0}).total();
-            for (int a = 0; a < 2; ++a)
-                for (const bool high : {false, true})
-                    load += side_load(flow, {.axis = a, .high = high}, {0, 0}).total();
-            impulse += dt * load.force;
+        Real most = 0;  // momentum along
+        for (const Real end : {0.5, 0.75, 1.0}) {
+            while (flow.time() < end) {
+                const Real dt = flow.stable_step().seconds;
+                flow.step(dt);
+                Load<2> load;
+                if (pillar) load += wall_load(flow, {0, 0}).total();
+                for (int a = 0; a < 2; ++a)
+                    for (const bool high : {false, true})
+                        load += side_load(flow, {.axis = a, .high = high}, {0, 0}).total();
+                impulse += dt * load.force;
+            }
+            const Real weight = rho * g * flow.liquid().volume() * flow.time();
+            const Point<2> gained = momentum();
+            most = std::max(most, gained[0]);
+            const Real along = (-impulse[0] - gained[0]) / most,
+                       down = -impulse[1] / (weight + gained[1]) - 1;
+            MESSAGE(std::string(pillar ? "with" : "without")
+                    << " a pillar, " << end << " s: impulse along " << along
+                    << " of the largest momentum, down " << down << " off");
+            // Velocities stand half a step ahead; what the solver bounds in splashes and at narrow faces is
+            // in no load.
+            const bool splashes = end > 0.5;
+            CHECK(std::abs(along) < (splashes ? 0.2 : 0.04));
+            CHECK(std::abs(down) < 0.02);
         }
-        const Real weight = rho * g * flow.liquid().volume() * flow.time();
-        const Point<2> gained = momentum();
-        const Real along = -impulse[0] / gained[0] - 1, down = -impulse[1] / (weight + gained[1]) - 1;
-        MESSAGE((pillar ? "with" : "without")
-                << " a pillar: impulse along " << along << ", down " << down << " off the momentum");
-        // Velocities stand half a step ahead; about the pillar faces are limited, which is no load.
-        CHECK(std::abs(along) < 0.04);
-        CHECK(std::abs(down) < 0.02);
     }
 }
 

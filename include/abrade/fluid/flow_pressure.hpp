@@ -78,14 +78,16 @@ public:
 
     explicit FlowCells(const Flow& flow)
         : flow_(flow), grid_(flow.grid()), sides_(flow.params().sides),
-          pull_(flow.params().acceleration(flow.time())) {
+          acceleration_(flow.params().acceleration(flow.time())) {
         if constexpr (has_surface) walls_ = flow.walls();
     }
 
     const Grid<Dim>& grid() const noexcept { return grid_; }
     const Sides<Dim>& sides() const noexcept { return sides_; }
     const Walls<Dim>* walls() const noexcept { return walls_; }
-    const Point<Dim>& pull() const noexcept { return pull_; }  ///< gravity and body force [m/s2]
+    const Point<Dim>& acceleration() const noexcept {
+        return acceleration_;
+    }  ///< gravity and body force [m/s2]
     Real density() const noexcept { return flow_.params().density; }
 
     Real open_volume(Offset c) const noexcept { return walls_ ? walls_->open_volume()[c] : 1; }
@@ -130,14 +132,14 @@ public:
 
     /// p / rho - g . x at a cell's centre, which may stand beyond a periodic side [m2/s2].
     Real head(const Cell& cell, Offset c) const noexcept {
-        return static_cast<Real>(flow_.pressure()[c]) - pull_.dot(grid_.centre(cell));
+        return static_cast<Real>(flow_.pressure()[c]) - acceleration_.dot(grid_.centre(cell));
     }
     /// [Pa]
     Real pressure(const LinearHead<Dim>& head, const Point<Dim>& x) const noexcept {
-        return density() * (head.at(x) + pull_.dot(x));
+        return density() * (head.at(x) + acceleration_.dot(x));
     }
     Point<Dim> gradient(const LinearHead<Dim>& head) const noexcept {  ///< of the pressure [Pa/m]
-        return density() * (head.slope + pull_);
+        return density() * (head.slope + acceleration_);
     }
 
     /// About a cell: its own value where it is wet, with the gradient of least squares over the wet cells
@@ -150,7 +152,7 @@ public:
         for (int steps = 1; steps <= Dim; ++steps) {
             int found = 0;
             for (std::size_t n = 0; n < around.size(); ++n) {
-                if (!around[n].wet || !around[n].reached || distance(n) != steps) continue;
+                if (!around[n].wet || !around[n].reached || steps_to(n) != steps) continue;
                 const Cell neighbour = neighbour_of(cell, n);
                 const LinearHead<Dim> one = fit(neighbour, reached(neighbour));
                 mean.value += one.at(mean.about), mean.slope += one.slope, ++found;
@@ -191,7 +193,7 @@ public:
             }
             sum += share * head(at, around[n].cell);
         }
-        return density() * (sum + pull_.dot(x));
+        return density() * (sum + acceleration_.dot(x));
     }
 
 private:
@@ -207,7 +209,7 @@ private:
         for (int a = 0; a < axis; ++a) n /= 3;
         return static_cast<int>(n % 3) - 1;
     }
-    static int distance(std::size_t n) noexcept {
+    static int steps_to(std::size_t n) noexcept {
         int sum = 0;
         for (int a = 0; a < Dim; ++a) sum += step(n, a) != 0;
         return sum;
@@ -264,7 +266,7 @@ private:
     const Grid<Dim>& grid_;
     const Sides<Dim>& sides_;
     const Walls<Dim>* walls_ = nullptr;
-    Point<Dim> pull_;
+    Point<Dim> acceleration_;
 };
 
 }  // namespace detail

@@ -168,7 +168,7 @@ private:
             if (!cells_.offset(cell)) continue;
             if (const auto found = cells_.head_about(cell)) total += found->at(x), count += 1;
         }
-        return count > 0 ? total / count : -cells_.pull().dot(x);  // a film or a drop: pressure 0
+        return count > 0 ? total / count : -cells_.acceleration().dot(x);  // a film or a drop: pressure 0
     }
 
     const FlowCells<Flow>& cells_;

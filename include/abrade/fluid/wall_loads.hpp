@@ -68,7 +68,7 @@ public:
             counts.push_back(part(w.point));
             if (!counts.back()) continue;
             load.area += w.area;
-            push(load, w);
+            add_pressure(load, w);
         }
         shear_.on_walls(counts, [&](const WallCell<Dim>& w, const Point<Dim>& force) {
             add(load.shear, w.point, force);
@@ -150,7 +150,7 @@ private:
     }
 
     /// Pressure on the wall of one cell, and of what there is of it below water.
-    void push(WallLoad<Dim>& load, const WallCell<Dim>& w) const {
+    void add_pressure(WallLoad<Dim>& load, const WallCell<Dim>& w) const {
         if (!cells_.has_water(w.cell)) return;
         const Cell cell = grid_.layout().number(w.cell);
         const auto head = cells_.head_about(cell);

@@ -83,7 +83,7 @@ private:
 
 /// The solid inside a closed mesh, from an STL file for instance (io/stl_file.hpp):
 ///   w = distance from its nearest triangle, below 0 where its triangles wind around x [m], the distance
-/// itself. Each question asks every triangle; that takes some 30 ns a triangle, so thousands of them make a
+/// itself. Each question asks every triangle; 15 to 40 ns a triangle, so thousands of them make a
 /// large grid slow to build. Copies share the mesh.
 class MeshWall {
 public:
