@@ -4,6 +4,7 @@
 #include <abrade/fluid/flow_pressure.hpp>
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -49,19 +50,26 @@ public:
         for (auto first = all.begin(); first != all.end();) {
             const auto end =
                 std::find_if(first, all.end(), [&](const Held& h) { return key(h) != key(*first); });
-            Real nearest = first->face.distance;
-            for (auto h = first; h != end; ++h) nearest = std::min(nearest, h->face.distance);
-            for (; first != end; ++first) {
-                if (!counts[first->wall]) continue;
-                HeldFace face = first->face;
-                face.distance = nearest;
-                const WallCell<Dim>& w = wall_cells[first->wall];
-                const Cell of = grid_.layout().number(face.face);
-                const Real wet = about(of, face.axis, true) / about(of, face.axis, false);
-                if (wet > 0)
-                    body(w,
-                         Point<Dim>(wet * face.area * stress_of(w, face, of) * Point<Dim>::Unit(face.axis)));
+            Real nearest = first->face.distance, area = 0;
+            for (auto h = first; h != end; ++h)
+                nearest = std::min(nearest, h->face.distance), area += h->face.area;
+            const auto [axis, face] = key(*first);
+            const Cell of = grid_.layout().number(face);
+            const Real open = about(of, axis, false);
+            const Real wet = open > 0 ? about(of, axis, true) / open : 0;
+            if (wet == 0) {
+                first = end;
+                continue;
             }
+            Real taken = stress(flow_.params().wall_law, axis, face, nearest, 0);
+            if (open < 0.5) {
+                const Real given = force_on(of, axis, face) / area;
+                if (std::abs(given) > std::abs(taken)) taken = given;
+            }
+            for (; first != end; ++first)
+                if (counts[first->wall])
+                    body(wall_cells[first->wall],
+                         Point<Dim>(wet * first->face.area * taken * Point<Dim>::Unit(axis)));
         }
     }
     /// On what is open of the face of a cell beside a side [N]. A side that moves takes the water along where
@@ -98,41 +106,58 @@ private:
                 sum += cells_.open_volume(*c) * (liquid ? cells_.liquid(*c) : 1);
         return 0.5 * sum;
     }
-    /// The middle of what a wall leaves open about a face [m].
-    Point<Dim> middle(const WallCell<Dim>& w, const Cell& face, int axis) const {
-        Point<Dim> x = grid_.face_centre(axis, face);
-        const Real closed = 1 - about(face, axis, false);
-        for (int b = 0; b < Dim; ++b) x[b] += 0.5 * closed * w.normal[b] * grid_.size(b, face[b]);
-        return x;
+    /// How far the middle of what is open of a cell lies from the cell's along an axis [cell].
+    Real shifted(const Cell& cell, int axis) const {
+        const auto c = cells_.offset(cell);
+        const auto walls = c ? cells_.walls()->wall_cells(*c, 1) : std::span<const WallCell<Dim>>();
+        return walls.empty() ? 0 : 0.5 * (1 - cells_.open_volume(*c)) * walls[0].normal[axis];
     }
-    /// On a wall, along the axis of a face that it holds [N/m2]. Where walls leave less than half of the
-    /// control volume open the solver bounds what changes its velocity in a step. What the friction of the
-    /// next face off the wall, gravity and the pressure give it beyond what the law takes goes to the wall.
-    Real stress_of(const WallCell<Dim>& w, const HeldFace& f, const Cell& face) const {
-        const Real taken = stress(flow_.params().wall_law, f.axis, f.face, f.distance, 0);
-        int across = 0;
-        w.normal.cwiseAbs().maxCoeff(&across);
-        Cell next = face, below = face;
-        next[across] += w.normal[across] > 0 ? 1 : -1;
-        --below[f.axis];
-        const auto off = cells_.offset(next), back = cells_.offset(below);
-        if (about(face, f.axis, false) >= 0.5 || across == f.axis || !off || !back ||
-            cells_.open_area(f.axis, *off) == 0)
-            return taken;
-        Real viscosity = flow_.params().viscosity;
+    /// What friction with the water beside it, gravity and the pressure do to the control volume of a face
+    /// along its axis [N]. Where walls leave less than half of it open the solver bounds what changes its
+    /// velocity in a step: what they give beyond that the law takes is lost to the wall as well.
+    Real force_on(const Cell& face, int axis, Offset f) const {
+        Cell below = face;
+        --below[axis];
+        const auto back = cells_.offset(below);
+        if (!back) return 0;
+        const Real volume = grid_.volume(face);
+        Real force = 0;
+        for (int b = 0; b < Dim; ++b)
+            for (const int end : {0, 1}) {
+                if (b == axis) continue;
+                Cell beside = face, side = face;  // the side is the lower one of its cell
+                beside[b] += end == 0 ? -1 : 1, side[b] += end;
+                Cell side_below = side;
+                --side_below[axis];
+                const auto off = cells_.offset(beside), at = cells_.offset(side),
+                           at_below = cells_.offset(side_below);
+                if (!off || !at || !at_below) continue;
+                const Real open = 0.5 * (cells_.open_area(b, *at) + cells_.open_area(b, *at_below));
+                if (open == 0) continue;
+                Cell lower = side, lower_below = side_below;
+                --lower[b], --lower_below[b];
+                // As open_friction_of has it.
+                const Real gap = 1 + 0.5 * (shifted(side, b) + shifted(side_below, b) - shifted(lower, b) -
+                                            shifted(lower_below, b));
+                const Real area = open * volume / grid_.size(b, face[b]);
+                force += viscosity(*at, *at_below, b) * area *
+                         (cells_.velocity(axis, *off) - cells_.velocity(axis, f)) /
+                         (std::max(gap, 0.25) * grid_.gap(b, side[b]));
+            }
+        if (cells_.is_wet(f) && cells_.is_wet(*back))
+            force += cells_.density() * about(face, axis, false) * volume *
+                     (cells_.head(below, *back) - cells_.head(face, f)) / grid_.gap(axis, face[axis]);
+        return force;
+    }
+    /// At the edge between four cells: two above it along an axis, and those below them [Pa s].
+    Real viscosity([[maybe_unused]] Offset c, [[maybe_unused]] Offset d, [[maybe_unused]] int axis) const {
+        Real sum = flow_.params().viscosity;
         if constexpr (requires { flow_.eddy_viscosity(); }) {
-            const Offset apart = *off - f.face;
-            Real sum = 0;
-            for (const Offset c : {f.face, *back, f.face + apart, *back + apart})
-                sum += static_cast<Real>(flow_.eddy_viscosity()[c]);
-            viscosity += 0.25 * cells_.density() * sum;
+            const Offset down = grid_.layout().stride[axis];
+            for (const Offset e : {c, d, c - down, d - down})
+                sum += 0.25 * cells_.density() * static_cast<Real>(flow_.eddy_viscosity()[e]);
         }
-        const Real gap = w.normal.dot(middle(w, next, f.axis) - middle(w, face, f.axis));
-        Real given = viscosity * (cells_.velocity(f.axis, *off) - cells_.velocity(f.axis, f.face)) / gap;
-        if (cells_.is_wet(f.face) && cells_.is_wet(*back))
-            given += cells_.density() * (cells_.head(below, *back) - cells_.head(face, f.face)) /
-                     grid_.gap(f.axis, face[f.axis]) * f.volume / w.area;
-        return std::abs(given) > std::abs(taken) ? given : taken;
+        return sum;
     }
     /// Of a face at a distance from a wall that moves along its axis [N/m2].
     Real stress(const WallLaw& law, int axis, Offset face, Real distance, Real wall_velocity) const {
