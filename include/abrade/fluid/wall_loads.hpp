@@ -206,8 +206,8 @@ private:
 ///   p    pressure of `pressure_on_wall`, linear over each cell's wall [Pa]
 ///   A    area of the wall in a cell [m2]
 ///   m    into the solid [-]
-///   tau  shear of the WallLaw, as the solver takes it from the water [Pa]; slip: 0. At faces of which walls
-///        leave less than half open also what their neighbours give them and the solver's bounds drop
+///   tau  shear of the WallLaw, as the solver takes it from the water [Pa]; slip: 0. Where walls leave less
+///        than half of a control volume open also what the solver's bounds take there
 /// The pressure's part closes: with V what walls leave open of a cell, A_a and p_a its open faces and the
 /// mean pressures there, F_a = V dp/dx_a - (A_a p_a above - A_a p_a below), and neighbours have the same
 /// A_a p_a. So at rest the force on a solid under water is the weight of the volume that the grid has of it;
