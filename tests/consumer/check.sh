@@ -28,6 +28,8 @@ fi
 if [ "$kind" = package ]; then
     said="$(OMP_NUM_THREADS=1 "$work/build/own_law")"
     grep -Eq '^restitution 0\.(599|600)' <<<"$said" || { printf 'own_law said:\n%s\n' "$said"; exit 1; }
+    said="$(OMP_NUM_THREADS=1 "$work/build/flow_queries")"
+    grep -Eq '^discharge (1\.9|2\.0)' <<<"$said" || { printf 'flow_queries said:\n%s\n' "$said"; exit 1; }
 
     # A component that is not there is refused by name.
     mkdir "$work/wrong"

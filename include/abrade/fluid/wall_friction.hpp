@@ -20,6 +20,15 @@ struct WallLaw {
     Kind kind = Kind::no_slip;
     Real roughness = 0;  ///< k_s, equivalent sand roughness of a logarithmic wall [m]
 
+    static constexpr Real karman = 0.41;
+
+    /// The shear of water at a distance d > 0 [m] is rho nu u / d or rho (kappa / ln(1 + 30 d / k_s))^2 |u|
+    /// u: of that the factor beside rho nu u [1/m], or rho |u| u [-].
+    Real drag(Real distance) const noexcept {
+        if (kind == Kind::slip) return 0;
+        return kind == Kind::no_slip ? 1 / distance : square(karman / std::log1p(30 * distance / roughness));
+    }
+
     void validate() const {
         if (kind == Kind::logarithmic)
             require_positive(roughness, "WallLaw.roughness", "m",
@@ -29,6 +38,22 @@ struct WallLaw {
                                  "leave it out, or make the wall logarithmic");
     }
 };
+
+namespace detail {
+
+/// At a face along axis a: its own component, and the mean of the four around it of each other one.
+template <int Dim, class State>
+Real speed_at_face(const Layout<Dim>& layout, const FaceField<Dim, State>& u, int a, Offset face) noexcept {
+    Real sum = square(Real(u[a][face]));
+    for (int b = 0; b < Dim; ++b) {
+        if (b == a) continue;
+        const Offset up = layout.stride[b], back = layout.stride[a];
+        sum += square(0.25 * Real(u[b][face] + u[b][face + up] + u[b][face - back] + u[b][face + up - back]));
+    }
+    return std::sqrt(sum);
+}
+
+}  // namespace detail
 
 /// Sides whose friction is added apart let the water glide.
 template <int Dim>
@@ -49,7 +74,44 @@ Sides<Dim> gliding_sides(Sides<Dim> sides, const WallLaw& law) {
 template <int Dim>
 class WallFriction {
 public:
-    static constexpr Real karman = 0.41;
+    static constexpr Real karman = WallLaw::karman;
+
+    /// A face that the wall of one of its cells holds.
+    struct HeldFace {
+        int axis = 0;
+        Offset face = 0;
+        Real distance = 0;  ///< of its centre from the wall [m]
+        Real area = 0;      ///< of that wall [m2]
+        Real volume = 0;    ///< about the face, open [m3]
+    };
+    /// Calls body(HeldFace) for the faces among which the wall of a cell is shared out.
+    static void each_held_face(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>& walls,
+                               const WallCell<Dim>& wall, auto&& body) {
+        const Layout<Dim>& layout = grid.layout();
+        const CellNumber<Dim> cell = layout.number(wall.cell);
+        for (int a = 0; a < Dim; ++a) {
+            // A closed face leaves all to the other.
+            const auto& area = walls.open_area()[a];
+            const bool both = area[wall.cell] > 0 && area[wall.cell + layout.stride[a]] > 0;
+            const Real part = both ? 0.5 : 1;
+            for (const bool upper : {false, true}) {
+                CellNumber<Dim> of = cell;
+                if (upper) ++of[a];
+                const Offset face = layout.at(of), back = layout.stride[a];
+                // A face at a side of the box is the side's.
+                const bool at_side = of[a] == 0 || of[a] == grid.cells(a);
+                if (walls.open_area()[a][face] == 0 || (at_side && !sides.periodic(a))) continue;
+                const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
+                Point<Dim> middle = grid.face_centre(a, of);  // of what is open
+                for (int b = 0; b < Dim; ++b)
+                    middle[b] += 0.5 * (1 - open) * wall.normal[b] * grid.size(b, cell[b]);
+                const Real distance = wall.normal.dot(middle - wall.point);
+                const Offset around = of[a] == grid.cells(a) ? grid.cells(a) * back : 0;
+                body(HeldFace{a, face - around, std::max(distance, 0.05 * grid.size(a, cell[a])),
+                              part * wall.area, std::max(open, 0.01) * grid.volume(cell)});
+            }
+        }
+    }
 
     WallFriction(const Grid<Dim>& grid, const Sides<Dim>& sides, const WallLaw& law, const Walls<Dim>* walls)
         : layout_(grid.layout()), law_(law) {
@@ -62,10 +124,7 @@ public:
             auto& list = held_[a];
             merge(list);
             starts_[a] = {layout_, list.size(), [&](std::size_t k) { return list[k].face; }};
-            for (Held& h : list)
-                h.per_speed = law_.kind == WallLaw::Kind::no_slip
-                                  ? 1 / h.distance
-                                  : square(karman / std::log1p(30 * h.distance / law_.roughness));
+            for (Held& h : list) h.per_speed = law_.drag(h.distance);
         }
     }
 
@@ -116,48 +175,15 @@ private:
             return z / (1 + z);
         }
         // The root of v (1 + z v / u) = u.
-        const Real z = step * h.per_volume * speed(u, a, h.face) * h.per_speed;
+        const Real z = step * h.per_volume * detail::speed_at_face(layout_, u, a, h.face) * h.per_speed;
         return 1 - 2 / (1 + std::sqrt(1 + 4 * z));
-    }
-
-    /// At a face: its own component, and the mean of the four around it of each other one.
-    template <class State>
-    Real speed(const FaceField<Dim, State>& u, int a, Offset face) const noexcept {
-        Real sum = square(Real(u[a][face]));
-        for (int b = 0; b < Dim; ++b) {
-            if (b == a) continue;
-            const Offset up = layout_.stride[b], back = layout_.stride[a];
-            sum += square(0.25 *
-                          Real(u[b][face] + u[b][face + up] + u[b][face - back] + u[b][face + up - back]));
-        }
-        return std::sqrt(sum);
     }
 
     void add(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>& walls,
              const WallCell<Dim>& wall) {
-        const CellNumber<Dim> cell = layout_.number(wall.cell);
-        for (int a = 0; a < Dim; ++a) {
-            // A closed face leaves all to the other.
-            const auto& area = walls.open_area()[a];
-            const bool both = area[wall.cell] > 0 && area[wall.cell + layout_.stride[a]] > 0;
-            const Real part = both ? 0.5 : 1;
-            for (const bool upper : {false, true}) {
-                CellNumber<Dim> of = cell;
-                if (upper) ++of[a];
-                const Offset face = layout_.at(of), back = layout_.stride[a];
-                // A face at a side of the box is the side's.
-                const bool at_side = of[a] == 0 || of[a] == grid.cells(a);
-                if (walls.open_area()[a][face] == 0 || (at_side && !sides.periodic(a))) continue;
-                const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
-                Point<Dim> middle = grid.face_centre(a, of);  // of what is open
-                for (int b = 0; b < Dim; ++b)
-                    middle[b] += 0.5 * (1 - open) * wall.normal[b] * grid.size(b, cell[b]);
-                const Real distance = wall.normal.dot(middle - wall.point);
-                const Offset around = of[a] == grid.cells(a) ? grid.cells(a) * back : 0;
-                held_[a].push_back({face - around, std::max(distance, 0.05 * grid.size(a, cell[a])),
-                                    part * wall.area / (std::max(open, 0.01) * grid.volume(cell))});
-            }
-        }
+        each_held_face(grid, sides, walls, wall, [&](const HeldFace& f) {
+            held_[f.axis].push_back({f.face, f.distance, f.area / f.volume});
+        });
     }
 
     void add_sides(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>* walls) {
