@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "../message_of.hpp"
+
 using namespace abrade;
 
 namespace {
@@ -176,7 +178,7 @@ TEST_CASE("steps name their limit") {
     CHECK(GridFluid<2>(thick).stable_step().limit == "largest_step");
 }
 
-TEST_CASE("a run that goes wrong names the cell, the speed and the cause, and is as it was") {
+TEST_CASE("a step that is too long in a full box is refused before it is taken, with its limit") {
     GridFluid<2, FullBox> flow(
         {.grid = {.cells = {16, 16}, .spacing = Point<2>::Constant(1.0 / 16)},
          .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
@@ -184,22 +186,12 @@ TEST_CASE("a run that goes wrong names the cell, the speed and the cause, and is
          .viscosity = 1e-2});
     flow.advance(1);
     const Real time = flow.time();
-    // A hundred times beyond the viscous limit: grows by large factors in each step.
-    std::string message;
-    Real before = 0;
-    try {
-        for (int k = 0; k < 200; ++k) {
-            before = flow.kinetic_energy();
-            flow.step(100 * flow.stable_step().seconds);
-        }
-    } catch (const FluidError& error) {
-        message = error.what();
-    }
+    const Real before = flow.kinetic_energy();
+    const std::string message = message_of<FluidError>([&] { flow.step(100 * flow.stable_step().seconds); });
     MESSAGE(message);
-    CHECK(message.find("cell [") != std::string::npos);
-    CHECK(message.find("m/s") != std::string::npos);
+    CHECK(message.find("beyond stable_step(), which viscosity limits to ") != std::string::npos);
     CHECK(flow.kinetic_energy() == before);
-    CHECK(flow.time() >= time);
+    CHECK(flow.time() == time);
 }
 
 TEST_CASE("bad input names field, value, rule and remedy") {
@@ -234,7 +226,7 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     CHECK(says(params).find("leaves open") != std::string::npos);
     params = good;
     params.courant = 2;
-    CHECK(says(params).starts_with("GridFluid.courant must be in (0, 1], got 2"));
+    CHECK(says(params).starts_with("GridFluid.courant must be from 0 to 1, got 2"));
     constexpr Real nan = std::numeric_limits<Real>::quiet_NaN(), inf = std::numeric_limits<Real>::infinity();
     params = good;
     params.grid.cells[1] = 2, params.grid.levels = {0, 0.5, inf};

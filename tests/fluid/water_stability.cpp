@@ -86,24 +86,22 @@ bool names(const std::string& message, std::initializer_list<std::string_view> w
 
 }  // namespace
 
-TEST_CASE("beyond the Courant limit: one and a half times is carried, beyond a whole cell is refused") {
+TEST_CASE("steps beyond the stable one are refused with the limit that they break") {
     GridFluid<2> flow(basin(column));
     flow.advance(0.2);
-    CHECK(push(flow, 1.5, 60) == "");
-    CHECK(std::isfinite(fastest(flow)));
-    for (const Real times : {4.0, 100.0}) {
-        CHECK(names(push(flow, times, 1), {"cell [", "dt", "stable_step()"}));
+    for (const Real times : {1.01, 4.0, 100.0}) {
+        CHECK(names(push(flow, times, 1), {"dt", "beyond stable_step(), which volume of fluid limits to"}));
         run(flow, 0.05);
     }
 }
 
 TEST_CASE("a second of free fall in one step from rest is refused") {
     GridFluid<2> flow(basin(column));
-    CHECK(names(push(flow, 1 / flow.stable_step().seconds, 1), {"cell [", "dt", "stable_step()"}));
+    CHECK(names(push(flow, 1 / flow.stable_step().seconds, 1), {"dt", "stable_step()"}));
     CHECK_THROWS_WITH_AS(flow.step(0), doctest::Contains("GridFluid.step: dt"), InputError);
 }
 
-TEST_CASE("beyond the viscous limit velocities grow, and the run is stopped") {
+TEST_CASE("within the viscous limit velocities decay, beyond it a step is refused") {
     auto params = basin([](const Point<2>& x) { return 0.77 - x[1]; });
     params.viscosity = 1000;  // the limit is 0.2 ms
     params.velocity = [](const Point<2>& x) {
@@ -114,7 +112,7 @@ TEST_CASE("beyond the viscous limit velocities grow, and the run is stopped") {
     const Real energy = within.kinetic_energy();
     run(within, 0.008);
     CHECK(within.kinetic_energy() < 0.1 * energy);
-    CHECK(names(push(beyond, 40, 30), {"cell [", "dt"}));
+    CHECK(names(push(beyond, 40, 30), {"dt", "viscosity"}));
 }
 
 TEST_CASE("too fast: the error names step, time, cell, speed and remedy") {

@@ -37,28 +37,31 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
     const Real friction = 2 * causes.viscosity * per_h2, rate = causes.fastest + friction;
     // At its end gravity may have made the water faster by g dt.
     const Real twice = rate + std::sqrt(square(rate) + 4 * fall * params.courant);
-    if (twice > 0) step.lower(2 * params.courant / twice, friction > causes.fastest ? "viscosity" : "CFL");
+    if (twice > 0) {
+        const Real dt = 2 * params.courant / twice;
+        step.lower(dt, dt * friction > 0.5 * params.courant ? "viscosity" : "CFL");
+    }
     // The shortest wave that the grid knows, of two cells, must not cross a cell.
     if (fall > 0) step.lower(std::sqrt(pi * shortest / causes.gravity->norm()), "gravity wave");
     return step;
 }
 
 /// The longest step up to `longest` [s] within which a body force goes on as it does: its path is no longer
-/// than its change by more than a tenth of its largest value.
+/// than its change by more than a tenth of its largest value. A force that is no number shows in the step.
 template <int Dim>
-Real smooth_step(const GridFluidParams<Dim>& params, Real time, Real longest) {
+Real smooth_step(const BodyForce<Dim>& force, Real time, Real longest) {
     constexpr int parts = 8;
+    constexpr Real shortest = 1e-6;  // of the longest: what jumps is taken as it comes
     for (Real dt = longest;; dt *= 0.5) {
-        Point<Dim> last = params.acceleration(time) - params.gravity;
-        const Point<Dim> first = last;
+        const Point<Dim> first = force(time);
+        Point<Dim> last = first;
         Real path = 0, largest = last.norm();
         for (int n = 1; n <= parts; ++n) {
-            const Point<Dim> now = params.acceleration(time + dt * n / parts) - params.gravity;
+            const Point<Dim> now = force(time + dt * n / parts);
             path += (now - last).norm(), largest = std::max(largest, now.norm());
             last = now;
         }
-        constexpr Real shortest = 1e-6;  // of the longest: what jumps is taken as it comes
-        if (path - (last - first).norm() <= 0.1 * largest || dt < shortest * longest) return dt;
+        if (!(path - (last - first).norm() > 0.1 * largest) || dt < shortest * longest) return dt;
     }
 }
 
