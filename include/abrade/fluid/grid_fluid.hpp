@@ -3,6 +3,7 @@
 
 #include <abrade/fluid/changed_walls.hpp>
 #include <abrade/fluid/eddy_viscosity.hpp>
+#include <abrade/fluid/energy_account.hpp>
 #include <abrade/fluid/fastest_face.hpp>
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/momentum.hpp>
@@ -143,6 +144,7 @@ public:
             throw;
         }
         check(dt);
+        if (energy_) energy_->took(energy_view(), dt);
         find_eddies();
         time_ += dt, late_.took(dt);
         ++steps_;
@@ -172,6 +174,7 @@ public:
         next.heights_.find(*grid_, water.rows(), water.held());
         next.finish(next.velocity_);
         next.find_eddies();
+        if (next.energy_) next.energy_->reshaped(next.energy_view());
         *this = std::move(next);
     }
 
@@ -200,10 +203,21 @@ public:
         return params_.density * detail::kinetic_energy(*grid_, velocity_, held());
     }
 
+    /// Opens the energy account (WaterEnergy), or opens it anew: terms count from here. Without it steps do
+    /// nothing for it.
+    void open_energy_account() { energy_.emplace(energy_view(steps_ == 0)); }
+    bool has_energy_account() const noexcept { return energy_.has_value(); }
+    /// Throws std::logic_error where no account was opened.
+    const WaterEnergy& energy() const {
+        if (!energy_) throw std::logic_error("GridFluid.energy: call open_energy_account() first");
+        return energy_->energy();
+    }
+
 private:
     using Stage = MomentumStage<Dim, State>;
     struct Nothing {};
     using Eddies = detail::EddyViscosity<Dim, State>;
+    using EnergyAccount = detail::EnergyAccount<Dim, State, Scheme>;
 
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     Real nu() const noexcept { return params_.viscosity / params_.density; }
@@ -219,6 +233,43 @@ private:
     /// In a full box that of logarithmic sides alone; the surface's water has its own.
     static WallLaw side_law(const WallLaw& law) {
         return !has_surface && law.kind == WallLaw::Kind::logarithmic ? law : WallLaw{WallLaw::Kind::slip};
+    }
+
+    /// `begins`: before the first step, when no velocity of the step before is known.
+    typename EnergyAccount::View energy_view(bool begins = false) const {
+        const Field<State>* eddies = nullptr;
+        if constexpr (Turbulence::has_eddies) eddies = &eddies_->field();
+        if constexpr (has_surface) {
+            const auto& water = *water_;
+            return {*grid_,
+                    params_,
+                    water.friction(),
+                    water.faces(),
+                    begins ? velocity_ : record_.velocity(),
+                    stage_,
+                    velocity_,
+                    pressure_,
+                    time_,
+                    eddies,
+                    &water.liquid(),
+                    water.walls(),
+                    &water.rows(),
+                    &water.held_before(),
+                    &water.held(),
+                    &water.wet(),
+                    water.open_friction()};
+        } else {
+            return {*grid_,
+                    params_,
+                    side_friction_,
+                    projection_.faces(),
+                    begins ? velocity_ : saved_velocity_,
+                    stage_,
+                    velocity_,
+                    pressure_,
+                    time_,
+                    eddies};
+        }
     }
 
     /// What walls decide once, beside the water.
@@ -262,6 +313,7 @@ private:
         stage(velocity_, stage_, 0);
         if (!side_friction_.empty()) sides_.join(stage_);
         const auto taken = side_friction_.apply(stage_, nullptr, dt, nu());
+        if (energy_) energy_->walls_took(taken);
         sides_.fill(stage_);
         stage(stage_, saved_velocity_, 0.5);
         side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
@@ -286,6 +338,7 @@ private:
         }
         sides_.join(pressure_);
         water.move(velocity_, dt);
+        if (energy_) energy_->liquid_moved(energy_view());
         // The velocity goes from half a step before the new surface to half a step behind it.
         const Point<Dim> falls = params_.acceleration(time_ + dt);
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
@@ -309,6 +362,7 @@ private:
         sides_.join(stage_);  // friction of walls looks across the ends
         // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
         const auto taken = water.friction().apply(stage_, &water.rows(), dt, nu());
+        if (energy_) energy_->walls_took(taken);
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         finish(stage_);
         water.carry_by(stage_, dt);
@@ -388,6 +442,7 @@ private:
     std::conditional_t<has_surface, detail::SurfaceHeights<Dim>, Nothing> heights_{};
     std::conditional_t<has_surface, detail::Outflows<Dim>, Nothing> outflows_{};
     std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies_{};
+    std::optional<EnergyAccount> energy_;  ///< none: nobody asks
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Real first_step_ = 0;                       ///< in which what first moves it does not cross a cell [s]
@@ -396,5 +451,6 @@ private:
 };
 
 static_assert(AdvancingFluid<GridFluid<2>> && AdvancingFluid<GridFluid<3>>);
+static_assert(AccountsForEnergy<GridFluid<2>> && AccountsForEnergy<GridFluid<3, FullBox>>);
 
 }  // namespace abrade
