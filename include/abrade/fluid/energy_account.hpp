@@ -1,39 +1,14 @@
 #pragma once
 // What books the energy of water on a grid, step by step.
 
-#include <abrade/fluid/cell_sizes.hpp>
-#include <abrade/fluid/grid_fluid_params.hpp>
-#include <abrade/fluid/liquid_centroid.hpp>
 #include <abrade/fluid/momentum.hpp>
+#include <abrade/fluid/water_content.hpp>
 #include <abrade/fluid/water_energy.hpp>
 
-#include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace abrade::detail {
-
-/// Of a flow, what its energy is measured from. Below `liquid`: null in a full box.
-template <int Dim, class State>
-struct EnergyView {
-    const Grid<Dim>& grid;
-    const GridFluidParams<Dim>& params;
-    const WallFriction<Dim>& friction;
-    const PerAxis<WetRows<Dim>, Dim>& faces;  ///< that carry momentum
-    const FaceField<Dim, State>& before;      ///< when the step began [m/s]
-    const FaceField<Dim, State>& stage;       ///< after the first stage [m/s]; asked in a full box alone
-    const FaceField<Dim, State>& velocity;    ///< now [m/s]
-    const Field<State>& pressure;             ///< over density [m2/s2]
-    Real time = 0;                            ///< when the step began [s]
-    const Field<State>* eddies = nullptr;  ///< nu_t of cells that acted in the step [m2/s]; none: no eddies
-    const VolumeOfFluid<Dim>* liquid = nullptr;
-    const Walls<Dim>* walls = nullptr;
-    const WetRows<Dim>* rows = nullptr;
-    const Field<Real>* held_before = nullptr;  ///< liquid in whole cells when the step began [-]
-    const Field<Real>* held = nullptr;         ///< and now
-    const Field<std::uint8_t>* wet = nullptr;
-    const PerAxis<FaceField<Dim, float>, Dim>* open_friction = nullptr;
-};
 
 /// Books a WaterEnergy. Forces and fluxes are those of one velocity a step, by which the liquid moves from
 /// its beginning to its end: in a full box the mean of the velocities before and after the step; below a
@@ -46,14 +21,11 @@ class EnergyAccount {
 public:
     using View = EnergyView<Dim, State>;
 
-    explicit EnergyAccount(const View& flow)
-        : sizes_(flow.grid), all_(WetRows<Dim>::whole(flow.grid.layout())), mid_(flow.before),
-          scratch_(face_field<Dim, State>(flow.grid.layout())), still_(scratch_) {
-        for (int a = 0; a < Dim; ++a) {
-            const bool periodic = flow.params.sides.periodic(a);
-            gravity_[a] = periodic ? 0 : flow.params.gravity[a];
-            along_periodic_[a] = periodic ? flow.params.gravity[a] : 0;
-        }
+    /// `before`: the velocity by which the liquid came to where it is, ghosts filled; at the start the
+    /// present one.
+    EnergyAccount(const View& flow, FaceField<Dim, State> before)
+        : content_(flow), mid_(std::move(before)), scratch_(face_field<Dim, State>(flow.grid.layout())),
+          still_(scratch_) {
         for (int a = 0; a < Dim; ++a)
             for (const bool high : {false, true})
                 if (const Side side = flow.params.sides[a][high];
@@ -119,75 +91,8 @@ private:
         }
     };
 
-    /// Sum of term(cell offset, its level) over the rows that hold water.
-    Real sum_over_cells(const View& flow, auto&& term) const {
-        return sum_over_rows(flow.rows ? *flow.rows : all_, term);
-    }
-    static Real sum_over_rows(const WetRows<Dim>& rows, auto&& term) {
-        const Layout<Dim>& layout = rows.layout();
-        const Index per_plane = layout.rows_per_plane();
-        return parallel_sum<Real>(
-            layout.planes() * per_plane,
-            [&](Index n) {
-                const int plane = static_cast<int>(n / per_plane), row = static_cast<int>(n % per_plane);
-                const RowRange r = rows.row(plane, row);
-                const Offset start = layout.row_start(plane, row);
-                Real sum = 0;
-                for (int i = r.begin; i < r.end; ++i) sum += term(start + i, Dim == 3 ? row : i);
-                return sum;
-            },
-            16);
-    }
-
-    /// Finds what the water holds.
     void look(const View& flow) {
-        const Offset* const stride = flow.grid.layout().stride.begin();
-        const auto speed = [&](int a, Offset c) {
-            const auto now = static_cast<Real>(flow.velocity[a][c]);
-            return flow.liquid ? 0.5 * (now + static_cast<Real>(mid_[a][c])) : now;
-        };
-        energy_.kinetic = flow.params.density * sum_over_cells(flow, [&](Offset c, int level) {
-                              const Real held = flow.held ? (*flow.held)[c] : 1;
-                              Real squares = 0;
-                              for (int a = 0; a < Dim && held > 0; ++a)
-                                  squares += square(speed(a, c)) + square(speed(a, c + stride[a]));
-                              return 0.25 * squares * held * sizes_.volume(level);
-                          });
-        energy_.potential = gravity_.isZero() ? 0 : -flow.params.density * gravity_.dot(moment(flow));
-    }
-
-    /// Sum of liquid volume times its place [m4].
-    Point<Dim> moment(const View& flow) const {
-        const Layout<Dim>& layout = flow.grid.layout();
-        Point<Dim> sum;
-        for (int a = 0; a < Dim; ++a)
-            sum[a] = gravity_[a] == 0 ? 0 : sum_over_cells(flow, [&](Offset c, int level) {
-                const Real volume = volume_of(flow, c, level);
-                return volume == 0 ? 0 : volume * flow.grid.centre(a, layout.number(c)[a]);
-            });
-        if (!flow.liquid) return sum;
-        const auto add = [&](Offset c) {
-            const CellNumber<Dim> cell = layout.number(c);
-            const Real volume = volume_of(flow, c, cell[vertical]);
-            if (volume != 0) sum += volume * off_centre(flow, c, cell);
-        };
-        for (const Index c : flow.liquid->planes().cell) add(c);
-        if (flow.walls)
-            for (const WallCell<Dim>& w : flow.walls->wall_cells())
-                if (flow.liquid->plane_of(w.cell) < 0) add(w.cell);
-        return sum;
-    }
-    Real volume_of(const View& flow, Offset c, int level) const noexcept {
-        if (!flow.liquid) return sizes_.volume(level);
-        const Real open = flow.walls ? flow.walls->open_volume()[c] : 1;
-        return open == 0
-                   ? 0
-                   : (flow.liquid->fraction()[c] + flow.liquid->surplus()[c]) * open * sizes_.volume(level);
-    }
-    static Point<Dim> off_centre(const View& flow, Offset c, const CellNumber<Dim>& cell) noexcept {
-        Point<Dim> off = liquid_centroid(*flow.liquid, flow.walls, c);
-        for (int a = 0; a < Dim; ++a) off[a] *= flow.grid.size(a, cell[a]);
-        return off;
+        energy_.kinetic = content_.kinetic(flow, mid_), energy_.potential = content_.potential(flow);
     }
 
     /// Of a full box, the velocity in the middle of the step and what it carried through openings.
@@ -206,17 +111,18 @@ private:
 
     /// By cells, half of each face's velocity: so the half volumes at sides have their part.
     void body_force(const View& flow, Real dt, WaterEnergy& change) const {
-        Point<Dim> push = along_periodic_;
+        Point<Dim> push = content_.along_periodic();
         if (flow.params.body_force) push += flow.params.body_force(flow.time + 0.5 * dt);
         for (int a = 0; a < Dim; ++a) {
             if (push[a] == 0) continue;
             const Offset up = flow.grid.layout().stride[a];
             change.body_force +=
-                flow.params.density * dt * push[a] * sum_over_cells(flow, [&](Offset c, int level) {
+                flow.params.density * dt * push[a] *
+                sum_over_rows(content_.rows(flow), [&](Offset c, const CellNumber<Dim>& cell) {
                     const Real held =
                         flow.liquid ? 0.5 * ((*flow.held)[c] + (*flow.held_before)[c]) : Real(1);
                     const Real twice = static_cast<Real>(mid_[a][c]) + static_cast<Real>(mid_[a][c + up]);
-                    return held == 0 ? 0 : 0.5 * held * twice * sizes_.volume(level);
+                    return held == 0 ? 0 : 0.5 * held * twice * content_.sizes().volume(cell[vertical]);
                 });
         }
     }
@@ -226,15 +132,16 @@ private:
     void viscous(const View& flow, Real dt, WaterEnergy& change) {
         const Real nu = flow.params.viscosity / flow.params.density;
         if (nu > 0) {
-            change.viscous = -stage_work<Upwind, false>(flow, {mid_, still_, dt, nu});
+            change.viscous = -stage_work<Upwind, false>(flow, {mid_, still_, dt, nu}, friction_share);
             change.sides = work_of_sides(flow, dt * flow.params.viscosity);
             change.viscous += change.sides;
         }
-        if (flow.eddies) change.turbulent = -stage_work<Upwind, true>(flow, {mid_, still_, dt, 0});
+        if (flow.eddies)
+            change.turbulent = -stage_work<Upwind, true>(flow, {mid_, still_, dt, 0}, friction_share);
     }
     /// Work of the momentum that a velocity brings about its own control volumes, on `mid_`.
     Real advection(const View& flow, const FaceField<Dim, State>& by, Real dt) {
-        return stage_work<Scheme, false>(flow, {by, by, dt, 0});
+        return stage_work<Scheme, false>(flow, {by, by, dt, 0}, whole);
     }
 
     struct Forces {
@@ -242,7 +149,7 @@ private:
         Real seconds, viscosity;
     };
     template <class Flux, bool Eddies>
-    Real stage_work(const View& flow, const Forces& f) {
+    Real stage_work(const View& flow, const Forces& f, auto&& share) {
         MomentumStage<Dim, State> stage{f.velocity, f.carrier,     f.velocity,
                                         scratch_,   flow.pressure, f.seconds};
         stage.viscosity = f.viscosity;
@@ -251,27 +158,23 @@ private:
         advance_momentum<Flux, Eddies>(flow.grid, flow.faces, stage);
         Real work = 0;
         for (int a = 0; a < Dim; ++a)
-            work += sum_over_rows(flow.faces[a], [&](Offset c, int level) {
-                if (mass_of(flow, a, c, level) == 0) return Real(0);
+            work += sum_over_rows(flow.faces[a], [&](Offset c, const CellNumber<Dim>& cell) {
+                const int level = cell[vertical];
+                if (content_.liquid_of_face(flow, a, c, level) == 0) return Real(0);
                 const Real gained = static_cast<Real>(scratch_[a][c]) - static_cast<Real>(f.velocity[a][c]);
-                return gained * static_cast<Real>(mid_[a][c]) * control_volume(flow, a, level);
+                const Real speed = static_cast<Real>(mid_[a][c]);
+                return share(flow, a, cell) * gained * speed * content_.control_volume(flow, a, level);
             });
         return flow.params.density * work;
     }
-
-    Real control_volume(const View& flow, int a, int level) const noexcept {
-        return sizes_.face(a, level) * flow.grid.gap(a, a == vertical ? level : 0);
+    /// The half volume of a face in an opening has no momentum of its own: it loses what the next face does.
+    static Real friction_share(const View& flow, int a, const CellNumber<Dim>& cell) noexcept {
+        const auto open = [](Side side) { return side == Side::inflow || side == Side::outflow; };
+        const auto& ends = flow.params.sides[a];
+        return 1 +
+               0.5 * ((cell[a] == 1 && open(ends[0])) + (cell[a] == flow.grid.cells(a) - 1 && open(ends[1])));
     }
-    /// Liquid of a face's control volume [m3]; 0 where it is too little to have a momentum.
-    Real mass_of(const View& flow, int a, Offset c, int level) const noexcept {
-        const Real volume = control_volume(flow, a, level);
-        if (!flow.held) return volume;
-        const Real upper = flow.grid.size(a, a == vertical ? level : 0);
-        const Real lower = flow.grid.size(a, a == vertical ? level - 1 : 0);
-        const Offset back = c - flow.grid.layout().stride[a];
-        const Real share = (upper * (*flow.held)[c] + lower * (*flow.held)[back]) / (upper + lower);
-        return share > 1e-9 ? share * volume : 0;
-    }
+    static Real whole(const View&, int, const CellNumber<Dim>&) noexcept { return 1; }
 
     /// `viscosity` times dt [Pa s2]. The mean of both sides of a wall is the wall's velocity.
     Real work_of_sides(const View& flow, Real viscosity) const {
@@ -285,11 +188,12 @@ private:
                     const int level = cell[vertical];
                     for (int a = 0; a < Dim; ++a) {
                         if (a == b || (cell[a] == 0 && !flow.params.sides.periodic(a))) continue;
-                        if (mass_of(flow, a, c, level) == 0) continue;
+                        if (content_.liquid_of_face(flow, a, c, level) == 0) continue;
                         const auto inside = static_cast<Real>(mid_[a][c]);
                         const Real wall = 0.5 * (inside + static_cast<Real>(mid_[a][c + out]));
                         const Real size = flow.grid.size(b, cell[b]);
-                        work += 2 * (wall - inside) * wall / square(size) * control_volume(flow, a, level);
+                        work += 2 * (wall - inside) * wall / square(size) *
+                                content_.control_volume(flow, a, level);
                     }
                 });
             }
@@ -300,9 +204,10 @@ private:
         Real work = 0;
         flow.friction.for_each(taken_, [&](int a, Offset c, Real taken) {
             if (taken == 0) return;
-            const int level = flow.grid.layout().number(c)[vertical];
+            const CellNumber<Dim> cell = flow.grid.layout().number(c);
             const auto mid = static_cast<Real>(mid_[a][c]), now = static_cast<Real>(flow.velocity[a][c]);
-            work += mass_of(flow, a, c, level) * taken * (flow.liquid ? 0.5 * (mid + now) : mid);
+            work += friction_share(flow, a, cell) * content_.liquid_of_face(flow, a, c, cell[vertical]) *
+                    taken * (flow.liquid ? 0.5 * (mid + now) : mid);
         });
         change.wall_friction = flow.params.density * work;
     }
@@ -331,20 +236,18 @@ private:
                     squares += 0.5 * square(0.5 * twice);
                 }
             Point<Dim> x = flow.grid.centre(cell);
-            if (flow.liquid) x += off_centre(flow, o.cell, cell);
+            x += content_.off_centre(flow, o.cell, cell);
             x[o.axis] = flow.grid.face(o.axis, cell[o.axis] + o.high);
             const Real pressure = 0.5 * (o.pressure + pressure_at(flow, o));
             const Real mass = flow.params.density * (o.high ? -o.volume : o.volume);  // that came in
-            const Real energy = mass * (0.5 * squares - gravity_.dot(x) + pressure);
+            const Real energy = mass * (0.5 * squares - content_.gravity().dot(x) + pressure);
             carried += 0.5 * mass * squares;
             o.inflow ? change.inflow += energy : change.outflow -= energy;
         }
         return carried;
     }
 
-    CellSizes<Dim> sizes_;
-    WetRows<Dim> all_;
-    Point<Dim> gravity_ = Point<Dim>::Zero(), along_periodic_ = Point<Dim>::Zero();  ///< [m/s2]
+    WaterContent<Dim, State> content_;
     FaceField<Dim, State> mid_;      ///< the velocity that moves the water in the step [m/s]
     FaceField<Dim, State> scratch_;  ///< [m/s]
     FaceField<Dim, State> still_;    ///< 0: carries nothing

@@ -205,7 +205,12 @@ public:
 
     /// Opens the energy account (WaterEnergy), or opens it anew: terms count from here. Without it steps do
     /// nothing for it.
-    void open_energy_account() { energy_.emplace(energy_view(steps_ == 0)); }
+    void open_energy_account() {
+        FaceField<Dim, State> before = velocity_;
+        if constexpr (has_surface)
+            if (steps_ > 0) before = record_.velocity(), sides_.fill(before);
+        energy_.emplace(energy_view(), std::move(before));
+    }
     bool has_energy_account() const noexcept { return energy_.has_value(); }
     /// Throws std::logic_error where no account was opened.
     const WaterEnergy& energy() const {
@@ -235,40 +240,39 @@ private:
         return !has_surface && law.kind == WallLaw::Kind::logarithmic ? law : WallLaw{WallLaw::Kind::slip};
     }
 
-    /// `begins`: before the first step, when no velocity of the step before is known.
-    typename EnergyAccount::View energy_view(bool begins = false) const {
+    typename EnergyAccount::View energy_view() const {
         const Field<State>* eddies = nullptr;
         if constexpr (Turbulence::has_eddies) eddies = &eddies_->field();
         if constexpr (has_surface) {
             const auto& water = *water_;
-            return {*grid_,
-                    params_,
-                    water.friction(),
-                    water.faces(),
-                    begins ? velocity_ : record_.velocity(),
-                    stage_,
-                    velocity_,
-                    pressure_,
-                    time_,
-                    eddies,
-                    &water.liquid(),
-                    water.walls(),
-                    &water.rows(),
-                    &water.held_before(),
-                    &water.held(),
-                    &water.wet(),
-                    water.open_friction()};
+            return {.grid = *grid_,
+                    .params = params_,
+                    .friction = water.friction(),
+                    .faces = water.faces(),
+                    .before = record_.velocity(),
+                    .stage = stage_,
+                    .velocity = velocity_,
+                    .pressure = pressure_,
+                    .time = time_,
+                    .eddies = eddies,
+                    .liquid = &water.liquid(),
+                    .walls = water.walls(),
+                    .rows = &water.rows(),
+                    .held_before = &water.held_before(),
+                    .held = &water.held(),
+                    .wet = &water.wet(),
+                    .open_friction = water.open_friction()};
         } else {
-            return {*grid_,
-                    params_,
-                    side_friction_,
-                    projection_.faces(),
-                    begins ? velocity_ : saved_velocity_,
-                    stage_,
-                    velocity_,
-                    pressure_,
-                    time_,
-                    eddies};
+            return {.grid = *grid_,
+                    .params = params_,
+                    .friction = side_friction_,
+                    .faces = projection_.faces(),
+                    .before = saved_velocity_,
+                    .stage = stage_,
+                    .velocity = velocity_,
+                    .pressure = pressure_,
+                    .time = time_,
+                    .eddies = eddies};
         }
     }
 
