@@ -72,6 +72,7 @@ public:
 
     /// Other walls stand in the box, between steps.
     void reshaped(const View& flow) {
+        content_.look_at_walls(flow);
         const Real before = energy_.total();
         look(flow);
         energy_.reshaped += energy_.total() - before;
@@ -88,6 +89,9 @@ private:
 
         Offset face(const Grid<Dim>& grid) const noexcept {
             return high ? cell + grid.layout().stride[axis] : cell;
+        }
+        Offset face_inside(const Grid<Dim>& grid) const noexcept {
+            return high ? cell : cell + grid.layout().stride[axis];
         }
     };
 
@@ -118,11 +122,19 @@ private:
             const Offset up = flow.grid.layout().stride[a];
             change.body_force +=
                 flow.params.density * dt * push[a] *
-                sum_over_rows(content_.rows(flow), [&](Offset c, const CellNumber<Dim>& cell) {
-                    const Real held =
-                        flow.liquid ? 0.5 * ((*flow.held)[c] + (*flow.held_before)[c]) : Real(1);
-                    const Real twice = static_cast<Real>(mid_[a][c]) + static_cast<Real>(mid_[a][c + up]);
-                    return held == 0 ? 0 : 0.5 * held * twice * content_.sizes().volume(cell[vertical]);
+                sum_over_rows(content_.rows(flow), [&](int plane, int row, const RowRange& r) {
+                    const Offset start = flow.grid.layout().row_start(plane, row);
+                    const auto volume = content_.volume().row(row);
+                    const State* const u = mid_[a].data() + start;
+                    Real sum = 0;
+                    for (int i = r.begin; i < r.end; ++i) {
+                        const Offset c = start + i;
+                        const Real held =
+                            flow.liquid ? 0.5 * ((*flow.held)[c] + (*flow.held_before)[c]) : Real(1);
+                        const Real twice = static_cast<Real>(u[i]) + static_cast<Real>(u[i + up]);
+                        sum += held == 0 ? 0 : 0.5 * held * twice * volume[i];
+                    }
+                    return sum;
                 });
         }
     }
@@ -132,24 +144,28 @@ private:
     void viscous(const View& flow, Real dt, WaterEnergy& change) {
         const Real nu = flow.params.viscosity / flow.params.density;
         if (nu > 0) {
-            change.viscous = -stage_work<Upwind, false>(flow, {mid_, still_, dt, nu}, friction_share);
+            change.viscous = -stage_work<Upwind, false>(flow, {mid_, still_, dt, nu});
+            change.viscous -= work_in_openings(flow);
             change.sides = work_of_sides(flow, dt * flow.params.viscosity);
             change.viscous += change.sides;
         }
-        if (flow.eddies)
-            change.turbulent = -stage_work<Upwind, true>(flow, {mid_, still_, dt, 0}, friction_share);
+        if (flow.eddies) {
+            change.turbulent = -stage_work<Upwind, true>(flow, {mid_, still_, dt, 0});
+            change.turbulent -= work_in_openings(flow);
+        }
     }
     /// Work of the momentum that a velocity brings about its own control volumes, on `mid_`.
     Real advection(const View& flow, const FaceField<Dim, State>& by, Real dt) {
-        return stage_work<Scheme, false>(flow, {by, by, dt, 0}, whole);
+        return stage_work<Scheme, false>(flow, {by, by, dt, 0});
     }
 
     struct Forces {
         const FaceField<Dim, State>&velocity, &carrier;
         Real seconds, viscosity;
     };
+    /// Work on `mid_` of what one stage does to a velocity.
     template <class Flux, bool Eddies>
-    Real stage_work(const View& flow, const Forces& f, auto&& share) {
+    Real stage_work(const View& flow, const Forces& f) {
         MomentumStage<Dim, State> stage{f.velocity, f.carrier,     f.velocity,
                                         scratch_,   flow.pressure, f.seconds};
         stage.viscosity = f.viscosity;
@@ -158,23 +174,45 @@ private:
         advance_momentum<Flux, Eddies>(flow.grid, flow.faces, stage);
         Real work = 0;
         for (int a = 0; a < Dim; ++a)
-            work += sum_over_rows(flow.faces[a], [&](Offset c, const CellNumber<Dim>& cell) {
-                const int level = cell[vertical];
-                if (content_.liquid_of_face(flow, a, c, level) == 0) return Real(0);
-                const Real gained = static_cast<Real>(scratch_[a][c]) - static_cast<Real>(f.velocity[a][c]);
-                const Real speed = static_cast<Real>(mid_[a][c]);
-                return share(flow, a, cell) * gained * speed * content_.control_volume(flow, a, level);
+            work += sum_over_rows(flow.faces[a], [&](int plane, int row, const RowRange& r) {
+                const Offset start = flow.grid.layout().row_start(plane, row);
+                const Offset back = flow.grid.layout().stride[a];
+                const auto volume = content_.control_volume(a).row(row);
+                const State* const was = f.velocity[a].data() + start;
+                const State* const is = scratch_[a].data() + start;
+                const State* const by = mid_[a].data() + start;
+                const Real* const held = flow.held ? flow.held->data() + start : nullptr;
+                Real sum = 0;
+#pragma omp simd reduction(+ : sum)
+                for (int i = r.begin; i < r.end; ++i) {
+                    const Real gained = static_cast<Real>(is[i]) - static_cast<Real>(was[i]);
+                    const bool counts = !held || content_.carries(held + i, back);
+                    sum += counts ? gained * static_cast<Real>(by[i]) * volume[i] : 0;
+                }
+                return sum;
             });
         return flow.params.density * work;
     }
-    /// The half volume of a face in an opening has no momentum of its own: it loses what the next face does.
-    static Real friction_share(const View& flow, int a, const CellNumber<Dim>& cell) noexcept {
+    /// Friction: the half volume of a face in an opening has no momentum of its own, it loses what that of
+    /// the next face does. After `stage_work`.
+    Real work_in_openings(const View& flow) const {
+        Real work = 0;
+        for (const Opening& o : openings_) {
+            const Offset face = o.face_inside(flow.grid);
+            const Real gained =
+                static_cast<Real>(scratch_[o.axis][face]) - static_cast<Real>(mid_[o.axis][face]);
+            if (flow.grid.cells(o.axis) > 1 && content_.liquid_of_face(flow, o.axis, face) > 0)
+                work += 0.5 * gained * static_cast<Real>(mid_[o.axis][face]) *
+                        content_.control_volume_of(flow, o.axis, face);
+        }
+        return flow.params.density * work;
+    }
+    static Real share_of_openings(const View& flow, int a, const CellNumber<Dim>& cell) noexcept {
         const auto open = [](Side side) { return side == Side::inflow || side == Side::outflow; };
         const auto& ends = flow.params.sides[a];
         return 1 +
                0.5 * ((cell[a] == 1 && open(ends[0])) + (cell[a] == flow.grid.cells(a) - 1 && open(ends[1])));
     }
-    static Real whole(const View&, int, const CellNumber<Dim>&) noexcept { return 1; }
 
     /// `viscosity` times dt [Pa s2]. The mean of both sides of a wall is the wall's velocity.
     Real work_of_sides(const View& flow, Real viscosity) const {
@@ -185,15 +223,14 @@ private:
                 if (flow.params.sides[b][high] != Side::wall) continue;
                 const Offset out = (high ? 1 : -1) * flow.grid.layout().stride[b];
                 flow.grid.for_each_beside(b, high, [&](const CellNumber<Dim>& cell, Offset c) {
-                    const int level = cell[vertical];
                     for (int a = 0; a < Dim; ++a) {
                         if (a == b || (cell[a] == 0 && !flow.params.sides.periodic(a))) continue;
-                        if (content_.liquid_of_face(flow, a, c, level) == 0) continue;
+                        if (content_.liquid_of_face(flow, a, c) == 0) continue;
                         const auto inside = static_cast<Real>(mid_[a][c]);
                         const Real wall = 0.5 * (inside + static_cast<Real>(mid_[a][c + out]));
                         const Real size = flow.grid.size(b, cell[b]);
                         work += 2 * (wall - inside) * wall / square(size) *
-                                content_.control_volume(flow, a, level);
+                                content_.control_volume_of(flow, a, c);
                     }
                 });
             }
@@ -206,8 +243,8 @@ private:
             if (taken == 0) return;
             const CellNumber<Dim> cell = flow.grid.layout().number(c);
             const auto mid = static_cast<Real>(mid_[a][c]), now = static_cast<Real>(flow.velocity[a][c]);
-            work += friction_share(flow, a, cell) * content_.liquid_of_face(flow, a, c, cell[vertical]) *
-                    taken * (flow.liquid ? 0.5 * (mid + now) : mid);
+            work += share_of_openings(flow, a, cell) * content_.liquid_of_face(flow, a, c) * taken *
+                    (flow.liquid ? 0.5 * (mid + now) : mid);
         });
         change.wall_friction = flow.params.density * work;
     }
@@ -235,12 +272,13 @@ private:
                     const Real twice = static_cast<Real>(mid_[a][c]) + static_cast<Real>(mid_[a][c + out]);
                     squares += 0.5 * square(0.5 * twice);
                 }
-            Point<Dim> x = flow.grid.centre(cell);
-            x += content_.off_centre(flow, o.cell, cell);
+            Point<Dim> x = flow.grid.centre(cell), along = content_.gravity();
             x[o.axis] = flow.grid.face(o.axis, cell[o.axis] + o.high);
+            along[o.axis] = 0;
+            const Real height = content_.gravity().dot(x) + content_.off_centre(flow, o.cell, along);
             const Real pressure = 0.5 * (o.pressure + pressure_at(flow, o));
             const Real mass = flow.params.density * (o.high ? -o.volume : o.volume);  // that came in
-            const Real energy = mass * (0.5 * squares - content_.gravity().dot(x) + pressure);
+            const Real energy = mass * (0.5 * squares - height + pressure);
             carried += 0.5 * mass * squares;
             o.inflow ? change.inflow += energy : change.outflow -= energy;
         }

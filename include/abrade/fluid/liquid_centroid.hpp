@@ -80,34 +80,89 @@ PartOfCell<Dim> part_of_cell(std::span<const HalfSpace<Dim>> halves) noexcept {
     return sum;
 }
 
-/// From a cell's centre to the centre of mass of its liquid, in units of the cell. The liquid is what lies
-/// below the reconstructed plane and, in cells that a wall cuts, on the open side of the wall's plane.
+/// Of the plane of a wall, in units of the cell that it cuts.
 template <int Dim>
-Point<Dim> liquid_centroid(const VolumeOfFluid<Dim>& liquid, const Walls<Dim>* walls, Offset c) noexcept {
-    std::array<HalfSpace<Dim>, 2> halves;
-    std::size_t count = 0;
-    if (walls && walls->open_volume()[c] < 1)
-        for (const WallCell<Dim>& w : walls->wall_cells(c, 1)) {
-            HalfSpace<Dim>& open = halves[count++];
-            const Grid<Dim>& grid = walls->grid();
-            const CellNumber<Dim> cell = grid.layout().number(c);
-            open.constant = w.normal.dot(grid.centre(cell) - w.point);
-            for (int a = 0; a < Dim; ++a) open.slope[a] = w.normal[a] * grid.size(a, cell[a]);
+HalfSpace<Dim> above_wall(const Grid<Dim>& grid, const WallCell<Dim>& wall) noexcept {
+    const CellNumber<Dim> cell = grid.layout().number(wall.cell);
+    HalfSpace<Dim> open{wall.normal.dot(grid.centre(cell) - wall.point)};
+    for (int a = 0; a < Dim; ++a) open.slope[a] = wall.normal[a] * grid.size(a, cell[a]);
+    return open;
+}
+
+/// Centre of the part of a cell below a plane along an axis, from the cell's centre [cell].
+///
+/// Sections across the axis hold a share that is a polynomial of degree Dim - 1 between the corners that the
+/// plane meets, so two points of Gauss between each two of them are exact, and nothing cancels.
+template <int Dim>
+Real centroid_along(const CellPlane<Dim>& plane, int axis) noexcept {
+    const auto a = static_cast<std::size_t>(axis), b = (a + 1) % Dim, c = (a + Dim - 1) % Dim;
+    const Real slope = plane.normal[a];
+    if (slope == 0) return 0;
+    const auto section = [&](Real at) {
+        const Real distance = plane.distance - slope * at;
+        if constexpr (Dim == 2) {
+            const Real across = std::max(std::abs(plane.normal[b]), Real(tiny<Real>));
+            return std::clamp(0.5 + distance / across, Real(0), Real(1));
+        } else {
+            return liquid_fraction<2, Real>({plane.normal[b], plane.normal[c]}, distance);
         }
-    const std::size_t of_wall = count;
-    if (const Index i = liquid.plane_of(c); i >= 0) {
-        const auto k = static_cast<std::size_t>(i);
-        HalfSpace<Dim>& wet = halves[count++];
-        wet.constant = of_wall > 0 ? liquid.planes().position[k] : liquid.planes().distance[k];
-        for (int a = 0; a < Dim; ++a) wet.slope[a] = -liquid.planes().normal[static_cast<std::size_t>(a)][k];
+    };
+    constexpr std::size_t corners = Dim == 2 ? 2 : 4;
+    std::array<Real, corners + 2> end;
+    for (std::size_t k = 0; k < corners; ++k) {
+        Real reach = k % 2 == 0 ? 0.5 * plane.normal[b] : -0.5 * plane.normal[b];
+        if constexpr (Dim == 3) reach += k < 2 ? 0.5 * plane.normal[c] : -0.5 * plane.normal[c];
+        end[k] = std::clamp((plane.distance - reach) / slope, Real(-0.5), Real(0.5));
     }
-    if (count == 0) return Point<Dim>::Zero();
-    constexpr Real least = 1e-12;  // of a cell: round-off decides where its centre is
-    for (const std::size_t n : {count, of_wall}) {
-        const PartOfCell<Dim> part = part_of_cell<Dim>({halves.data(), n});
-        if (part.volume > least) return part.moment / part.volume;
+    end[corners] = -0.5, end[corners + 1] = 0.5;
+    std::sort(end.begin(), end.end());
+    Real volume = 0, moment = 0;
+    for (std::size_t k = 0; k + 1 < end.size(); ++k) {
+        const Real half = 0.5 * (end[k + 1] - end[k]), middle = 0.5 * (end[k + 1] + end[k]);
+        if (half == 0) continue;
+        for (const Real node : {-0.57735026918962576, 0.57735026918962576}) {
+            const Real at = middle + node * half, share = half * section(at);
+            volume += share, moment += share * at;
+        }
     }
-    return Point<Dim>::Zero();
+    return volume > 0 ? moment / volume : 0;
+}
+
+inline constexpr Real least_part_of_cell = 1e-12;  ///< round-off decides where less has its centre [-]
+
+/// Projection of the way from a cell's centre to that of what a wall leaves open of it; `along` in units of
+/// the cell.
+template <int Dim>
+Real offset_above_wall(const Walls<Dim>& walls, const WallCell<Dim>& wall, const Point<Dim>& along) noexcept {
+    const HalfSpace<Dim> open = above_wall(walls.grid(), wall);
+    const PartOfCell<Dim> part = part_of_cell<Dim>({&open, 1});
+    return part.volume > least_part_of_cell ? along.dot(part.moment) / part.volume : 0;
+}
+
+/// The same to the centre of mass of a cell's liquid: what lies below the reconstructed plane and, in cells
+/// that a wall cuts, above the wall's plane.
+template <int Dim>
+Real liquid_offset(const VolumeOfFluid<Dim>& liquid, const Walls<Dim>* walls, Offset c,
+                   const Point<Dim>& along) noexcept {
+    const WallCell<Dim>* wall = nullptr;
+    if (walls && walls->open_volume()[c] < 1)
+        if (const auto here = walls->wall_cells(c, 1); !here.empty()) wall = &here.front();
+    const Index i = liquid.plane_of(c);
+    if (i < 0) return wall ? offset_above_wall(*walls, *wall, along) : 0;
+    const CellPlane<Dim> plane = liquid.planes().plane(i);
+    if (!wall) {
+        Real sum = 0;
+        for (int a = 0; a < Dim; ++a)
+            if (along[a] != 0) sum += along[a] * centroid_along(plane, a);
+        return sum;
+    }
+    std::array<HalfSpace<Dim>, 2> halves;
+    halves[0].constant = liquid.planes().position[static_cast<std::size_t>(i)];
+    for (int a = 0; a < Dim; ++a) halves[0].slope[a] = -plane.normal[static_cast<std::size_t>(a)];
+    halves[1] = above_wall(walls->grid(), *wall);
+    const PartOfCell<Dim> part = part_of_cell<Dim>(halves);
+    return part.volume > least_part_of_cell ? along.dot(part.moment) / part.volume
+                                            : offset_above_wall(*walls, *wall, along);
 }
 
 }  // namespace abrade::detail

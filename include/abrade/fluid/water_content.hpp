@@ -1,12 +1,14 @@
 #pragma once
 // What water on a grid holds: volume and mass by the cells, kinetic and potential energy.
 
-#include <abrade/fluid/cell_sizes.hpp>
 #include <abrade/fluid/grid_fluid_params.hpp>
+#include <abrade/fluid/level_table.hpp>
 #include <abrade/fluid/liquid_centroid.hpp>
 #include <abrade/fluid/wet_rows.hpp>
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace abrade::detail {
 
@@ -32,126 +34,172 @@ struct EnergyView {
     const PerAxis<FaceField<Dim, float>, Dim>* open_friction = nullptr;
 };
 
-/// Sum of term(offset, cell) over the cells of rows. The same bits for any number of threads.
+/// Sum of of_row(plane, row, range) over the rows that are not dry. The same bits for any number of threads.
 template <int Dim>
-Real sum_over_rows(const WetRows<Dim>& rows, auto&& term) {
-    const Layout<Dim>& layout = rows.layout();
-    const Index per_plane = layout.rows_per_plane();
+Real sum_over_rows(const WetRows<Dim>& rows, auto&& of_row) {
+    const Index per_plane = rows.layout().rows_per_plane();
+    constexpr Index together = 16;
     return parallel_sum<Real>(
-        layout.planes() * per_plane,
+        rows.layout().planes() * per_plane,
         [&](Index n) {
-            CellNumber<Dim> cell{};
-            cell[Layout<Dim>::outer] = static_cast<int>(n / per_plane);
-            const int row = static_cast<int>(n % per_plane);
-            if constexpr (Dim == 3) cell[2] = row;
-            const RowRange r = rows.row(cell[Layout<Dim>::outer], row);
-            const Offset start = layout.row_start(cell[Layout<Dim>::outer], row);
-            Real sum = 0;
-            for (int& i = cell[Layout<Dim>::inner] = r.begin; i < r.end; ++i) sum += term(start + i, cell);
-            return sum;
+            const int plane = static_cast<int>(n / per_plane), row = static_cast<int>(n % per_plane);
+            const RowRange& r = rows.row(plane, row);
+            return r.empty() ? Real(0) : of_row(plane, row, r);
         },
-        16);
+        together);
 }
 
 /// Liquid and energy of a flow. Gravity along periodic axes makes no potential: it is `along_periodic`.
 template <int Dim, class State>
 class WaterContent {
-    static constexpr int vertical = Grid<Dim>::vertical;
+    static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner;
 
 public:
     using View = EnergyView<Dim, State>;
 
     explicit WaterContent(const View& flow)
-        : sizes_(flow.grid), all_(WetRows<Dim>::whole(flow.grid.layout())) {
-        for (int a = 0; a < Dim; ++a)
+        : all_(WetRows<Dim>::whole(flow.grid.layout())),
+          volume_(flow.grid, [&](int k) { return cell_volume(flow.grid, k); }) {
+        const Grid<Dim>& grid = flow.grid;
+        for (int a = 0; a < Dim; ++a) {
             (flow.params.sides.periodic(a) ? along_periodic_ : gravity_)[a] = flow.params.gravity[a];
+            control_volume_[a] = LevelTable<Dim, Real>(grid, [&](int k) {
+                const int number = a == vertical ? k : 0;
+                return cell_volume(grid, k) / grid.size(a, number) * grid.gap(a, number);
+            });
+        }
+        for (int i = 0; i < grid.cells(inner); ++i)
+            along_row_.push_back(gravity_[inner] * grid.centre(inner, i));
+        look_at_walls(flow);
+    }
+
+    /// What does not change with the water: centres of what walls leave open.
+    void look_at_walls(const View& flow) {
+        off_by_wall_.clear();
+        if (!flow.walls || gravity_.isZero()) return;
+        for (const WallCell<Dim>& w : flow.walls->wall_cells()) {
+            off_by_wall_.push_back(offset_above_wall(*flow.walls, w, in_cells(flow, w.cell, gravity_)));
+        }
     }
 
     const Point<Dim>& gravity() const noexcept { return gravity_; }  ///< that makes a potential [m/s2]
     const Point<Dim>& along_periodic() const noexcept { return along_periodic_; }
-    const CellSizes<Dim>& sizes() const noexcept { return sizes_; }
     /// Rows that hold water.
     const WetRows<Dim>& rows(const View& flow) const noexcept { return flow.rows ? *flow.rows : all_; }
+    const LevelTable<Dim, Real>& volume() const noexcept { return volume_; }  ///< of cells [m3]
+    /// Of the faces along an axis, whatever they hold [m3].
+    const LevelTable<Dim, Real>& control_volume(int a) const noexcept { return control_volume_[a]; }
 
     /// [J]; of each cell half the mean square of the speed at its faces. Below a surface that speed is the
     /// mean of `mid`, half a step before the liquid's time, and of the velocity now, half a step behind it.
     Real kinetic(const View& flow, const FaceField<Dim, State>& mid) const {
-        const auto speed = [&](int a, Offset c) {
-            const auto now = static_cast<Real>(flow.velocity[a][c]);
-            return flow.liquid ? 0.5 * (now + static_cast<Real>(mid[a][c])) : now;
-        };
-        return flow.params.density * sum_over_rows(rows(flow), [&](Offset c, const CellNumber<Dim>& cell) {
-                   const Real held = flow.held ? (*flow.held)[c] : 1;
-                   Real squares = 0;
-                   for (int a = 0; a < Dim && held > 0; ++a)
-                       squares += square(speed(a, c)) + square(speed(a, c + flow.grid.layout().stride[a]));
-                   return 0.25 * squares * held * sizes_.volume(cell[vertical]);
+        return flow.params.density * sum_over_rows(rows(flow), [&](int plane, int row, const RowRange& r) {
+                   const Offset start = flow.grid.layout().row_start(plane, row);
+                   const auto volume = volume_.row(row);
+                   const Real* const held = flow.held ? flow.held->data() + start : nullptr;
+                   Real sum = 0;
+                   for (int a = 0; a < Dim; ++a) {
+                       const State* const now = flow.velocity[a].data() + start;
+                       const State* const then = flow.liquid ? mid[a].data() + start : now;
+                       const Offset up = flow.grid.layout().stride[a];
+#pragma omp simd reduction(+ : sum)
+                       for (int i = r.begin; i < r.end; ++i) {
+                           const Real low = static_cast<Real>(now[i]) + static_cast<Real>(then[i]);
+                           const Real high = static_cast<Real>(now[i + up]) + static_cast<Real>(then[i + up]);
+                           sum += (low * low + high * high) * volume[i] * (held ? held[i] : 1);
+                       }
+                   }
+                   return sum / 16;
                });
     }
 
     /// [J], from the origin.
     Real potential(const View& flow) const {
         if (gravity_.isZero()) return 0;
-        Real sum = sum_over_rows(rows(flow), [&](Offset c, const CellNumber<Dim>& cell) {
-            const Real volume = volume_of(flow, c, cell[vertical]);
-            return volume == 0 ? 0 : volume * gravity_.dot(flow.grid.centre(cell));
+        Real sum = sum_over_rows(rows(flow), [&](int plane, int row, const RowRange& r) {
+            const Offset start = flow.grid.layout().row_start(plane, row);
+            const auto volume = volume_.row(row);
+            Real across = gravity_[0] * flow.grid.centre(0, plane);
+            if constexpr (Dim == 3) across += gravity_[2] * flow.grid.centre(2, row);
+            const Real* const f = flow.liquid ? flow.liquid->fraction().data() + start : nullptr;
+            const Real* const surplus = flow.liquid ? flow.liquid->surplus().data() + start : nullptr;
+            const Real* const open = flow.walls ? flow.walls->open_volume().data() + start : nullptr;
+            const Real* const along = along_row_.data();
+            Real of_row = 0;
+#pragma omp simd reduction(+ : of_row)
+            for (int i = r.begin; i < r.end; ++i)
+                of_row +=
+                    (f ? f[i] + surplus[i] : 1) * (open ? open[i] : 1) * volume[i] * (across + along[i]);
+            return of_row;
         });
-        const auto add = [&](Offset c) {
-            const CellNumber<Dim> cell = flow.grid.layout().number(c);
-            const Real volume = volume_of(flow, c, cell[vertical]);
-            return volume == 0 ? 0 : volume * gravity_.dot(off_centre(flow, c, cell));
-        };
         if (flow.liquid) {
             const auto& cut = flow.liquid->planes().cell;
-            sum += parallel_sum<Real>(static_cast<Index>(cut.size()),
-                                      [&](Index i) { return add(cut[static_cast<std::size_t>(i)]); });
+            sum += parallel_sum<Real>(static_cast<Index>(cut.size()), [&](Index i) {
+                const Offset c = cut[static_cast<std::size_t>(i)];
+                const Real volume = liquid_of_cell(flow, c);
+                return volume == 0 ? 0 : volume * off_centre(flow, c, gravity_);
+            });
         }
         if (flow.walls) {
             const auto cut = flow.walls->wall_cells();
             sum += parallel_sum<Real>(static_cast<Index>(cut.size()), [&](Index i) {
-                const Offset c = cut[static_cast<std::size_t>(i)].cell;
-                return flow.liquid->plane_of(c) < 0 ? add(c) : 0;
+                const auto k = static_cast<std::size_t>(i);
+                const Offset c = cut[k].cell;
+                return flow.liquid->plane_of(c) < 0 ? liquid_of_cell(flow, c) * off_by_wall_[k] : 0;
             });
         }
         return -flow.params.density * sum;
     }
 
-    /// From a cell's centre to that of its liquid [m].
-    static Point<Dim> off_centre(const View& flow, Offset c, const CellNumber<Dim>& cell) noexcept {
-        if (!flow.liquid) return Point<Dim>::Zero();
-        Point<Dim> off = liquid_centroid(*flow.liquid, flow.walls, c);
-        for (int a = 0; a < Dim; ++a) off[a] *= flow.grid.size(a, cell[a]);
-        return off;
+    /// From a cell's centre to that of its liquid, projected on `along`.
+    static Real off_centre(const View& flow, Offset c, const Point<Dim>& along) noexcept {
+        return flow.liquid ? liquid_offset(*flow.liquid, flow.walls, c, in_cells(flow, c, along)) : 0;
     }
 
-    /// Of a face, whatever it holds [m3].
-    Real control_volume(const View& flow, int a, int level) const noexcept {
-        return sizes_.face(a, level) * flow.grid.gap(a, a == vertical ? level : 0);
+    /// Whether a face has liquid enough to have a momentum; `held` of the cell above it.
+    static bool carries(const Real* held, Offset back) noexcept {
+        constexpr Real least = 2e-9;  // twice that of momentum
+        return held[0] + held[-back] > least;
     }
-    /// Liquid of a face's control volume [m3]; 0 where it is too little to have a momentum.
-    Real liquid_of_face(const View& flow, int a, Offset c, int level) const noexcept {
-        constexpr Real least = 1e-9;  // that of momentum
-        const Real volume = control_volume(flow, a, level);
+    /// Of a face [m3]: its control volume, and the liquid in it, 0 where that has no momentum.
+    Real control_volume_of(const View& flow, int a, Offset c) const noexcept {
+        const int level = flow.grid.layout().number(c)[vertical], number = a == vertical ? level : 0;
+        return cell_volume(flow.grid, level) / flow.grid.size(a, number) * flow.grid.gap(a, number);
+    }
+    Real liquid_of_face(const View& flow, int a, Offset c) const noexcept {
+        const Real volume = control_volume_of(flow, a, c);
+        const Offset back = flow.grid.layout().stride[a];
         if (!flow.held) return volume;
-        const Real upper = flow.grid.size(a, a == vertical ? level : 0);
-        const Real lower = flow.grid.size(a, a == vertical ? level - 1 : 0);
-        const Offset back = c - flow.grid.layout().stride[a];
-        const Real share = (upper * (*flow.held)[c] + lower * (*flow.held)[back]) / (upper + lower);
-        return share > least ? share * volume : 0;
+        if (!carries(flow.held->data() + c, back)) return 0;
+        const int number = a == vertical ? flow.grid.layout().number(c)[vertical] : 0;
+        const Real upper = flow.grid.size(a, number), lower = flow.grid.size(a, number - 1);
+        return volume * (upper * (*flow.held)[c] + lower * (*flow.held)[c - back]) / (upper + lower);
     }
 
 private:
-    /// Liquid of a cell [m3].
-    Real volume_of(const View& flow, Offset c, int level) const noexcept {
-        if (!flow.liquid) return sizes_.volume(level);
+    static Point<Dim> in_cells(const View& flow, Offset c, Point<Dim> along) noexcept {
+        const CellNumber<Dim> cell = flow.grid.layout().number(c);
+        for (int a = 0; a < Dim; ++a) along[a] *= flow.grid.size(a, cell[a]);
+        return along;
+    }
+    static Real cell_volume(const Grid<Dim>& grid, int level) noexcept {
+        CellNumber<Dim> cell{};
+        cell[vertical] = level;
+        return grid.volume(cell);
+    }
+    Real liquid_of_cell(const View& flow, Offset c) const noexcept {
         const Real open = flow.walls ? flow.walls->open_volume()[c] : 1;
-        const Real share = flow.liquid->fraction()[c] + flow.liquid->surplus()[c];
-        return open == 0 ? 0 : share * open * sizes_.volume(level);
+        if (open == 0) return 0;
+        return (flow.liquid->fraction()[c] + flow.liquid->surplus()[c]) * open *
+               cell_volume(flow.grid, flow.grid.layout().number(c)[vertical]);
     }
 
-    CellSizes<Dim> sizes_;
     WetRows<Dim> all_;
+    LevelTable<Dim, Real> volume_;
+    PerAxis<LevelTable<Dim, Real>, Dim> control_volume_;
     Point<Dim> gravity_ = Point<Dim>::Zero(), along_periodic_ = Point<Dim>::Zero();  ///< [m/s2]
+    std::vector<Real> along_row_;    ///< gravity times place of a row's cells, its part along it [m2/s2]
+    std::vector<Real> off_by_wall_;  ///< the same of the centre of what is open, from the cell's [wall cell]
 };
 
 }  // namespace abrade::detail
