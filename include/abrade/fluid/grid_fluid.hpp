@@ -208,7 +208,7 @@ public:
     void open_energy_account() {
         FaceField<Dim, State> before = velocity_;
         if constexpr (has_surface)
-            if (steps_ > 0) before = record_.velocity(), sides_.fill(before);
+            if (steps_ > 0) rows()->copy(record_.velocity(), before), sides_.fill(before);
         energy_.emplace(energy_view(), std::move(before));
     }
     bool has_energy_account() const noexcept { return energy_.has_value(); }
