@@ -39,7 +39,9 @@ Flow grid_channel(const ChannelConfig& c) {
                                 .profile = InflowProfile::logarithmic,
                                 .roughness = roughness});
         stream.give_to(params);
-        return Flow(std::move(params), {.depth = start.uniform.depth()});
+        Flow flow(std::move(params), {.depth = start.uniform.depth()});
+        flow.open_energy_account();
+        return flow;
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());
     }
@@ -111,6 +113,12 @@ void look_at_the_end(const Flow& flow, ChannelWater& water) {
                      {"water_cells_wet", static_cast<Real>(flow.wet_cells())},
                      {"water_volume_m3", flow.liquid().volume()},
                      {"water_discharge_at_outlet_m3_per_s", section(flow, grid.cells(0) - 1).discharge}};
+    const WaterEnergy& energy = flow.energy();
+    energy.visit([&](std::string_view name, Real value) {
+        if (name != "advection")  // of a full box
+            water.figures.push_back({"water_energy_" + std::string(name) + "_joule", value});
+    });
+    water.figures.push_back({"water_energy_residual_relative", energy.residual_relative()});
 }
 
 }  // namespace

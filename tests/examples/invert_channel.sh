@@ -93,6 +93,8 @@ grep -q "off Manning's depth" early.log || fail "water that has not settled is n
 holds "Manning's depth on a grid" "($(value grid/summary.json water_depth_m) / $(value grid/summary.json manning_depth_m) - 1)^2 < 0.01"
 holds "Manning's speed on a grid" "($(value grid/summary.json water_speed_m_per_s) / $(value grid/summary.json manning_speed_m_per_s) - 1)^2 < 0.01"
 holds "the ledger closes on a grid" "$(value grid/summary.json ledger_residual_relative) < 1e-6"
+holds "the water's energy account closes" "$(value grid/summary.json water_energy_residual_relative) < 1e-9"
+holds "water comes in with energy" "$(value grid/summary.json water_energy_inflow_joule) > 0"
 "$program" "${short[@]}" --fluid none --set run.end_time=0.01 --out none > none.log || fail "a dry channel: $(cat none.log)"
 grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
 

@@ -189,7 +189,7 @@ TEST_CASE("a step that is too long in a full box is refused before it is taken, 
     const Real before = flow.kinetic_energy();
     const std::string message = message_of<FluidError>([&] { flow.step(100 * flow.stable_step().seconds); });
     MESSAGE(message);
-    CHECK(message.find("beyond stable_step(), which viscosity limits to ") != std::string::npos);
+    CHECK(message.find("beyond stable_step(), which CFL limits to ") != std::string::npos);
     CHECK(flow.kinetic_energy() == before);
     CHECK(flow.time() == time);
 }

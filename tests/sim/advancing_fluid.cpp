@@ -1,5 +1,6 @@
 // A fluid that changes in time goes along with the solids: never behind them, in steps of its own, and what
 // goes wrong in it stops the run.
+#include <abrade/fluid/water_energy.hpp>
 #include <abrade/sim/print.hpp>
 #include <abrade/sim/simulation.hpp>
 
@@ -45,7 +46,15 @@ private:
     Params params_;
     Real time_ = 0;
 };
-static_assert(AdvancingFluid<Rising>);
+static_assert(AdvancingFluid<Rising> && !AccountsForEnergy<Rising>);
+
+/// The same with an energy account.
+struct Counting : Rising {
+    using Rising::Rising;
+    bool has_energy_account() const noexcept { return time() > 0; }
+    WaterEnergy energy() const { return {.kinetic = 7.25, .inflow = 7.25}; }
+};
+static_assert(AdvancingFluid<Counting> && AccountsForEnergy<Counting>);
 
 /// A fluid with a clock that does not go on.
 struct Still : NoFluid {
@@ -123,6 +132,21 @@ TEST_CASE("looking on changes nothing, and the ledger closes while the fluid cha
     std::ostringstream out;
     out << watched;
     CHECK(out.str().find(", fluid ") != std::string::npos);
+}
+
+TEST_CASE("a fluid that accounts for its energy is told of beside the ledger, once it does") {
+    Scene scene;
+    scene.add_sphere(0.01, {.position = {0, 0, 0}});
+    auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e5}}).fluid(Counting{Rising::Params{}});
+    const auto printed = [&] {
+        std::ostringstream out;
+        out << sim;
+        return out.str();
+    };
+    sim.run({.end_time = 0});
+    CHECK(printed().find("water    [J]") == std::string::npos);
+    sim.run({.end_time = 0.002, .time_step = 1e-4});
+    CHECK(printed().find("water    [J]\n         kinetic               7.25\n") != std::string::npos);
 }
 
 TEST_CASE("a fluid that goes wrong stops the run, and the state before it is kept") {

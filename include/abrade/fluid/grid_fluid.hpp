@@ -3,6 +3,7 @@
 
 #include <abrade/fluid/changed_walls.hpp>
 #include <abrade/fluid/eddy_viscosity.hpp>
+#include <abrade/fluid/energy_account.hpp>
 #include <abrade/fluid/fastest_face.hpp>
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/momentum.hpp>
@@ -145,6 +146,7 @@ public:
             throw;
         }
         check(dt);
+        if (energy_) energy_->took(energy_view(), dt);
         find_eddies();
         time_ += dt, late_.took(dt);
         ++steps_;
@@ -180,6 +182,7 @@ public:
         next.finish(next.velocity_);
         next.free_of_divergence();  // or the liquid would flow into the new walls
         next.find_eddies();
+        if (next.energy_) next.energy_->reshaped(next.energy_view());
         *this = std::move(next);
     }
 
@@ -208,10 +211,26 @@ public:
         return params_.density * detail::kinetic_energy(*grid_, velocity_, held());
     }
 
+    /// Opens the energy account (WaterEnergy), or opens it anew: terms count from here. Without it steps do
+    /// nothing for it.
+    void open_energy_account() {
+        FaceField<Dim, State> before = velocity_;
+        if constexpr (has_surface)
+            if (steps_ > 0) rows()->copy(record_.velocity(), before), sides_.fill(before);
+        energy_.emplace(energy_view(), std::move(before));
+    }
+    bool has_energy_account() const noexcept { return energy_.has_value(); }
+    /// Throws std::logic_error where no account was opened.
+    const WaterEnergy& energy() const {
+        if (!energy_) throw std::logic_error("GridFluid.energy: call open_energy_account() first");
+        return energy_->energy();
+    }
+
 private:
     using Stage = MomentumStage<Dim, State>;
     struct Nothing {};
     using Eddies = detail::EddyViscosity<Dim, State>;
+    using EnergyAccount = detail::EnergyAccount<Dim, State, Scheme>;
 
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     Real nu() const noexcept { return params_.viscosity / params_.density; }
@@ -247,6 +266,42 @@ private:
         if (params_.body_force && std::isfinite(step.seconds))
             step.lower(detail::smooth_step<Dim>(params_.body_force, time_, step.seconds), "body force");
         return step;
+    }
+
+    typename EnergyAccount::View energy_view() const {
+        const Field<State>* eddies = nullptr;
+        if constexpr (Turbulence::has_eddies) eddies = &eddies_->field();
+        if constexpr (has_surface) {
+            const auto& water = *water_;
+            return {.grid = *grid_,
+                    .params = params_,
+                    .friction = water.friction(),
+                    .faces = water.faces(),
+                    .before = record_.velocity(),
+                    .stage = stage_,
+                    .velocity = velocity_,
+                    .pressure = pressure_,
+                    .time = time_,
+                    .eddies = eddies,
+                    .liquid = &water.liquid(),
+                    .walls = water.walls(),
+                    .rows = &water.rows(),
+                    .held_before = &water.held_before(),
+                    .held = &water.held(),
+                    .wet = &water.wet(),
+                    .open_friction = water.open_friction()};
+        } else {
+            return {.grid = *grid_,
+                    .params = params_,
+                    .friction = side_friction_,
+                    .faces = projection_.faces(),
+                    .before = saved_velocity_,
+                    .stage = stage_,
+                    .velocity = velocity_,
+                    .pressure = pressure_,
+                    .time = time_,
+                    .eddies = eddies};
+        }
     }
 
     /// What walls decide once, beside the water.
@@ -311,6 +366,7 @@ private:
         stage(velocity_, stage_, 0);
         if (!side_friction_.empty()) sides_.join(stage_);
         const auto taken = side_friction_.apply(stage_, nullptr, dt, nu());
+        if (energy_) energy_->walls_took(taken);
         sides_.fill(stage_);
         stage(stage_, saved_velocity_, 0.5);
         side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
@@ -334,6 +390,7 @@ private:
         }
         sides_.join(pressure_);
         water.move(velocity_, dt);
+        if (energy_) energy_->liquid_moved(energy_view());
         // The velocity goes from half a step before the new surface to half a step behind it.
         const Point<Dim> falls = params_.acceleration(time_ + dt);
         const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
@@ -359,6 +416,7 @@ private:
         sides_.join(stage_);  // friction of walls looks across the ends
         // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
         const auto taken = water.friction().apply(stage_, &water.rows(), dt, nu());
+        if (energy_) energy_->walls_took(taken);
         if (!params_.steady_sides) sides_.set_time(time_ + dt);
         finish(stage_);
         water.carry_by(stage_, dt);
@@ -454,6 +512,7 @@ private:
     std::conditional_t<has_surface, detail::SurfaceHeights<Dim>, Nothing> heights_{};
     std::conditional_t<has_surface, detail::Outflows<Dim>, Nothing> outflows_{};
     std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies_{};
+    std::optional<EnergyAccount> energy_;  ///< none: nobody asks
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Real first_step_ = 0;                       ///< in which what first moves it does not cross a cell [s]
@@ -462,5 +521,6 @@ private:
 };
 
 static_assert(AdvancingFluid<GridFluid<2>> && AdvancingFluid<GridFluid<3>>);
+static_assert(AccountsForEnergy<GridFluid<2>> && AccountsForEnergy<GridFluid<3, FullBox>>);
 
 }  // namespace abrade

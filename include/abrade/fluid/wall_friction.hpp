@@ -159,6 +159,12 @@ public:
             });
     }
 
+    /// Calls body(axis, face, velocity taken [m/s]) for all that `apply` took, one after the other.
+    void for_each(const PerFace& taken, auto&& body) const {
+        for (int a = 0; a < Dim; ++a)
+            for (std::size_t k = 0; k < taken[a].size(); ++k) body(a, held_[a][k].face, taken[a][k]);
+    }
+
 private:
     struct Held {
         Offset face = 0;

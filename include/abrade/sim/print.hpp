@@ -1,6 +1,7 @@
 #pragma once
 // What a simulation says of itself when it is streamed.
 
+#include <abrade/fluid/water_energy.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <ostream>
@@ -19,7 +20,8 @@ bool breaks_by_blows(const Simulation<C, B, W, F, D>& sim) {
     return static_cast<Real>(sim.bonds_broken()) > 0.25 * cells;
 }
 
-/// Laws with their parameters, the step and why, the ledger, the wear, the wall time and where it went.
+/// Laws with their parameters, the step and why, the ledger and the water's account if it has one, the wear,
+/// the wall time and where it went.
 template <class C, class B, class W, class F, class D>
 std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim) {
     out << "contact  " << describe(sim.contact_) << "\nbond     " << describe(sim.bond_) << "\nwear     "
@@ -47,10 +49,17 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
     if (breaks_by_blows(sim))
         out << "warning  blows broke bonds of standing concrete: moving concrete would break several "
                "times as many, and more of it would come loose; see docs/standing_concrete.md\n";
-    out << "ledger   [J]\n";
-    sim.ledger_.visit([&](std::string_view name, Real value) {
+    const auto tell = [&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
-    });
+    };
+    out << "ledger   [J]\n";
+    sim.ledger_.visit(tell);
+    if constexpr (AccountsForEnergy<F>)
+        if (sim.fluid_model().has_energy_account()) {
+            const WaterEnergy water = sim.fluid_model().energy();
+            out << "water    [J]\n";
+            water.visit(tell), tell("residual", water.residual());
+        }
     return out << "wall     " << short_text(sim.wall_seconds_) << " s: contacts " << percent(shares.contacts)
                << ", bonds " << percent(shares.bonds) << ", motion " << percent(shares.motion)
                << ", neighbour lists " << percent(shares.renewal)
