@@ -99,8 +99,8 @@ TEST_CASE(
             }
         const Real off = flow.energy().potential / exact - 1;
         MESSAGE(std::string(sloping ? "sloping bed" : "uneven levels") << ": off by " << off);
-        // Where the surface ends on the bed, cells take its place from others, and the smallest are closed.
-        CHECK(std::abs(off) < (sloping ? 3e-5 : 1e-6));
+        // Cells less than a tenth open are closed; here that is 0.7 % of what lies on the bed.
+        CHECK(std::abs(off) < (sloping ? 0.01 : 1e-6));
     }
 }
 

@@ -226,7 +226,7 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     CHECK(says(params).find("leaves open") != std::string::npos);
     params = good;
     params.courant = 2;
-    CHECK(says(params).starts_with("GridFluid.courant must be from 0 to 1, got 2"));
+    CHECK(says(params).starts_with("GridFluid.courant must be in (0, 1], got 2"));
     constexpr Real nan = std::numeric_limits<Real>::quiet_NaN(), inf = std::numeric_limits<Real>::infinity();
     params = good;
     params.grid.cells[1] = 2, params.grid.levels = {0, 0.5, inf};

@@ -130,7 +130,9 @@ TEST_CASE("a step that eddies allow, and parameters that make none") {
     flow.grid().for_each([&](const auto&, Offset c) { most = std::max(most, flow.eddy_viscosity()[c]); });
     CHECK(most > 0);
     CHECK(flow.stable_step().limit == "viscosity");
-    CHECK(flow.stable_step().seconds == doctest::Approx(0.5 / (most * 200)).epsilon(1e-12).scale(0));
+    constexpr Real speed = 1 / 0.1;  // sum |u| / h, in one limit with 2 nu sum 1/h2 [1/s]
+    CHECK(flow.stable_step().seconds ==
+          doctest::Approx(1 / (speed + 2 * most * 200)).epsilon(1e-12).scale(0));
     CHECK_THROWS_WITH_AS((Flow<2>(params, {.constant = -1})),
                          "Smagorinsky.constant must be in (0, 0.5], got -1; 0.1 in channels, 0.17 far from "
                          "walls",

@@ -52,7 +52,6 @@ public:
           pressure_(layout().total),
           side_friction_(*grid_, params_.sides, side_law(params_.wall_law), nullptr),
           time_(params_.start_time) {
-        if (params_.courant == 0) params_.courant = has_surface ? 0.9 : 0.5;
         if constexpr (has_surface) {
             water_.emplace(*grid_, params_);
             detail::check_inflows(params_, water_->liquid(), water_->walls());
