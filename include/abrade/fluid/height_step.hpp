@@ -1,0 +1,146 @@
+#pragma once
+// How HeightOfFluid ends a step: slopes that may not grow, columns filled to their new volumes.
+
+#include <abrade/fluid/height_of_fluid.hpp>
+
+namespace abrade {
+
+/// Between two columns whose heights differ by more than the steepest slope has, after the step and by more than
+/// before it, the growth flows back: half of it to either side would even the two out, a share of that for each
+/// pair of which a column may be one keeps pairs from overshooting.
+template <int Dim>
+void HeightOfFluid<Dim>::hold_slopes(Real dt) {
+    const Real weight = -gravity_[vertical];
+    overturning_.share = 0;
+    if (!(weight > 0) || dt == 0) return;
+    const Real plan = columns_.plan(), share = 0.5 / (Dim - 1);
+    std::vector<Index> held;
+    const auto height = [&](Index n) {
+        return height_[at(n)] + (next_[at(n)] - volume_[at(n)]) / plan;
+    };
+    for_each_column([&](int plane, int j, Index n) {
+        if (!is_wet(n) || near_solid_[at(n)]) return;
+        for (int a = 0; a < Dim - 1; ++a) {
+            const int number = a == 0 ? plane : j;
+            if (number == 0) continue;  // a pair across a periodic end is left alone
+            const Index below = n - columns_.step(a);
+            if (!is_wet(below) || near_solid_[at(below)]) continue;
+            const Real was = std::abs(height_[at(n)] - height_[at(below)]);
+            const Real most = std::max(was, params_.steepest * grid_.size(a, 0));
+            const Real rise = height(n) - height(below);
+            if (!(std::abs(rise) > most)) continue;
+            const bool down = rise > 0;  // from n to the one below
+            const Index from = down ? n : below, to = down ? below : n;
+            const Real amount =
+                std::min(share * 0.5 * (std::abs(rise) - most) * plan, 0.1 * std::max(next_[at(from)], Real(0)));
+            overturning_.lost += weight * amount * (std::abs(rise) - amount / plan);
+            next_[at(from)] -= amount, next_[at(to)] += amount;
+            const int level = std::min(columns_.surface(down ? plane : plane - (a == 0), down ? j : j - (a == 1),
+                                                        next_[at(from)], top_[at(from)])
+                                           .level,
+                                       columns_.levels() - 1);
+            moved_[a][columns_.cell(plane, j, level)] += down ? -amount : amount;
+            held.push_back(from);
+        }
+    });
+    if (held.empty()) return;
+    std::ranges::sort(held);
+    const auto last = std::unique(held.begin(), held.end());
+    Index wet = 0;
+    for_each_column([&](int, int, Index n) { wet += is_wet(n); });
+    overturning_.share = static_cast<Real>(last - held.begin()) / static_cast<Real>(wet);
+    overturning_.most = std::max(overturning_.most, overturning_.share);
+    if (overturning_.share > params_.most_overturning)
+        fail({"HeightSurface: share of the wet area that wants to overturn",
+              "at most most_overturning, " + short_text(params_.most_overturning), "",
+              "take FreeSurface, which knows crests that break, or a finer grid"},
+             short_text(overturning_.share));
+}
+
+template <int Dim>
+void HeightOfFluid<Dim>::renew() {
+    if (brim_) surplus_.fill(0);
+    brim_ = false;
+    std::vector<std::uint8_t> far(static_cast<std::size_t>(grid_.cells(0)), 0);
+    touched_.for_each_plane([&](int plane) {
+        for (int j = 0; j < columns_.across(); ++j) rises_[at(columns_.column(plane, j))] = 0;
+        renew_plane(plane);
+        for (int j = 0; j < columns_.across(); ++j) {
+            const Index n = columns_.column(plane, j);
+            if (next_[at(n)] == volume_[at(n)]) continue;
+            const auto surface = columns_.surface(plane, j, next_[at(n)], top_[at(n)]);
+            if (surface.level > top_[at(n)] + 1) far[at(plane)] = 1;
+            height_[at(n)] = surface.height, top_[at(n)] = surface.level;
+        }
+    });
+    for_each_column([&](int plane, int j, Index n) {
+        volume_[at(n)] = next_[at(n)];
+        if (volume_[at(n)] > columns_.capacity(n) && !columns_.closed(n))
+            put(plane, j, n, volume_[at(n)], {top_[at(n)], 1, height_[at(n)]});
+    });
+    rose_far_ = std::ranges::any_of(far, [](std::uint8_t f) { return f != 0; });
+}
+
+/// From the bed up: what comes in sideways and finds no room in a cell goes up.
+template <int Dim>
+void HeightOfFluid<Dim>::renew_plane(int plane) {
+    const Offset across = layout_.stride[0], s = layout_.stride[vertical];
+    struct Change {
+        typename detail::HeightColumns<Dim>::Surface surface;
+        int low, high;
+    };
+    std::vector<Change> change(static_cast<std::size_t>(columns_.across()));
+    int low = columns_.levels(), high = -1;
+    for (int j = 0; j < columns_.across(); ++j) {
+        const Index n = columns_.column(plane, j);
+        Change& c = change[at(j)];
+        c.surface = {top_[at(n)], 0, height_[at(n)]}, c.low = columns_.levels(), c.high = -1;
+        if (next_[at(n)] == volume_[at(n)] || columns_.closed(n)) continue;
+        c.surface = columns_.surface(plane, j, next_[at(n)], top_[at(n)]);
+        c.low = std::min(c.surface.level, top_[at(n)]), c.high = std::max(c.surface.level, top_[at(n)]);
+        low = std::min(low, c.low), high = std::max(high, c.high);
+    }
+    const auto fill = [&](int j, int k, Offset c) {
+        const Change& of = change[at(j)];
+        if (k < of.low || k > of.high) return Real(0);
+        const Real now = k < of.surface.level ? 1 : k == of.surface.level ? of.surface.share : 0;
+        return (now - std::exchange(fraction_[c], now)) * columns_.open(c) * columns_.volume(k);
+    };
+    if constexpr (Dim == 3) {
+        Real* const __restrict rise = rises_.data() + columns_.column(plane, 0);
+        for (int k = 0; k < columns_.levels(); ++k) {
+            RowRange r = touched_.row(plane, k);
+            if (k >= low && k <= high) r = {0, columns_.across()};
+            if (r.empty()) continue;
+            const Offset start = layout_.row_start(plane, k);
+            const Real* const __restrict x = moved_[0].data() + start;
+            const Real* const __restrict x_above = x + across;
+            const Real* const __restrict y = moved_[1].data() + start;
+            Real* const __restrict z = moved_[2].data() + start;
+            if (k >= low && k <= high) {
+                for (int j = r.begin; j < r.end; ++j) {
+                    z[j] = rise[j];
+                    rise[j] += x[j] - x_above[j] + y[j] - y[j + 1] - fill(j, k, start + j);
+                }
+                continue;
+            }
+#pragma omp simd
+            for (int j = r.begin; j < r.end; ++j) {
+                z[j] = rise[j];
+                rise[j] += x[j] - x_above[j] + y[j] - y[j + 1];
+            }
+        }
+    } else {
+        RowRange r = touched_.row(plane, 0);
+        if (low <= high) r = hull(r, {low, high + 1});
+        Real rise = 0;
+        for (int k = r.begin; k < r.end; ++k) {
+            const Offset c = layout_.row_start(plane, 0) + k;
+            moved_[vertical][c] = rise;
+            rise += moved_[0][c] - moved_[0][c + across] - fill(0, k, c);
+        }
+    }
+    (void)s;
+}
+
+}  // namespace abrade
