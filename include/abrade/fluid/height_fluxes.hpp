@@ -149,7 +149,9 @@ private:
         const Index n = columns.column(plane, j), step = columns.step(a);
         const auto led = [&](Index own, Index below, Index above, Real side) {
             const Real h = flow.height[at(own)];
-            const auto seen = [&](Index other) { return is_closed_column(columns, other) ? h : flow.height[at(other)]; };
+            // Beside a bed that rises above it a slope would lead below that bed.
+            if (columns.bed(below) > h || columns.bed(above) > h) return h;
+            const auto seen = [&](Index other) { return columns.closed(other) ? h : flow.height[at(other)]; };
             const Real back = h - seen(below), forth = seen(above) - h;
             if (!(back * forth > 0)) return h;
             const Real steep = 2 * std::min(std::abs(back), std::abs(forth));
@@ -163,8 +165,6 @@ private:
         lower_[a][at(n)] = led(n - step, n - 2 * step, n, 1);
         upper_[a][at(n)] = led(n, n - step, n + step, -1);
     }
-    /// Ghost columns beyond sides have the shape of the cells there, and are never closed for being that.
-    bool is_closed_column(const HeightColumns<Dim>& columns, Index n) const noexcept { return columns.closed(n); }
 
     void carry_row(const HeightFlow<Dim>& flow, int a, int plane, int row, RowRange r) {
         const HeightColumns<Dim>& columns = flow.columns;

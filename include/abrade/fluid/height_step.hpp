@@ -19,12 +19,12 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
         return height_[at(n)] + (next_[at(n)] - volume_[at(n)]) / plan;
     };
     for_each_column([&](int plane, int j, Index n) {
-        if (!is_wet(n) || near_solid_[at(n)]) return;
+        if (!is_wet(n)) return;
         for (int a = 0; a < Dim - 1; ++a) {
             const int number = a == 0 ? plane : j;
             if (number == 0) continue;  // a pair across a periodic end is left alone
             const Index below = n - columns_.step(a);
-            if (!is_wet(below) || near_solid_[at(below)]) continue;
+            if (!is_wet(below)) continue;
             const Real was = std::abs(height_[at(n)] - height_[at(below)]);
             const Real most = std::max(was, params_.steepest * grid_.size(a, 0));
             const Real rise = height(n) - height(below);
@@ -40,15 +40,17 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
                                            .level,
                                        columns_.levels() - 1);
             moved_[a][columns_.cell(plane, j, level)] += down ? -amount : amount;
-            held.push_back(from);
+            if (!near_solid_[at(n)] && !near_solid_[at(below)]) held.push_back(from);
         }
     });
     if (held.empty()) return;
     std::ranges::sort(held);
     const auto last = std::unique(held.begin(), held.end());
-    Index wet = 0;
-    for_each_column([&](int, int, Index n) { wet += is_wet(n); });
-    overturning_.share = static_cast<Real>(last - held.begin()) / static_cast<Real>(wet);
+    Index wet = 0, open = 0;
+    for_each_column([&](int, int, Index n) { wet += is_wet(n), open += !columns_.closed(n); });
+    // A front that runs into a dry box is steep, and for a while most of what is wet.
+    overturning_.share =
+        static_cast<Real>(last - held.begin()) / std::max(static_cast<Real>(wet), 0.25 * static_cast<Real>(open));
     overturning_.most = std::max(overturning_.most, overturning_.share);
     if (overturning_.share > params_.most_overturning)
         fail({"HeightSurface: share of the wet area that wants to overturn",
@@ -84,7 +86,7 @@ void HeightOfFluid<Dim>::renew() {
 /// From the bed up: what comes in sideways and finds no room in a cell goes up.
 template <int Dim>
 void HeightOfFluid<Dim>::renew_plane(int plane) {
-    const Offset across = layout_.stride[0], s = layout_.stride[vertical];
+    const Offset across = layout_.stride[0];
     struct Change {
         typename detail::HeightColumns<Dim>::Surface surface;
         int low, high;
@@ -140,7 +142,6 @@ void HeightOfFluid<Dim>::renew_plane(int plane) {
             rise += moved_[0][c] - moved_[0][c + across] - fill(0, k, c);
         }
     }
-    (void)s;
 }
 
 }  // namespace abrade
