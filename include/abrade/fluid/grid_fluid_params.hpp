@@ -51,7 +51,7 @@ struct GridFluidParams {
     Real tolerance = 1e-6;
     Real fastest = 100;   ///< beyond it a run is wrong [m/s]
     /// Of a HeightSurface: the slope beyond which it may not steepen, for there water wants to overturn [-];
-    /// and the share of the wet area that may be kept from it in a step [-].
+    /// and the share of the wet area that may be kept from it, mean of about ten steps [-].
     Real steepest_surface = 2, most_overturning = 0.25;
     Real start_time = 0;  ///< [s]; before 0: it settles before the solids begin
 

@@ -48,13 +48,13 @@ public:
     struct Params {
         Real smallest_void = 0;  ///< no part here: below the surface nothing lacks
         Real steepest = 2;       ///< slope of the surface beyond which it may not steepen [-]
-        /// Share of the wet area that may be kept from steepening in one step [-].
+        /// Share of the wet area that may be kept from steepening, mean of about ten steps [-].
         Real most_overturning = 0.25;
     };
 
     /// What wanted to overturn.
     struct Overturning {
-        Real share = 0;  ///< of the wet area, in the last step [-]
+        Real share = 0;  ///< of the wet area, mean of about the last ten steps [-]
         Real most = 0;   ///< largest of all steps [-]
         Real lost = 0;   ///< potential energy over density, summed over steps [m5/s2]; in two dimensions [m4/s2]
     };

@@ -11,8 +11,9 @@ namespace abrade {
 template <int Dim>
 void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     const Real weight = -gravity_[vertical];
-    overturning_.share = 0;
     if (!(weight > 0) || dt == 0) return;
+    constexpr Real late = 0.1;  // about ten steps: a front that enters a box is steep for a few
+    overturning_.share *= 1 - late;
     const Real plan = columns_.plan(), share = 0.5 / (Dim - 1);
     std::vector<Index> held;
     const auto height = [&](Index n) {
@@ -49,8 +50,8 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     Index wet = 0, open = 0;
     for_each_column([&](int, int, Index n) { wet += is_wet(n), open += !columns_.closed(n); });
     // A front that runs into a dry box is steep, and for a while most of what is wet.
-    overturning_.share =
-        static_cast<Real>(last - held.begin()) / std::max(static_cast<Real>(wet), 0.25 * static_cast<Real>(open));
+    const Real area = std::max(static_cast<Real>(wet), 0.25 * static_cast<Real>(open));
+    overturning_.share += late * static_cast<Real>(last - held.begin()) / area;
     overturning_.most = std::max(overturning_.most, overturning_.share);
     if (overturning_.share > params_.most_overturning)
         fail({"HeightSurface: share of the wet area that wants to overturn",
