@@ -5,9 +5,9 @@
 
 namespace abrade {
 
-/// Between two columns whose heights differ by more than the steepest slope has, after the step and by more than
-/// before it, the growth flows back: half of it to either side would even the two out, a share of that for each
-/// pair of which a column may be one keeps pairs from overshooting.
+/// Where two columns differ by more than the steepest slope allows, after the step and by more than before it, the
+/// growth flows back. Half of it would make the difference what it was; each of up to 2 (Dim - 1) pairs that a
+/// column may be part of gets its share of that, so that they do not overshoot.
 template <int Dim>
 void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     const Real weight = -gravity_[vertical];
@@ -15,43 +15,54 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     constexpr Real late = 0.1;  // about ten steps: a front that enters a box is steep for a few
     overturning_.share *= 1 - late;
     const Real plan = columns_.plan(), share = 0.5 / (Dim - 1);
-    std::vector<Index> held;
+    struct Held {
+        Index from, to;
+        int axis, plane, j;
+        bool down;  // from the column to the one below it
+        Real amount, rise;
+        bool counts;
+    };
+    std::vector<Held> all;
     const auto height = [&](Index n) {
         return height_[at(n)] + (next_[at(n)] - volume_[at(n)]) / plan;
     };
     for_each_column([&](int plane, int j, Index n) {
         if (!is_wet(n)) return;
         for (int a = 0; a < Dim - 1; ++a) {
-            const int number = a == 0 ? plane : j;
-            if (number == 0) continue;  // a pair across a periodic end is left alone
+            if ((a == 0 ? plane : j) == 0) continue;  // a pair across a periodic end is left alone
             const Index below = n - columns_.step(a);
             if (!is_wet(below)) continue;
             const Real was = std::abs(height_[at(n)] - height_[at(below)]);
             const Real most = std::max(was, params_.steepest * grid_.size(a, 0));
-            const Real rise = height(n) - height(below);
-            if (!(std::abs(rise) > most)) continue;
-            const bool down = rise > 0;  // from n to the one below
-            const Index from = down ? n : below, to = down ? below : n;
-            const Real amount =
-                std::min(share * 0.5 * (std::abs(rise) - most) * plan, 0.1 * std::max(next_[at(from)], Real(0)));
-            overturning_.lost += weight * amount * (std::abs(rise) - amount / plan);
-            next_[at(from)] -= amount, next_[at(to)] += amount;
-            const int level = std::min(columns_.surface(down ? plane : plane - (a == 0), down ? j : j - (a == 1),
-                                                        next_[at(from)], top_[at(from)])
-                                           .level,
-                                       columns_.levels() - 1);
-            moved_[a][columns_.cell(plane, j, level)] += down ? -amount : amount;
-            if (!near_solid_[at(n)] && !near_solid_[at(below)]) held.push_back(from);
+            const Real rise = height(n) - height(below), beyond = std::abs(rise) - most;
+            if (!(beyond > 0)) continue;
+            const bool down = rise > 0;
+            const Index from = down ? n : below;
+            const Real amount = std::min(share * 0.5 * beyond * plan, 0.1 * std::max(next_[at(from)], Real(0)));
+            all.push_back({from, down ? below : n, a, plane, j, down, amount, std::abs(rise),
+                           !near_solid_[at(n)] && !near_solid_[at(below)]});
         }
     });
+    if (all.empty()) return;
+    std::vector<Index> held;  // the surface between two columns, by the upper one
+    for (const Held& h : all) {
+        next_[at(h.from)] -= h.amount, next_[at(h.to)] += h.amount;
+        overturning_.lost += weight * h.amount * (h.rise - h.amount / plan);
+        if (h.counts) held.push_back(h.down ? h.from : h.to);
+    }
+    for (const Held& h : all) {  // through the topmost face
+        const int plane = h.down || h.axis != 0 ? h.plane : h.plane - 1;
+        const int j = h.down || h.axis == 0 ? h.j : h.j - 1;
+        const int level = columns_.surface(plane, j, next_[at(h.from)], top_[at(h.from)]).level;
+        moved_[h.axis][columns_.cell(h.plane, h.j, level)] += h.down ? -h.amount : h.amount;
+    }
     if (held.empty()) return;
-    std::ranges::sort(held);
-    const auto last = std::unique(held.begin(), held.end());
+    held.erase(std::unique(held.begin(), held.end()), held.end());  // columns come one after the other
     Index wet = 0, open = 0;
     for_each_column([&](int, int, Index n) { wet += is_wet(n), open += !columns_.closed(n); });
     // A front that runs into a dry box is steep, and for a while most of what is wet.
     const Real area = std::max(static_cast<Real>(wet), 0.25 * static_cast<Real>(open));
-    overturning_.share += late * static_cast<Real>(last - held.begin()) / area;
+    overturning_.share += late * static_cast<Real>(held.size()) / area;
     overturning_.most = std::max(overturning_.most, overturning_.share);
     if (overturning_.share > params_.most_overturning)
         fail({"HeightSurface: share of the wet area that wants to overturn",
