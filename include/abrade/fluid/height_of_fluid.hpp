@@ -63,11 +63,14 @@ public:
         : params_(params), grid_(grid), sides_((sides.validate(), sides)), layout_(grid.layout()),
           columns_(grid), fluxes_(grid, sides), fraction_(layout_.total, 0), surplus_(layout_.total, 0),
           moved_(face_field<Dim>(layout_)), wet_(layout_), active_(layout_), touched_(layout_) {
-        for (const Side side : sides[vertical])
-            if (!is_closed(side) && side == sides[vertical][0])
-                fail({"GridFluid.sides.z", "a closed floor below a HeightSurface", "",
-                      "close it, or take FreeSurface"},
-                     std::string(side_name(side)));
+        const auto refuse = [&](const char* rule, const char* remedy, Side side) {
+            fail({"GridFluid.sides.z", rule, "", remedy}, std::string(side_name(side)));
+        };
+        const auto [floor, top] = sides[vertical].values;
+        if (floor == Side::outflow || floor == Side::inflow)
+            refuse("a closed floor below a HeightSurface", "close it, or take FreeSurface", floor);
+        if (top == Side::inflow)
+            refuse("no inflow from above a HeightSurface", "close it, or take FreeSurface", top);
         marks_ = surface_marks(grid_, sides_, nullptr);
         begin_columns();
     }
@@ -83,7 +86,14 @@ public:
         });
         begin_columns();
     }
-    void set_gravity(const Point<Dim>& gravity) noexcept { gravity_ = gravity; }
+    /// What holds the water on its bed. Throws InputError where it points upwards.
+    void set_gravity(const Point<Dim>& gravity) {
+        if (gravity[vertical] > 0)
+            fail({"GridFluid.gravity.z", "at most 0 where the surface is a HeightSurface", "m/s2",
+                  "let it point down, or take FreeSurface"},
+                 to_text(gravity[vertical]));
+        gravity_ = gravity;
+    }
 
     Field<Real>& fraction() noexcept { return fraction_; }
     const Field<Real>& fraction() const noexcept { return fraction_; }

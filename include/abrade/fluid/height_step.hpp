@@ -108,6 +108,11 @@ void HeightOfFluid<Dim>::renew_plane(int plane) {
     for (int j = 0; j < columns_.across(); ++j) {
         const Index n = columns_.column(plane, j);
         Change& c = change[at(j)];
+        if (sides_[vertical][1] == Side::outflow) {  // over the top
+            const Real beyond = std::max(next_[at(n)] - columns_.capacity(n), Real(0));
+            moved_[vertical][columns_.cell(plane, j, columns_.levels())] = beyond;
+            next_[at(n)] -= beyond;
+        }
         c.surface = {top_[at(n)], 0, height_[at(n)]}, c.low = columns_.levels(), c.high = -1;
         if (next_[at(n)] == volume_[at(n)] || columns_.closed(n)) continue;
         c.surface = columns_.surface(plane, j, next_[at(n)], top_[at(n)]);
