@@ -1,4 +1,5 @@
-// A surface that is a height in three dimensions: rest, a dam on a dry hill, the same bits for one thread and two.
+// A surface that is a height in three dimensions: rest, a dam on a dry hill, the same bits for one thread and
+// two.
 #include <abrade/fluid/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
@@ -44,7 +45,9 @@ Real fastest(const Flow& flow) {
     return most;
 }
 
-const PlaceFunction<3> hill = [](const Vec3& x) { return std::hypot(x[0] - 1, x[1] - 0.5, x[2] + 0.2) - 0.5; };
+const PlaceFunction<3> hill = [](const Vec3& x) {
+    return std::hypot(x[0] - 1, x[1] - 0.5, x[2] + 0.2) - 0.5;
+};
 
 }  // namespace
 
@@ -68,7 +71,8 @@ TEST_CASE("rest in a bowl, on a slope, around a pier and a hill") {
         }
 }
 
-TEST_CASE("a dam that runs over a dry hill: volume to round-off, bounded speeds, the same bits for two threads") {
+TEST_CASE(
+    "a dam that runs over a dry hill: volume to round-off, bounded speeds, the same bits for two threads") {
     const auto run = [](int threads) {
 #if defined(_OPENMP)
         const int before = omp_get_max_threads();

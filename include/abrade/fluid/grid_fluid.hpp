@@ -168,7 +168,8 @@ public:
         dry.water = {};
         auto& water = next.water_.emplace(*grid_, dry);
         water.find(next.projection_, next.stage_[0]);  // nowhere, so that nothing stays of the old
-        detail::ChangedWalls<Dim, Liquid> change(water_->liquid(), water_->walls(), water.walls(), params_.gravity);
+        detail::ChangedWalls<Dim, Liquid> change(water_->liquid(), water_->walls(), water.walls(),
+                                                 params_.gravity);
         const auto [fraction, surplus] = change.run();
         water.restore(fraction, surplus, WetRows<Dim>::whole(layout()), water_->liquid().steps());
         detail::check_inflows(next.params_, water.liquid(), water.walls());
@@ -337,8 +338,8 @@ private:
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // Whole sides: where they change there may not have been water before.
         if (!params_.steady_sides) sides_.fill(velocity_);
-        report_ = projection_.project(
-            velocity_, pressure_, {dt, params_.tolerance, true, surplus(), late_.pace(dt)});
+        report_ = projection_.project(velocity_, pressure_,
+                                      {dt, params_.tolerance, true, surplus(), late_.pace(dt)});
         water.limit_narrow_faces(velocity_, projection_);
         if constexpr (is_height) detail::slow_thin_water(velocity_, water.liquid(), dt, nu());
         finish(velocity_);

@@ -49,7 +49,7 @@ struct GridFluidParams {
     /// Root mean square of the share of its volume that a cell may gain or lose in a step [-]. Where there is
     /// a surface the next step takes it back: no volume is lost, whatever the tolerance.
     Real tolerance = 1e-6;
-    Real fastest = 100;   ///< beyond it a run is wrong [m/s]
+    Real fastest = 100;  ///< beyond it a run is wrong [m/s]
     /// Of a HeightSurface: the slope beyond which it may not steepen, for there water wants to overturn [-];
     /// and the share of the wet area that may be kept from it, mean of about ten steps [-].
     Real steepest_surface = 2, most_overturning = 0.25;

@@ -34,8 +34,8 @@ public:
 
     HeightColumns() = default;
     explicit HeightColumns(const Grid<Dim>& grid)
-        : grid_(grid), across_(Dim == 3 ? grid.cells(1) : 1),
-          pitch_(Dim == 3 ? across_ + 2 * ghosts : 1), levels_(grid.cells(vertical)) {
+        : grid_(grid), across_(Dim == 3 ? grid.cells(1) : 1), pitch_(Dim == 3 ? across_ + 2 * ghosts : 1),
+          levels_(grid.cells(vertical)) {
         plan_ = grid.size(0, 0) * (Dim == 3 ? grid.size(1, 0) : 1);
         set_walls(nullptr, nullptr, {});
     }
@@ -66,8 +66,8 @@ public:
                 shape(plane, j, open_faces);
     }
 
-    int pitch() const noexcept { return pitch_; }      ///< from a plane's columns to the next plane's
-    int across() const noexcept { return across_; }    ///< columns of a plane
+    int pitch() const noexcept { return pitch_; }    ///< from a plane's columns to the next plane's
+    int across() const noexcept { return across_; }  ///< columns of a plane
     int levels() const noexcept { return levels_; }
     std::size_t count() const noexcept { return first_.size(); }
     Real plan() const noexcept { return plan_; }  ///< area of a column [m2]; in two dimensions a width [m]
@@ -94,8 +94,8 @@ public:
 
     /// Of a cell's open volume the share below a height [m].
     Real share_below(Offset cell, int level, Real height) const noexcept {
-        const Real t = std::clamp((height - grid_.face(vertical, level)) / grid_.size(vertical, level), Real(0),
-                                  Real(1));
+        const Real t = std::clamp((height - grid_.face(vertical, level)) / grid_.size(vertical, level),
+                                  Real(0), Real(1));
         if (t == 0 || t == 1 || open(cell) >= 1) return t;
         const Cut* const cut = find(cell);
         return cut ? lower_part(*cut, open(cell), t) : t;
@@ -122,8 +122,9 @@ public:
             int k = std::clamp(near, whole, levels_ - 1);
             while (k > whole && grid_.face(vertical, k) >= height) --k;
             while (k < levels_ - 1 && grid_.face(vertical, k + 1) < height) ++k;
-            return {k, std::clamp((height - grid_.face(vertical, k)) / grid_.size(vertical, k), Real(0), Real(1)),
-                    height};
+            return {
+                k, std::clamp((height - grid_.face(vertical, k)) / grid_.size(vertical, k), Real(0), Real(1)),
+                height};
         }
         int k = first(n);
         for (Real left = liquid; k < levels_; ++k) {
@@ -163,7 +164,8 @@ private:
         Real low = 0, high = 1, miss_low = -share, miss_high = 1 - share;
         if (!(miss_high > 0)) return 1;
         for (int n = 0, kept = 0; n < 80 && high - low > 1e-15; ++n) {
-            Real t = n % 8 == 7 ? 0.5 * (low + high) : (low * miss_high - high * miss_low) / (miss_high - miss_low);
+            Real t = n % 8 == 7 ? 0.5 * (low + high)
+                                : (low * miss_high - high * miss_low) / (miss_high - miss_low);
             if (!(t > low && t < high)) t = 0.5 * (low + high);
             const Real miss = lower_part(*cut, open, t) - share;
             if (miss == 0) return t;

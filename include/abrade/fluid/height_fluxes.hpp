@@ -28,19 +28,19 @@ struct HeightFlow {
     Real still = 0;  ///< a column of no more than this gives nothing [m3]
 };
 
-/// Fluxes Q = u dt A(h_face) through lower faces of cells, and their sums over the levels of each pair of columns.
-/// h_face: the height of the column upstream, led to the face by a slope limited by those to both sides (MC) and
-/// by half of the way that the water goes in the step.
+/// Fluxes Q = u dt A(h_face) through lower faces of cells, and their sums over the levels of each pair of
+/// columns. h_face: the height of the column upstream, led to the face by a slope limited by those to both
+/// sides (MC) and by half of the way that the water goes in the step.
 template <int Dim>
 class HeightFluxes {
-    static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner, outer = Layout<Dim>::outer;
+    static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner,
+                         outer = Layout<Dim>::outer;
 
 public:
     HeightFluxes(const Grid<Dim>& grid, const Sides<Dim>& sides) : grid_(grid), sides_(sides) {
         for (int a = 0; a < Dim - 1; ++a)
-            area_[a] = LevelTable<Dim, Real>(grid, [&](int k) {
-                return grid.size(vertical, k) * (Dim == 3 ? grid.size(1 - a, 0) : 1);
-            });
+            area_[a] = LevelTable<Dim, Real>(
+                grid, [&](int k) { return grid.size(vertical, k) * (Dim == 3 ? grid.size(1 - a, 0) : 1); });
         bottom_ = LevelTable<Dim, Real>(grid, [&](int k) { return grid.face(vertical, k); });
         per_size_ = LevelTable<Dim, Real>(grid, [&](int k) { return 1 / grid.size(vertical, k); });
     }
@@ -157,9 +157,9 @@ private:
             const Real steep = 2 * std::min(std::abs(back), std::abs(forth));
             const Real slope = std::copysign(std::min(steep, 0.5 * std::abs(back + forth)), back);
             const int k = std::min(flow.top[at(own)], columns.levels() - 1);
-            const Real courant =
-                std::min(std::abs(flow.velocity[a][columns.cell(plane, j, k)]) * flow.seconds / grid_.size(a, 0),
-                         Real(1));
+            const Real courant = std::min(
+                std::abs(flow.velocity[a][columns.cell(plane, j, k)]) * flow.seconds / grid_.size(a, 0),
+                Real(1));
             return h + side * 0.5 * (1 - courant) * slope;
         };
         lower_[a][at(n)] = led(n - step, n - 2 * step, n, 1);
@@ -219,7 +219,8 @@ private:
             return columns.first(column) < whole &&
                    (whole >= columns.levels() || height < grid_.face(vertical, whole));
         };
-        if (!given_below && !given_above && !in_cut(n - step, lower_[a][at(n)]) && !in_cut(n, upper_[a][at(n)]))
+        if (!given_below && !given_above && !in_cut(n - step, lower_[a][at(n)]) &&
+            !in_cut(n, upper_[a][at(n)]))
             return;
         Real up = 0, down = 0;
         const Offset across = grid_.layout().stride[a];
@@ -234,8 +235,8 @@ private:
             if (rising ? given_below : given_above)
                 share = flow.fraction[rising ? c - across : c];
             else if (grid_.face(vertical, k) < highest)
-                share = columns.share_below(inside(a, rising ? c - across : c, rising ? number - 1 : number), k,
-                                            rising ? lower_[a][at(n)] : upper_[a][at(n)]);
+                share = columns.share_below(inside(a, rising ? c - across : c, rising ? number - 1 : number),
+                                            k, rising ? lower_[a][at(n)] : upper_[a][at(n)]);
             m = share > 0 ? swept * share : 0;
             (m > 0 ? up : down) += std::abs(m);
         }
@@ -270,8 +271,8 @@ private:
 
     Grid<Dim> grid_;
     Sides<Dim> sides_;
-    PerAxis<LevelTable<Dim, Real>, Dim> area_;  ///< [m2]
-    LevelTable<Dim, Real> bottom_, per_size_;   ///< [m], [1/m]
+    PerAxis<LevelTable<Dim, Real>, Dim> area_;       ///< [m2]
+    LevelTable<Dim, Real> bottom_, per_size_;        ///< [m], [1/m]
     PerAxis<std::vector<Real>, Dim> lower_, upper_;  ///< [axis][column] heights at its lower face [m]
     PerAxis<std::vector<Real>, Dim> up_, down_;      ///< [axis][column] through it, both ways [m3]
     std::vector<Real> keeps_;                        ///< [column] share of its outflow that it can give [-]

@@ -19,26 +19,28 @@ namespace abrade {
 /// Liquid in columns: below its height h a cell is full, above it dry.
 ///
 ///   V <- V - sum of [Q out - Q in],   Q [m3] = sum over levels of u dt A(h_face),
-/// V [m3] liquid of a column, A [m2] the open part of a face that lies below the height of the column that the
-/// level flows out of, led to the face by a limited slope (monotonized central, B. van Leer, doi
+/// V [m3] liquid of a column, A [m2] the open part of a face that lies below the height of the column that
+/// the level flows out of, led to the face by a limited slope (monotonized central, B. van Leer, doi
 /// 10.1016/0021-9991(77)90095-X). What goes up through a cell's upper face follows from the volumes of the
 /// cells below, so momentum goes with the fluxes that moved the liquid. No column gives more than it has:
 /// volume is conserved to round-off for any velocities. The pressure is that of the whole flow, not
 /// hydrostatic (V. Casulli, doi 10.1002/(SICI)1097-0363(19991215)31:8<1253::AID-FLD916>3.0.CO;2-A;
 /// G. Stelling & M. Zijlema, doi 10.1002/fld.595).
 ///
-/// It answers what VolumeOfFluid does, in the same units; it has no surplus but where a column reaches the top
-/// of the box. It knows no film between dry cells that leaves its bed, no void, no spray. Where two columns
-/// differ by more than `Params::steepest` times their distance and the difference would grow (the water wants
-/// to overturn), it does not grow; the potential energy that this takes is booked (`overturning()`).
+/// It answers what VolumeOfFluid does, in the same units; it has no surplus but where a column reaches the
+/// top of the box. It knows no film between dry cells that leaves its bed, no void, no spray. Where two
+/// columns differ by more than `Params::steepest` times their distance and the difference would grow (the
+/// water wants to overturn), it does not grow; the potential energy that this takes is booked
+/// (`overturning()`).
 template <int Dim>
 class HeightOfFluid {
-    static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner, outer = Layout<Dim>::outer;
+    static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner,
+                         outer = Layout<Dim>::outer;
 
 public:
     static constexpr Real wisp = 1e-12;  ///< as VolumeOfFluid's
     /// Largest share of a column at its surface that leaves it sideways in a step [-].
-    static constexpr Real courant_limit = 0.5;
+    static constexpr Real courant_limit = 0.9;
     static constexpr Real courant_end = 1;
     /// See MomentumStage: what the surface cuts is bounded by its neighbours, whatever it holds.
     static constexpr Real bounded_below = 1;
@@ -56,7 +58,8 @@ public:
     struct Overturning {
         Real share = 0;  ///< of the wet area, mean of about the last ten steps [-]
         Real most = 0;   ///< largest of all steps [-]
-        Real lost = 0;   ///< potential energy over density, summed over steps [m5/s2]; in two dimensions [m4/s2]
+        Real lost =
+            0;  ///< potential energy over density, summed over steps [m5/s2]; in two dimensions [m4/s2]
     };
 
     HeightOfFluid(const Grid<Dim>& grid, const Sides<Dim>& sides, const Params& params)
@@ -82,7 +85,8 @@ public:
         marks_ = surface_marks(grid_, sides_, open_volumes_);
         cut_.cell.clear();
         grid_.for_each([&](const CellNumber<Dim>&, Offset c) {
-            if ((*open_volumes_)[c] > 0 && (*open_volumes_)[c] < 1) cut_.cell.push_back(static_cast<Index>(c));
+            if ((*open_volumes_)[c] > 0 && (*open_volumes_)[c] < 1)
+                cut_.cell.push_back(static_cast<Index>(c));
         });
         begin_columns();
     }
@@ -156,11 +160,12 @@ public:
         require_not_negative(dt, "HeightOfFluid.advance: dt", "s");
         VolumeStep step{.courant = dt * outflow_rate(velocity)};
         if (!(step.courant <= courant_end))
-            fail({"HeightOfFluid.advance: dt", "small enough that no more than all of a cell at the surface leaves it",
-                  "s", "take at most stable_step()"},
+            fail({"HeightOfFluid.advance: dt",
+                  "small enough that no more than all of a cell at the surface leaves it", "s",
+                  "take at most stable_step()"},
                  short_text(dt));
-        const detail::HeightFlow<Dim> flow{columns_, fraction_, volume_,     height_,  top_,
-                                           touched_, velocity,  open_faces_, moved_, dt, film_volume()};
+        const detail::HeightFlow<Dim> flow{columns_, fraction_,   volume_, height_, top_,         touched_,
+                                           velocity, open_faces_, moved_,  dt,      film_volume()};
         fluxes_.find(flow);
         fluxes_.limit(flow);
         fluxes_.sum(flow, next_);
@@ -211,7 +216,7 @@ public:
         return sum;
     }
     const detail::HeightColumns<Dim>& columns() const noexcept { return columns_; }
-    Real height(Index column) const noexcept { return height_[at(column)]; }       ///< [m]
+    Real height(Index column) const noexcept { return height_[at(column)]; }         ///< [m]
     Real column_volume(Index column) const noexcept { return volume_[at(column)]; }  ///< [m3]
     int top(Index column) const noexcept { return top_[at(column)]; }  ///< level of the cell at the surface
     bool is_wet(Index column) const noexcept { return volume_[at(column)] > film_volume(); }
@@ -222,8 +227,8 @@ public:
         const Index n = columns_.column(number);
         return is_wet(n) && fraction_[cell] > 0 && height_[at(n)] >= grid_.centre(vertical, number[vertical]);
     }
-    /// Whether a dry cell's centre lies below the bed of a dry column: nothing tells where on the way to it the
-    /// pressure is 0.
+    /// Whether a dry cell's centre lies below the bed of a dry column: nothing tells where on the way to it
+    /// the pressure is 0.
     bool is_ashore(Offset dry) const noexcept {
         const CellNumber<Dim> number = layout_.number(dry);
         const Index n = columns_.column(number);
@@ -276,8 +281,8 @@ private:
         volume_.assign(count, 0), next_.assign(count, 0), height_.assign(count, 0), top_.assign(count, 0);
         rises_.assign(count, 0);
         near_solid_.assign(count, 0);
-        // Solids that pierce the surface, closed sides of the box among them: within two cells of them it is no
-        // error that water wants to overturn.
+        // Solids that pierce the surface, closed sides of the box among them: within two cells of them it is
+        // no error that water wants to overturn.
         const auto beside_side = [&](int axis, int i) {
             return (i < 2 && is_closed(sides_[axis][0])) ||
                    (i >= grid_.cells(axis) - 2 && is_closed(sides_[axis][1]));
@@ -300,11 +305,15 @@ private:
         const auto surface = columns_.surface(plane, j, liquid, 0);
         for (int k = 0; k < columns_.levels(); ++k) {
             const Offset c = columns_.cell(plane, j, k);
-            fraction_[c] = k < columns_.first(n) ? 0 : k < surface.level ? 1 : k == surface.level ? surface.share : 0;
+            fraction_[c] = k < columns_.first(n) ? 0
+                           : k < surface.level   ? 1
+                           : k == surface.level  ? surface.share
+                                                 : 0;
         }
         put(plane, j, n, liquid, surface);
     }
-    void put(int plane, int j, Index n, Real liquid, const typename detail::HeightColumns<Dim>::Surface& surface) {
+    void put(int plane, int j, Index n, Real liquid,
+             const typename detail::HeightColumns<Dim>::Surface& surface) {
         volume_[at(n)] = liquid, height_[at(n)] = surface.height, top_[at(n)] = surface.level;
         const Real beyond = liquid - columns_.capacity(n);
         if (beyond > 0 && !columns_.closed(n)) {  // a lid of the box: what the pressure is to drive out
@@ -356,15 +365,15 @@ private:
                     for (int g = 0; g < Layout<Dim>::ghosts; ++g) {
                         const Index first = a == 0 ? columns_.column(0, o) : columns_.column(o, 0);
                         const Index to = first + (high ? n + g : -1 - g) * along;
-                        const Index from = first + (sides_.periodic(a) ? detail_copied(n, high, g)
+                        const Index from = first + (sides_.periodic(a) ? copied_cell(n, high, g)
                                                     : high             ? n - 1
-                                                                       : 0) * along;
+                                                                       : 0) *
+                                                       along;
                         volume_[at(to)] = volume_[at(from)], height_[at(to)] = height_[at(from)];
                         top_[at(to)] = top_[at(from)];
                     }
         }
     }
-    static int detail_copied(int n, bool high, int g) noexcept { return copied_cell(n, high, g); }
 
     /// Share of a cell at the surface that leaves it sideways per second, at most [1/s].
     Real outflow_rate(const FaceField<Dim>& u) const {

@@ -5,9 +5,9 @@
 
 namespace abrade {
 
-/// Where two columns differ by more than the steepest slope allows, after the step and by more than before it, the
-/// growth flows back. Half of it would make the difference what it was; each of up to 2 (Dim - 1) pairs that a
-/// column may be part of gets its share of that, so that they do not overshoot.
+/// Where two columns differ by more than the steepest slope allows, after the step and by more than before
+/// it, the growth flows back. Half of it would make the difference what it was; each of up to 2 (Dim - 1)
+/// pairs that a column may be part of gets its share of that, so that they do not overshoot.
 template <int Dim>
 void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     const Real weight = -gravity_[vertical];
@@ -23,9 +23,7 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
         bool counts;
     };
     std::vector<Held> all;
-    const auto height = [&](Index n) {
-        return height_[at(n)] + (next_[at(n)] - volume_[at(n)]) / plan;
-    };
+    const auto height = [&](Index n) { return height_[at(n)] + (next_[at(n)] - volume_[at(n)]) / plan; };
     for_each_column([&](int plane, int j, Index n) {
         if (!is_wet(n)) return;
         for (int a = 0; a < Dim - 1; ++a) {
@@ -38,7 +36,8 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
             if (!(beyond > 0)) continue;
             const bool down = rise > 0;
             const Index from = down ? n : below;
-            const Real amount = std::min(share * 0.5 * beyond * plan, 0.1 * std::max(next_[at(from)], Real(0)));
+            const Real amount =
+                std::min(share * 0.5 * beyond * plan, 0.1 * std::max(next_[at(from)], Real(0)));
             all.push_back({from, down ? below : n, a, plane, j, down, amount, std::abs(rise),
                            !near_solid_[at(n)] && !near_solid_[at(below)]});
         }

@@ -29,9 +29,9 @@ class SurfaceWater {
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides), films_(grid, params.sides, params.pressed_axes()),
-          liquid_(grid, params.sides, liquid_params(params)),
-          walls_(walls_inside(grid, params)), friction_(grid, params.sides, params.wall_law, walls_.get()),
-          before_(grid.layout().total), burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
+          liquid_(grid, params.sides, liquid_params(params)), walls_(walls_inside(grid, params)),
+          friction_(grid, params.sides, params.wall_law, walls_.get()), before_(grid.layout().total),
+          burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
           rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
           open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());

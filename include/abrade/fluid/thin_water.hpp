@@ -7,8 +7,9 @@ namespace abrade::detail {
 
 /// Faces between columns whose mean depth d [m] is below a tenth of a cell lose
 ///   du/dt = -max(c_f |u| / d, 3 nu / d^2) u,   c_f = 0.005,
-/// turbulent friction over a depth (R. Dressler, doi 10.6028/jres.049.021) or that of a laminar film (W. Nusselt
-/// 1916); implicit, so it only ever slows. Films on slopes and behind a water's edge have bounded speeds by it.
+/// turbulent friction over a depth (R. Dressler, doi 10.6028/jres.049.021) or that of a laminar film (W.
+/// Nusselt 1916); implicit, so it only ever slows. Films on slopes and behind a water's edge have bounded
+/// speeds by it.
 template <int Dim>
 void slow_thin_water(FaceField<Dim>& u, const HeightOfFluid<Dim>& liquid, Real dt, Real viscosity) {
     constexpr Real thin = 0.1, friction = 0.005;
@@ -30,7 +31,8 @@ void slow_thin_water(FaceField<Dim>& u, const HeightOfFluid<Dim>& liquid, Real d
                 const int high = std::max(liquid.top(n), liquid.top(other));
                 for (int k = low; k <= std::min(high, columns.levels() - 1); ++k) {
                     Real& speed = u[a][columns.cell(plane, j, k)];
-                    const Real rate = std::max(friction * std::abs(speed) / depth, 3 * viscosity / square(depth));
+                    const Real rate =
+                        std::max(friction * std::abs(speed) / depth, 3 * viscosity / square(depth));
                     speed /= 1 + dt * rate;
                 }
             }

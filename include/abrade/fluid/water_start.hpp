@@ -90,8 +90,7 @@ void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, Liq
 
 /// Throws InputError where walls close an inflow, or leave nothing of it open that its water reaches.
 template <int Dim, class Liquid>
-void check_inflows(const GridFluidParams<Dim>& params, const Liquid& liquid,
-                   const Walls<Dim>* walls) {
+void check_inflows(const GridFluidParams<Dim>& params, const Liquid& liquid, const Walls<Dim>* walls) {
     const Grid<Dim>& grid = liquid.grid();
     for (int a = 0; a < Dim; ++a)
         for (const bool high : {false, true}) {
