@@ -116,8 +116,19 @@ public:
             if (!water || columns_.closed(n) || whole == columns_.first(n)) return;
             Point<Dim> x = grid_.centre(number(plane, j, 0));
             const auto depth = [&](Real z) { return x[vertical] = z, water(x); };
-            Real low = grid_.face(vertical, columns_.first(n)), high = grid_.face(vertical, whole);
-            if (!(depth(low) > 0) || depth(high) > 0) return;
+            // A tilted surface reaches down into a cut cell from the whole one above it.
+            Real low = grid_.face(vertical, columns_.first(n));
+            Real high = grid_.face(vertical, std::min(whole + 1, columns_.levels()));
+            if (depth(high) > 0) return;
+            if (!(depth(low) > 0)) {  // dry but for a corner
+                Real corner = 0;
+                for (int k = columns_.first(n); k < columns_.levels(); ++k) {
+                    const Offset c = columns_.cell(plane, j, k);
+                    corner += fraction_[c] * columns_.open(c) * columns_.volume(k);
+                }
+                if (corner < 0.5 * columns_.volume(0)) set_fractions(plane, j, n, 0);
+                return;
+            }
             for (int step = 0; step < 60; ++step) {
                 const Real z = 0.5 * (low + high);
                 (depth(z) > 0 ? low : high) = z;
