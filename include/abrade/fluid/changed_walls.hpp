@@ -24,13 +24,13 @@ struct WaterShares {
 /// all of it. A cell at the surface keeps what it holds.
 /// Throws InputError where the liquid of a cell that closes finds no room above or beside it, and where it
 /// needs more than the room of a box that nothing leaves.
-template <int Dim>
+template <int Dim, class Liquid = VolumeOfFluid<Dim>>
 class ChangedWalls {
     static constexpr int vertical = Grid<Dim>::vertical;
 
 public:
     /// Of gravity [m/s2] the sign along the vertical axis counts.
-    ChangedWalls(const VolumeOfFluid<Dim>& liquid, const Walls<Dim>* before, const Walls<Dim>* after,
+    ChangedWalls(const Liquid& liquid, const Walls<Dim>* before, const Walls<Dim>* after,
                  const Point<Dim>& gravity)
         : liquid_(liquid), grid_(liquid.grid()), before_(before),
           after_(after), shares_{liquid.fraction(), liquid.surplus()} {
@@ -68,10 +68,10 @@ private:
 
     /// What lacks as little as makes no surface.
     bool is_full(Real holds) const noexcept { return holds >= 1 - liquid_.void_amid_water(); }
-    bool is_wet(Offset c) const noexcept { return holds(c) > VolumeOfFluid<Dim>::wisp; }
+    bool is_wet(Offset c) const noexcept { return holds(c) > Liquid::wisp; }
     Real holds(Offset c) const noexcept { return shares_.fraction[c] + shares_.surplus[c]; }
     void set(Offset c, Real holds) noexcept {
-        shares_.fraction[c] = is_full(holds) ? 1 : holds < VolumeOfFluid<Dim>::wisp ? 0 : holds;
+        shares_.fraction[c] = is_full(holds) ? 1 : holds < Liquid::wisp ? 0 : holds;
         shares_.surplus[c] = holds - shares_.fraction[c];
     }
 
@@ -201,7 +201,7 @@ private:
                  short_text(all));
     }
 
-    const VolumeOfFluid<Dim>& liquid_;
+    const Liquid& liquid_;
     const Grid<Dim>& grid_;
     const Walls<Dim>* before_;
     const Walls<Dim>* after_;

@@ -14,12 +14,12 @@ namespace abrade::detail {
 /// its beginning to its end: in a full box the mean of the velocities before and after the step; below a
 /// surface the velocity itself, which is staggered in time. There the kinetic energy at the liquid's time is
 /// that of the mean of the velocities half a step before and behind it. Both are of second order in the step.
-template <int Dim, class State, class Scheme>
+template <int Dim, class State, class Scheme, class Liquid = VolumeOfFluid<Dim>>
 class EnergyAccount {
     static constexpr int vertical = Grid<Dim>::vertical;
 
 public:
-    using View = EnergyView<Dim, State>;
+    using View = EnergyView<Dim, State, Liquid>;
 
     /// `before`: the velocity by which the liquid came to where it is, ghosts filled; at the start the
     /// present one.
@@ -285,7 +285,7 @@ private:
         return carried;
     }
 
-    WaterContent<Dim, State> content_;
+    WaterContent<Dim, State, Liquid> content_;
     FaceField<Dim, State> mid_;      ///< the velocity that moves the water in the step [m/s]
     FaceField<Dim, State> scratch_;  ///< [m/s]
     FaceField<Dim, State> still_;    ///< 0: carries nothing

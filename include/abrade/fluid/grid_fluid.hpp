@@ -10,6 +10,7 @@
 #include <abrade/fluid/outflows.hpp>
 #include <abrade/fluid/step_limits.hpp>
 #include <abrade/fluid/surface_heights.hpp>
+#include <abrade/fluid/thin_water.hpp>
 #include <abrade/fluid/water_record.hpp>
 
 #include <optional>
@@ -19,6 +20,9 @@ namespace abrade {
 /// What fills the box.
 struct FullBox {};      ///< water, everywhere and for ever
 struct FreeSurface {};  ///< water below a surface; above it a void at pressure 0
+/// The same, of a surface that is a height: z = h(x, y, t) (HeightOfFluid). For channels, rivers and tanks;
+/// it knows no film, no void and no spray, and stops where the water wants to overturn.
+struct HeightSurface {};
 
 /// Incompressible flow,  du/dt + div(u u) = g - grad p / rho + nu laplace(u),  div u = 0, on a MAC grid (F.
 /// Harlow and J. Welch, doi 10.1063/1.1761178): pressures in cells, velocities on their faces. Heun's method
@@ -35,12 +39,14 @@ struct FreeSurface {};  ///< water below a surface; above it a void at pressure 
 template <int Dim = 3, class Surface = FreeSurface, AdvectionScheme Scheme = Limited, class State = Real,
           TurbulenceModel Turbulence = NoTurbulence>
 class GridFluid {
-    static constexpr bool has_surface = std::same_as<Surface, FreeSurface>;
+    static constexpr bool is_height = std::same_as<Surface, HeightSurface>;
+    static constexpr bool has_surface = is_height || std::same_as<Surface, FreeSurface>;
     static_assert(!has_surface || std::same_as<State, Real>, "a free surface is kept in double precision");
 
 public:
     static constexpr std::string_view name = "GridFluid";
     using Params = GridFluidParams<Dim>;
+    using Liquid = std::conditional_t<is_height, HeightOfFluid<Dim>, VolumeOfFluid<Dim>>;
 
     /// Throws InputError where parameters make no flow, and what given functions throw.
     explicit GridFluid(Params params, Turbulence turbulence = {})
@@ -88,7 +94,7 @@ public:
     /// Component a of a cell on its lower face along a [m/s].
     const FaceField<Dim, State>& velocity() const noexcept { return velocity_; }
     const Field<State>& pressure() const noexcept { return pressure_; }  ///< over density [m2/s2]
-    const VolumeOfFluid<Dim>& liquid() const noexcept requires has_surface { return water_->liquid(); }
+    const Liquid& liquid() const noexcept requires has_surface { return water_->liquid(); }
     const Walls<Dim>* walls() const noexcept requires has_surface { return water_->walls(); }
     /// nu_t of cells, as the velocity makes it now [m2/s].
     const Field<State>& eddy_viscosity() const noexcept requires Turbulence::has_eddies {
@@ -106,8 +112,8 @@ public:
         if constexpr (has_surface) {
             const Point<Dim> gravity = params_.acceleration(time_);
             FluidStep step = detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_, &gravity});
-            step.lower(water_->liquid().stable_step(velocity_), "volume of fluid");
-            if (steps_ == 0) step.lower(first_step_, "volume of fluid");
+            step.lower(water_->liquid().stable_step(velocity_), step_cause);
+            if (steps_ == 0) step.lower(first_step_, step_cause);
             return smooth(step);
         } else {
             return smooth(detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_}));
@@ -169,7 +175,8 @@ public:
             return;
         }
         water.find(next.projection_, next.stage_[0]);  // nowhere, so that nothing stays of the old
-        detail::ChangedWalls<Dim> change(water_->liquid(), water_->walls(), water.walls(), params_.gravity);
+        detail::ChangedWalls<Dim, Liquid> change(water_->liquid(), water_->walls(), water.walls(),
+                                                 params_.gravity);
         const auto [fraction, surplus] = change.run();
         water.restore(fraction, surplus, WetRows<Dim>::whole(layout()), water_->liquid().steps());
         water.make_room();
@@ -226,10 +233,11 @@ public:
     }
 
 private:
+    static constexpr std::string_view step_cause = is_height ? "height of fluid" : "volume of fluid";
     using Stage = MomentumStage<Dim, State>;
     struct Nothing {};
     using Eddies = detail::EddyViscosity<Dim, State>;
-    using EnergyAccount = detail::EnergyAccount<Dim, State, Scheme>;
+    using EnergyAccount = detail::EnergyAccount<Dim, State, Scheme, Liquid>;
 
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     Real nu() const noexcept { return params_.viscosity / params_.density; }
@@ -241,6 +249,12 @@ private:
     const WetRows<Dim>* rows() const noexcept {
         if constexpr (has_surface) return &water_->rows();
         return nullptr;
+    }
+    /// What the pressure is to drive out; none: nothing.
+    const Field<Real>* surplus() const noexcept {
+        if constexpr (is_height)
+            if (!water_->liquid().has_surplus()) return nullptr;
+        return &water_->liquid().surplus();
     }
     /// In a full box that of logarithmic sides alone; the surface's water has its own.
     static WallLaw side_law(const WallLaw& law) {
@@ -396,6 +410,7 @@ private:
             Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), falls};
             s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
             s.open_area = water.open_area(), s.open_friction = water.open_friction();
+            if constexpr (is_height) s.bounded_below = Liquid::bounded_below;
             advance(water.faces(), s);
             // At the surface the pressure falls to 0 within another distance than that of the centres.
             const auto open_faces = projection_.open_faces();
@@ -431,7 +446,8 @@ private:
         outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
         // Whole sides: where they change there may not have been water before.
         if (!params_.steady_sides) sides_.fill(velocity_);
-        project({dt, params_.tolerance, true, &water.liquid().surplus(), late_.pace(dt)});
+        project({dt, params_.tolerance, true, surplus(), late_.pace(dt)});
+        if constexpr (is_height) detail::slow_thin_water(velocity_, water.liquid(), dt, nu());
         finish(velocity_);
     }
 
@@ -505,9 +521,9 @@ private:
     Projection<Dim, State> projection_;
     FaceField<Dim, State> velocity_, stage_, saved_velocity_;
     Field<State> pressure_, saved_pressure_;
-    std::conditional_t<has_surface, detail::WaterRecord<Dim>, Nothing> record_{};
+    std::conditional_t<has_surface, detail::WaterRecord<Dim, Liquid>, Nothing> record_{};
     WallFriction<Dim> side_friction_;  ///< of a full box
-    std::conditional_t<has_surface, std::optional<detail::SurfaceWater<Dim>>, Nothing> water_{};
+    std::conditional_t<has_surface, std::optional<detail::SurfaceWater<Dim, Liquid>>, Nothing> water_{};
     std::conditional_t<has_surface, detail::SurfaceHeights<Dim>, Nothing> heights_{};
     std::conditional_t<has_surface, detail::Outflows<Dim>, Nothing> outflows_{};
     std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies_{};

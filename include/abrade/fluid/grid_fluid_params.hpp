@@ -54,7 +54,10 @@ struct GridFluidParams {
     /// Root mean square of the share of its volume that a cell may gain or lose in a step [-]. Where there is
     /// a surface the next step takes it back: no volume is lost, whatever the tolerance.
     Real tolerance = 1e-6;
-    Real fastest = 100;   ///< beyond it a run is wrong [m/s]
+    Real fastest = 100;  ///< beyond it a run is wrong [m/s]
+    /// Of a HeightSurface: the slope beyond which it may not steepen, for there water wants to overturn [-];
+    /// and the share of the wet area that may be kept from it, mean of about ten steps [-].
+    Real steepest_surface = 2, most_overturning = 0.25;
     Real start_time = 0;  ///< [s]; before 0: it settles before the solids begin
 
     /// Gravity and body force at a time [m/s2]. Throws InputError where that is no number.
@@ -99,6 +102,9 @@ struct GridFluidParams {
         require(tolerance > 0 && tolerance <= 0.01,
                 {"GridFluid.tolerance", "in (0, 0.01]", "", "1e-6 is usual, 1e-4 is fast"}, tolerance);
         require_positive(fastest, "GridFluid.fastest", "m/s", "100 m/s is far beyond any channel");
+        require_positive(steepest_surface, "GridFluid.steepest_surface", "");
+        require(most_overturning >= 0 && most_overturning <= 1,
+                {"GridFluid.most_overturning", "from 0 to 1", "", "0.25 is usual"}, most_overturning);
         bool in = false, out = false;
         for (int a = 0; a < Dim; ++a)
             for (const Side side : sides[a])

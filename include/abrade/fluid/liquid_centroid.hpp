@@ -2,6 +2,7 @@
 // Where the liquid of a cell has its centre of mass: below the reconstructed surface, on the open side of a
 // wall.
 
+#include <abrade/fluid/height_of_fluid.hpp>
 #include <abrade/fluid/volume_of_fluid.hpp>
 #include <abrade/fluid/walls.hpp>
 
@@ -9,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace abrade::detail {
 
@@ -163,6 +165,50 @@ Real liquid_offset(const VolumeOfFluid<Dim>& liquid, const Walls<Dim>* walls, Of
     const PartOfCell<Dim> part = part_of_cell<Dim>(halves);
     return part.volume > least_part_of_cell ? along.dot(part.moment) / part.volume
                                             : offset_above_wall(*walls, *wall, along);
+}
+
+/// The same below a height.
+template <int Dim>
+Real liquid_offset(const HeightOfFluid<Dim>& liquid, const Walls<Dim>* walls, Offset c,
+                   const Point<Dim>& along) noexcept {
+    constexpr int vertical = Grid<Dim>::vertical;
+    const WallCell<Dim>* wall = nullptr;
+    if (walls && walls->open_volume()[c] < 1)
+        if (const auto here = walls->wall_cells(c, 1); !here.empty()) wall = &here.front();
+    const Real f = liquid.fraction()[c];
+    if (!(f > 0 && f < 1)) return wall ? offset_above_wall(*walls, *wall, along) : 0;
+    if (!wall) return -0.5 * (1 - f) * along[vertical];
+    const Grid<Dim>& grid = liquid.grid();
+    const int level = grid.layout().number(c)[vertical];
+    std::array<HalfSpace<Dim>, 2> halves;
+    halves[0].constant = (liquid.height(liquid.columns().column(grid.layout().number(c))) - grid.centre(vertical, level)) / grid.size(vertical, level);
+    halves[0].slope[vertical] = -1;
+    halves[1] = above_wall(grid, *wall);
+    const PartOfCell<Dim> part = part_of_cell<Dim>(halves);
+    return part.volume > least_part_of_cell ? along.dot(part.moment) / part.volume
+                                            : offset_above_wall(*walls, *wall, along);
+}
+
+/// Whether the surface decides where in a cell its liquid is, and the cells where it does.
+template <int Dim>
+bool surface_cuts(const VolumeOfFluid<Dim>& liquid, Offset c) noexcept {
+    return liquid.plane_of(c) >= 0;
+}
+template <int Dim>
+bool surface_cuts(const HeightOfFluid<Dim>& liquid, Offset c) noexcept {
+    return liquid.fraction()[c] > 0 && liquid.fraction()[c] < 1;
+}
+template <int Dim>
+std::span<const Index> cells_at_surface(const VolumeOfFluid<Dim>& liquid) noexcept {
+    return liquid.planes().cell;
+}
+template <int Dim>
+std::vector<Index> cells_at_surface(const HeightOfFluid<Dim>& liquid) {
+    std::vector<Index> cells;
+    liquid.grid().for_each([&](const CellNumber<Dim>&, Offset c) {
+        if (surface_cuts(liquid, c)) cells.push_back(static_cast<Index>(c));
+    });
+    return cells;
 }
 
 }  // namespace abrade::detail

@@ -37,6 +37,8 @@ struct MomentumStage {
     /// distance between the middles of what they leave open of both volumes [1/cell]; with open_area.
     const PerAxis<FaceField<Dim, float>, Dim>* open_friction = nullptr;
     const Field<State>* eddy_viscosity = nullptr;  ///< nu_t of cells, ghosts filled [m2/s]; where Eddies
+    /// Below this share of a control volume what is carried into it is kept among what is around [-].
+    Real bounded_below = 0.5;
 };
 
 namespace detail {
@@ -55,8 +57,6 @@ class MomentumRows {
     /// Below this share of a control volume there is no momentum to speak of: the velocity is taken from
     /// outside.
     static constexpr Real least_mass = 1e-9;
-    /// And below this one what is carried into it is kept among what is around.
-    static constexpr Real sliver = 0.5;
 
 public:
     MomentumRows(const Grid<Dim>& grid, const MomentumStage<Dim, State>& stage)
@@ -182,6 +182,7 @@ private:
                    share_inner = share_[a][inner].row(row), push = push_[a].row(row),
                    lower = lower_half_[a].row(row), upper = upper_half_[a].row(row);
         const auto gravity = static_cast<State>(s_.time_step * s_.acceleration[a]);
+        const auto sliver = static_cast<State>(s_.bounded_below);
         const auto kept = static_cast<State>(s_.kept), fresh = static_cast<State>(1 - s_.kept);
         const State* const __restrict p = s_.pressure.data() + start;
         const State* const __restrict p_back = p - back;
@@ -233,7 +234,7 @@ private:
                     const State carried = (mass_before * begin[i] + change(i)) / some;
                     const State raised = carried < least ? least : carried;
                     const State bounded = raised > most ? most : raised;
-                    const State moved = (mass < State(sliver) ? bounded : carried) + gravity;
+                    const State moved = (mass < sliver ? bounded : carried) + gravity;
                     const State part = fresh * moved;
                     value[k] = kept * velocity[i] + (mass > State(least_mass) ? part : State(0)) +
                                push[i] * (p[i] - p_back[i]);

@@ -2,6 +2,7 @@
 // Water below a free surface: where it is, what it touches, and what carries its momentum.
 
 #include <abrade/fluid/grid_fluid_params.hpp>
+#include <abrade/fluid/height_of_fluid.hpp>
 #include <abrade/fluid/open_friction.hpp>
 #include <abrade/fluid/projection.hpp>
 #include <abrade/fluid/velocity_extension.hpp>
@@ -16,8 +17,9 @@
 namespace abrade::detail {
 
 /// What GridFluid knows of its liquid beside velocity and pressure.
-template <int Dim>
+template <int Dim, class Liquid = VolumeOfFluid<Dim>>
 class SurfaceWater {
+    static constexpr bool is_height = std::same_as<Liquid, HeightOfFluid<Dim>>;
     static constexpr int inner = Layout<Dim>::inner, outer = Layout<Dim>::outer,
                          vertical = Grid<Dim>::vertical;
     /// Nearer to a cell's centre than this share of the way to the next one the surface is taken to be here:
@@ -26,10 +28,10 @@ class SurfaceWater {
 
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
-        : grid_(&grid), sides_(params.sides),
-          liquid_(grid, params.sides, liquid_params(params.tolerance)),
-          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get()), friction_(grid, params.sides, params.wall_law, walls_.get()),
-          before_(grid.layout().total), burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
+        : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides, liquid_params(params)),
+          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get()),
+          friction_(grid, params.sides, params.wall_law, walls_.get()), before_(grid.layout().total),
+          burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
           rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
           open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
@@ -39,16 +41,20 @@ public:
                  "periodic");
         liquid_.set_gravity(params.gravity);
         if (walls_) {
-            liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
+            if constexpr (is_height)
+                liquid_.set_walls(*walls_);
+            else
+                liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
             extension_.set_walls(*walls_);
             held_ = Field<Real>(layout().total);
             open_friction_ = open_friction_of(*walls_, sides_);
         }
         give_water(params, walls_.get(), liquid_);
+        if constexpr (is_height) liquid_.begin(params.water);
         settle();
     }
 
-    const VolumeOfFluid<Dim>& liquid() const noexcept { return liquid_; }
+    const Liquid& liquid() const noexcept { return liquid_; }
     const Walls<Dim>* walls() const noexcept { return walls_.get(); }
     /// Liquid in each cell, as a share of the whole cell [-]: now, and when the step began.
     const Field<Real>& held() const noexcept { return walls_ ? held_ : liquid_.fraction(); }
@@ -196,6 +202,7 @@ public:
         extension_.clear_left(u, rows_before_, rows_);
         extension_.extend(u, {wet_, rows_, held(), still_});
         films_.hold(u, rows_, wet_, held());
+        if constexpr (is_height) liquid_.hold_films(u);
     }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
@@ -260,7 +267,7 @@ public:
 
     /// After walls have changed around the water.
     void make_room() {
-        liquid_.make_room();
+        if constexpr (!is_height) liquid_.make_room();
         rows_before_.include(rows_);
         find_rows();
         find_held();
@@ -283,12 +290,17 @@ public:
                 kept[c] = surplus[c] + (fraction[c] - liquid_.fraction()[c]);
         });
         liquid_.surplus() = std::move(kept);
+        if constexpr (is_height) liquid_.gather(), find_rows(), find_held();
     }
 
 private:
-    static typename VolumeOfFluid<Dim>::Params liquid_params(Real tolerance) noexcept {
-        const Real smallest = std::clamp(tolerance, 1e-6, 1e-4);
-        return {.smallest_void = smallest, .most_surplus = 10 * smallest};
+    static typename Liquid::Params liquid_params(const GridFluidParams<Dim>& params) {
+        if constexpr (is_height) {
+            return {.steepest = params.steepest_surface, .most_overturning = params.most_overturning};
+        } else {
+            const Real smallest = std::clamp(params.tolerance, 1e-6, 1e-4);
+            return {.smallest_void = smallest, .most_surplus = 10 * smallest};
+        }
     }
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
     bool is_cut(Offset c, Offset back) const noexcept {
@@ -420,7 +432,7 @@ private:
 
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
-    VolumeOfFluid<Dim> liquid_;
+    Liquid liquid_;
     std::shared_ptr<const Walls<Dim>> walls_;  ///< shared among copies; the liquid points to them
     WallFilms<Dim> films_;
     WallFriction<Dim> friction_;

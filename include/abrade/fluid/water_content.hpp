@@ -13,7 +13,7 @@
 namespace abrade::detail {
 
 /// Of a flow, what its energy is measured from. Below `liquid`: null in a full box.
-template <int Dim, class State>
+template <int Dim, class State, class Liquid = VolumeOfFluid<Dim>>
 struct EnergyView {
     const Grid<Dim>& grid;
     const GridFluidParams<Dim>& params;
@@ -25,7 +25,7 @@ struct EnergyView {
     const Field<State>& pressure;             ///< over density [m2/s2]
     Real time = 0;                            ///< when the step began [s]
     const Field<State>* eddies = nullptr;  ///< nu_t of cells that acted in the step [m2/s]; none: no eddies
-    const VolumeOfFluid<Dim>* liquid = nullptr;
+    const Liquid* liquid = nullptr;
     const Walls<Dim>* walls = nullptr;
     const WetRows<Dim>* rows = nullptr;
     const Field<Real>* held_before = nullptr;  ///< liquid in whole cells when the step began [-]
@@ -50,12 +50,12 @@ Real sum_over_rows(const WetRows<Dim>& rows, auto&& of_row) {
 }
 
 /// Liquid and energy of a flow. Gravity along periodic axes makes no potential: it is `along_periodic`.
-template <int Dim, class State>
+template <int Dim, class State, class Liquid = VolumeOfFluid<Dim>>
 class WaterContent {
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner;
 
 public:
-    using View = EnergyView<Dim, State>;
+    using View = EnergyView<Dim, State, Liquid>;
 
     explicit WaterContent(const View& flow)
         : all_(WetRows<Dim>::whole(flow.grid.layout())),
@@ -133,7 +133,7 @@ public:
             return of_row;
         });
         if (flow.liquid) {
-            const auto& cut = flow.liquid->planes().cell;
+            const auto cut = cells_at_surface(*flow.liquid);
             sum += parallel_sum<Real>(static_cast<Index>(cut.size()), [&](Index i) {
                 const Offset c = cut[static_cast<std::size_t>(i)];
                 const Real volume = liquid_of_cell(flow, c);
@@ -145,7 +145,7 @@ public:
             sum += parallel_sum<Real>(static_cast<Index>(cut.size()), [&](Index i) {
                 const auto k = static_cast<std::size_t>(i);
                 const Offset c = cut[k].cell;
-                return flow.liquid->plane_of(c) < 0 ? liquid_of_cell(flow, c) * off_by_wall_[k] : 0;
+                return !surface_cuts(*flow.liquid, c) ? liquid_of_cell(flow, c) * off_by_wall_[k] : 0;
             });
         }
         return -flow.params.density * sum;

@@ -26,13 +26,13 @@ struct LateSteps {
     Real pace(Real dt) const noexcept { return dt < 0.5 * longest ? longest : dt; }
 };
 
-template <int Dim>
+template <int Dim, class Liquid = VolumeOfFluid<Dim>>
 class WaterRecord {
 public:
     WaterRecord() = default;
     /// At the start; `acceleration`: of the water as it stands [m/s2].
     WaterRecord(const Grid<Dim>& grid, const FaceField<Dim>& velocity, const FaceField<Dim>& acceleration,
-                const SurfaceWater<Dim>& water)
+                const SurfaceWater<Dim, Liquid>& water)
         : rows_(water.rows()), velocity_(velocity), change_(face_field<Dim, float>(grid.layout())),
           pressure_(water.wet().size()), wet_(water.wet()), fraction_(water.liquid().fraction()),
           surplus_(water.liquid().surplus()) {
@@ -50,7 +50,7 @@ public:
     /// acceleration in the last step. Or waves would gain energy by steps that follow their speed. No further
     /// than a quarter of a cell: an impact's acceleration does not go on. In a step that is brief beside late
     /// ones the velocity stays where it stands, half of those ahead.
-    bool keep(FaceField<Dim>& velocity, const Field<Real>& pressure, const SurfaceWater<Dim>& water,
+    bool keep(FaceField<Dim>& velocity, const Field<Real>& pressure, const SurfaceWater<Dim, Liquid>& water,
               const LateSteps& late, Real dt) {
         const WetRows<Dim> before = std::exchange(rows_, water.rows());
         const auto bounded = [](Real x, Real most) { return x > most ? most : x < -most ? -most : x; };
@@ -125,7 +125,7 @@ public:
     void took() noexcept { ahead_ += lead_, was_brief_ = brief_; }
 
     /// Puts all of it back.
-    void restore(FaceField<Dim>& velocity, Field<Real>& pressure, SurfaceWater<Dim>& water) {
+    void restore(FaceField<Dim>& velocity, Field<Real>& pressure, SurfaceWater<Dim, Liquid>& water) {
         rows_.copy(velocity_, velocity);
         rows_.copy(pressure_, pressure);
         water.restore(fraction_, surplus_, rows_, steps_);

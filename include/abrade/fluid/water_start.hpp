@@ -58,8 +58,8 @@ std::shared_ptr<const Walls<Dim>> walls_inside(const Grid<Dim>& grid, const Grid
 
 /// Shares of the open volume that lie in the water of the start, and beyond inflows. Throws InputError where
 /// a function answers no number, and what it throws.
-template <int Dim>
-void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, VolumeOfFluid<Dim>& liquid) {
+template <int Dim, class Liquid>
+void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, Liquid& liquid) {
     const Grid<Dim>& grid = liquid.grid();
     Field<Real>& f = liquid.fraction();
     const auto shares = [&](const PlaceFunction<Dim>& water, const char* called, auto&& wanted) {
@@ -89,9 +89,8 @@ void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, Vol
 }
 
 /// Throws InputError where walls close an inflow, or leave nothing of it open that its water reaches.
-template <int Dim>
-void check_inflows(const GridFluidParams<Dim>& params, const VolumeOfFluid<Dim>& liquid,
-                   const Walls<Dim>* walls) {
+template <int Dim, class Liquid>
+void check_inflows(const GridFluidParams<Dim>& params, const Liquid& liquid, const Walls<Dim>* walls) {
     const Grid<Dim>& grid = liquid.grid();
     for (int a = 0; a < Dim; ++a)
         for (const bool high : {false, true}) {
@@ -119,8 +118,8 @@ void check_inflows(const GridFluidParams<Dim>& params, const VolumeOfFluid<Dim>&
 }
 
 /// What flows in with a velocity [m3/s], of the liquid beyond inflows.
-template <int Dim>
-Real inflow_of(const FaceField<Dim>& u, const Sides<Dim>& sides, const VolumeOfFluid<Dim>& liquid,
+template <int Dim, class Liquid>
+Real inflow_of(const FaceField<Dim>& u, const Sides<Dim>& sides, const Liquid& liquid,
                const Walls<Dim>* walls) {
     const Grid<Dim>& grid = liquid.grid();
     Real sum = 0;

@@ -1,0 +1,163 @@
+#pragma once
+// How HeightOfFluid ends a step: slopes that may not grow, columns filled to their new volumes.
+
+#include <abrade/fluid/height_of_fluid.hpp>
+
+namespace abrade {
+
+/// Where two columns differ by more than the steepest slope allows, after the step and by more than before
+/// it, the growth flows back. Half of it would make the difference what it was; each of up to 2 (Dim - 1)
+/// pairs that a column may be part of gets its share of that, so that they do not overshoot.
+template <int Dim>
+void HeightOfFluid<Dim>::hold_slopes(Real dt) {
+    const Real weight = -gravity_[vertical];
+    if (!(weight > 0) || dt == 0) return;
+    constexpr Real late = 0.1;  // about ten steps: a front that enters a box is steep for a few
+    overturning_.share *= 1 - late;
+    const Real plan = columns_.plan(), share = 0.5 / (Dim - 1);
+    struct Held {
+        Index from, to;
+        int axis, plane, j;
+        bool down;  // from the column to the one below it
+        Real amount, rise;
+        bool counts;
+    };
+    std::vector<Held> all;
+    const auto height = [&](Index n) { return height_[at(n)] + (next_[at(n)] - volume_[at(n)]) / plan; };
+    for_each_column([&](int plane, int j, Index n) {
+        if (!is_wet(n)) return;
+        for (int a = 0; a < Dim - 1; ++a) {
+            if ((a == 0 ? plane : j) == 0) continue;  // a pair across a periodic end is left alone
+            const Index below = n - columns_.step(a);
+            if (!is_wet(below)) continue;
+            const Real was = std::abs(height_[at(n)] - height_[at(below)]);
+            const Real most = std::max(was, params_.steepest * grid_.size(a, 0));
+            const Real rise = height(n) - height(below), beyond = std::abs(rise) - most;
+            if (!(beyond > 0)) continue;
+            const bool down = rise > 0;
+            const Index from = down ? n : below;
+            const Real amount =
+                std::min(share * 0.5 * beyond * plan, 0.1 * std::max(next_[at(from)], Real(0)));
+            all.push_back({from, down ? below : n, a, plane, j, down, amount, std::abs(rise),
+                           !near_solid_[at(n)] && !near_solid_[at(below)]});
+        }
+    });
+    if (all.empty()) return;
+    std::vector<Index> held;  // the surface between two columns, by the upper one
+    for (const Held& h : all) {
+        next_[at(h.from)] -= h.amount, next_[at(h.to)] += h.amount;
+        overturning_.lost += weight * h.amount * (h.rise - h.amount / plan);
+        if (h.counts) held.push_back(h.down ? h.from : h.to);
+    }
+    for (const Held& h : all) {  // through the topmost face
+        const int plane = h.down || h.axis != 0 ? h.plane : h.plane - 1;
+        const int j = h.down || h.axis == 0 ? h.j : h.j - 1;
+        const int level = columns_.surface(plane, j, next_[at(h.from)], top_[at(h.from)]).level;
+        moved_[h.axis][columns_.cell(h.plane, h.j, level)] += h.down ? -h.amount : h.amount;
+    }
+    if (held.empty()) return;
+    held.erase(std::unique(held.begin(), held.end()), held.end());  // columns come one after the other
+    Index wet = 0, open = 0;
+    for_each_column([&](int, int, Index n) { wet += is_wet(n), open += !columns_.closed(n); });
+    // A front that runs into a dry box is steep, and for a while most of what is wet.
+    const Real area = std::max(static_cast<Real>(wet), 0.25 * static_cast<Real>(open));
+    overturning_.share += late * static_cast<Real>(held.size()) / area;
+    overturning_.most = std::max(overturning_.most, overturning_.share);
+    if (overturning_.share > params_.most_overturning)
+        fail({"HeightSurface: share of the wet area that wants to overturn",
+              "at most most_overturning, " + short_text(params_.most_overturning), "",
+              "take FreeSurface, which knows crests that break, or a finer grid"},
+             short_text(overturning_.share));
+}
+
+template <int Dim>
+void HeightOfFluid<Dim>::renew() {
+    if (brim_) surplus_.fill(0);
+    brim_ = false;
+    std::vector<std::uint8_t> far(static_cast<std::size_t>(grid_.cells(0)), 0);
+    touched_.for_each_plane([&](int plane) {
+        for (int j = 0; j < columns_.across(); ++j) rises_[at(columns_.column(plane, j))] = 0;
+        renew_plane(plane);
+        for (int j = 0; j < columns_.across(); ++j) {
+            const Index n = columns_.column(plane, j);
+            if (next_[at(n)] == volume_[at(n)]) continue;
+            const auto surface = columns_.surface(plane, j, next_[at(n)], top_[at(n)]);
+            if (surface.level > top_[at(n)] + 1) far[at(plane)] = 1;
+            height_[at(n)] = surface.height, top_[at(n)] = surface.level;
+        }
+    });
+    for_each_column([&](int plane, int j, Index n) {
+        volume_[at(n)] = next_[at(n)];
+        if (volume_[at(n)] > columns_.capacity(n) && !columns_.closed(n))
+            put(plane, j, n, volume_[at(n)], {top_[at(n)], 1, height_[at(n)]});
+    });
+    rose_far_ = std::ranges::any_of(far, [](std::uint8_t f) { return f != 0; });
+}
+
+/// From the bed up: what comes in sideways and finds no room in a cell goes up.
+template <int Dim>
+void HeightOfFluid<Dim>::renew_plane(int plane) {
+    const Offset across = layout_.stride[0];
+    struct Change {
+        typename detail::HeightColumns<Dim>::Surface surface;
+        int low, high;
+    };
+    std::vector<Change> change(static_cast<std::size_t>(columns_.across()));
+    int low = columns_.levels(), high = -1;
+    for (int j = 0; j < columns_.across(); ++j) {
+        const Index n = columns_.column(plane, j);
+        Change& c = change[at(j)];
+        if (sides_[vertical][1] == Side::outflow) {  // over the top
+            const Real beyond = std::max(next_[at(n)] - columns_.capacity(n), Real(0));
+            moved_[vertical][columns_.cell(plane, j, columns_.levels())] = beyond;
+            next_[at(n)] -= beyond;
+        }
+        c.surface = {top_[at(n)], 0, height_[at(n)]}, c.low = columns_.levels(), c.high = -1;
+        if (next_[at(n)] == volume_[at(n)] || columns_.closed(n)) continue;
+        c.surface = columns_.surface(plane, j, next_[at(n)], top_[at(n)]);
+        c.low = std::min(c.surface.level, top_[at(n)]), c.high = std::max(c.surface.level, top_[at(n)]);
+        low = std::min(low, c.low), high = std::max(high, c.high);
+    }
+    const auto fill = [&](int j, int k, Offset c) {
+        const Change& of = change[at(j)];
+        if (k < of.low || k > of.high) return Real(0);
+        const Real now = k < of.surface.level ? 1 : k == of.surface.level ? of.surface.share : 0;
+        return (now - std::exchange(fraction_[c], now)) * columns_.open(c) * columns_.volume(k);
+    };
+    if constexpr (Dim == 3) {
+        Real* const __restrict rise = rises_.data() + columns_.column(plane, 0);
+        for (int k = 0; k < columns_.levels(); ++k) {
+            RowRange r = touched_.row(plane, k);
+            if (k >= low && k <= high) r = {0, columns_.across()};
+            if (r.empty()) continue;
+            const Offset start = layout_.row_start(plane, k);
+            const Real* const __restrict x = moved_[0].data() + start;
+            const Real* const __restrict x_above = x + across;
+            const Real* const __restrict y = moved_[1].data() + start;
+            Real* const __restrict z = moved_[2].data() + start;
+            if (k >= low && k <= high) {
+                for (int j = r.begin; j < r.end; ++j) {
+                    z[j] = rise[j];
+                    rise[j] += x[j] - x_above[j] + y[j] - y[j + 1] - fill(j, k, start + j);
+                }
+                continue;
+            }
+#pragma omp simd
+            for (int j = r.begin; j < r.end; ++j) {
+                z[j] = rise[j];
+                rise[j] += x[j] - x_above[j] + y[j] - y[j + 1];
+            }
+        }
+    } else {
+        RowRange r = touched_.row(plane, 0);
+        if (low <= high) r = hull(r, {low, high + 1});
+        Real rise = 0;
+        for (int k = r.begin; k < r.end; ++k) {
+            const Offset c = layout_.row_start(plane, 0) + k;
+            moved_[vertical][c] = rise;
+            rise += moved_[0][c] - moved_[0][c + across] - fill(0, k, c);
+        }
+    }
+}
+
+}  // namespace abrade
