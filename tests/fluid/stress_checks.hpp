@@ -1,0 +1,33 @@
+#pragma once
+// What must hold in each scene of stress_scenes.hpp.
+
+#include "stress_scenes.hpp"
+
+#include <doctest/doctest.h>
+
+#include <span>
+
+namespace stress {
+
+template <int Dim>
+void check(const std::vector<Scene<Dim>>& scenes) {
+    for (const Scene<Dim>& scene : scenes) {
+        CAPTURE(scene.name);
+        const Outcome seen = run<GridFluid<Dim>>(scene);
+        MESSAGE(scene.name << ": speed " << seen.speed << ", energy " << seen.gained << ", overfull "
+                           << seen.overfull << ", asymmetry " << seen.asymmetry << ", " << seen.steps
+                           << " steps");
+        CHECK(seen.error == "");
+        // Of what a fall through the scene's height gives; where fronts meet, single faces have more.
+        CHECK(seen.speed < (scene.fronts ? 3 : 1.5));
+        // How the energy is measured errs by a percent of what thin water has.
+        CHECK(seen.gained < 0.06);
+        CHECK(seen.lost < 1e-12);  // round-off
+        // Ten times what makes no surface; a cell that a moved wall has just cut waits for the next step.
+        CHECK(seen.overfull < (scene.moved ? 0.1 : 2e-3));
+        // A cell is wet from half full on: round-off of the pressure decides when.
+        CHECK(seen.asymmetry < 0.1);
+    }
+}
+
+}  // namespace stress
