@@ -24,8 +24,8 @@ namespace abrade {
 /// 10.1016/0021-9991(77)90095-X). What goes up through a cell's upper face follows from the volumes of the
 /// cells below, so momentum goes with the fluxes that moved the liquid. No column gives more than it has:
 /// volume is conserved to round-off for any velocities. The pressure is that of the whole flow, not
-/// hydrostatic (V. Casulli, doi 10.1002/(SICI)1097-0363(19991215)31:8<1253::AID-FLD916>3.0.CO;2-A;
-/// G. Stelling & M. Zijlema, doi 10.1002/fld.595).
+/// hydrostatic (V. Casulli, Int. J. Numer. Meth. Fluids 30 (1999) 425; G. Stelling & M. Zijlema, doi
+/// 10.1002/fld.595).
 ///
 /// It answers what VolumeOfFluid does, in the same units; it has no surplus but where a column reaches the
 /// top of the box. It knows no film between dry cells that leaves its bed, no void, no spray. Where two
