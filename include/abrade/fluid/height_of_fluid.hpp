@@ -30,8 +30,8 @@ namespace abrade {
 /// It answers what VolumeOfFluid does, in the same units; it has no surplus but where a column reaches the
 /// top of the box. It knows no film between dry cells that leaves its bed, no void, no spray. Where two
 /// columns differ by more than `Params::steepest` times their distance and the difference would grow (the
-/// water wants to overturn), it does not grow; the potential energy that this takes is booked
-/// (`overturning()`).
+/// water wants to overturn), it grows by less; the potential energy that this takes is booked
+/// (`overturning()`), and a run in which too much of the surface is held so stops.
 template <int Dim>
 class HeightOfFluid {
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner,
@@ -49,8 +49,8 @@ public:
 
     struct Params {
         Real smallest_void = 0;  ///< no part here: below the surface nothing lacks
-        Real steepest = 2;       ///< slope of the surface beyond which it may not steepen [-]
-        /// Share of the wet area that may be kept from steepening, mean of about ten steps [-].
+        Real steepest = 2;       ///< slope of the surface beyond which it is held back from steepening [-]
+        /// Share of the wet area that may be held back so, mean of about ten steps [-].
         Real most_overturning = 0.25;
     };
 
@@ -335,7 +335,7 @@ private:
         }
     }
 
-    /// Keeps slopes that are too steep from growing.
+    /// Holds slopes that are too steep back from growing.
     void hold_slopes(Real dt);
     /// Fills columns to their new volumes; what went through level faces.
     void renew();
