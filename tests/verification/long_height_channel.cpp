@@ -37,7 +37,7 @@ Ran run(Real courant) {
 TEST_CASE("the channel below a surface that is a height runs as below volume of fluid") {
     const Ran planes = run<FreeSurface>(0.5), height = run<HeightSurface>(0.5),
               longer = run<HeightSurface>(0.8);
-    const auto tell = [](const char* name, const Ran& r) {
+    const auto tell = [](const std::string& name, const Ran& r) {
         MESSAGE(name << ": depth " << r.means.depth << " m, speed " << r.means.speed << " m/s, "
                      << r.means.low << " and " << r.means.high << " m/s at 0.03 and 0.16 m, " << r.discharge
                      << " m3/s leave; " << r.steps << " steps of " << 1000 * r.per_step << " ms");

@@ -29,10 +29,11 @@ struct HeightSurface {};
 /// in time, one projection a step; the pressure of the step before goes into both stages, so velocity and
 /// pressure are of second order.
 ///
-/// With a free surface a step is: the liquid moves with the velocity (VolumeOfFluid); momentum goes with the
-/// same fluxes; the pressure is found below the new surface, where it is 0 (F. Gibou et al., doi
-/// 10.1006/jcph.2001.6977); velocities are carried on outward. Liquid and velocity leap over each other, so
-/// waves do not decay by the time step. Walls of any shape may stand in a box with a free surface.
+/// With a free surface a step is: the liquid moves with the velocity (VolumeOfFluid, or HeightOfFluid where
+/// the surface is a height); momentum goes with the same fluxes; the pressure is found below the new surface,
+/// where it is 0 (F. Gibou et al., doi 10.1006/jcph.2001.6977); velocities are carried on outward. Liquid and
+/// velocity leap over each other, so waves do not decay by the time step. Walls of any shape may stand in a
+/// box with a free surface.
 ///
 /// With a TurbulenceModel the viscosity grows by that of eddies, found at the end of each step from the
 /// velocity as the pressure left it.
@@ -41,7 +42,7 @@ template <int Dim = 3, class Surface = FreeSurface, AdvectionScheme Scheme = Lim
 class GridFluid {
     static constexpr bool is_height = std::same_as<Surface, HeightSurface>;
     static constexpr bool has_surface = is_height || std::same_as<Surface, FreeSurface>;
-    static_assert(!has_surface || std::same_as<State, Real>, "a free surface is kept in double precision");
+    static_assert(!has_surface || std::same_as<State, Real>, "a surface is kept in double precision");
 
 public:
     static constexpr std::string_view name = "GridFluid";
@@ -537,5 +538,6 @@ private:
 
 static_assert(AdvancingFluid<GridFluid<2>> && AdvancingFluid<GridFluid<3>>);
 static_assert(AccountsForEnergy<GridFluid<2>> && AccountsForEnergy<GridFluid<3, FullBox>>);
+static_assert(AdvancingFluid<GridFluid<2, HeightSurface>> && AdvancingFluid<GridFluid<3, HeightSurface>>);
 
 }  // namespace abrade

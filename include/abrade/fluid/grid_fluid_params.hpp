@@ -55,8 +55,8 @@ struct GridFluidParams {
     /// a surface the next step takes it back: no volume is lost, whatever the tolerance.
     Real tolerance = 1e-6;
     Real fastest = 100;  ///< beyond it a run is wrong [m/s]
-    /// Of a HeightSurface: the slope beyond which it may not steepen, for there water wants to overturn [-];
-    /// and the share of the wet area that may be kept from it, mean of about ten steps [-].
+    /// Of a HeightSurface: the slope beyond which it is held back from steepening, for there water wants to
+    /// overturn [-]; and the share of the wet area that may be held back, mean of about ten steps [-].
     Real steepest_surface = 2, most_overturning = 0.25;
     Real start_time = 0;  ///< [s]; before 0: it settles before the solids begin
 

@@ -24,14 +24,14 @@ namespace abrade {
 /// 10.1016/0021-9991(77)90095-X). What goes up through a cell's upper face follows from the volumes of the
 /// cells below, so momentum goes with the fluxes that moved the liquid. No column gives more than it has:
 /// volume is conserved to round-off for any velocities. The pressure is that of the whole flow, not
-/// hydrostatic (V. Casulli, doi 10.1002/(SICI)1097-0363(19991215)31:8<1253::AID-FLD916>3.0.CO;2-A;
-/// G. Stelling & M. Zijlema, doi 10.1002/fld.595).
+/// hydrostatic (V. Casulli, Int. J. Numer. Meth. Fluids 30 (1999) 425; G. Stelling & M. Zijlema, doi
+/// 10.1002/fld.595).
 ///
 /// It answers what VolumeOfFluid does, in the same units; it has no surplus but where a column reaches the
 /// top of the box. It knows no film between dry cells that leaves its bed, no void, no spray. Where two
 /// columns differ by more than `Params::steepest` times their distance and the difference would grow (the
-/// water wants to overturn), it does not grow; the potential energy that this takes is booked
-/// (`overturning()`).
+/// water wants to overturn), it grows by less; the potential energy that this takes is booked
+/// (`overturning()`), and a run in which too much of the surface is held so stops.
 template <int Dim>
 class HeightOfFluid {
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner,
@@ -49,8 +49,8 @@ public:
 
     struct Params {
         Real smallest_void = 0;  ///< no part here: below the surface nothing lacks
-        Real steepest = 2;       ///< slope of the surface beyond which it may not steepen [-]
-        /// Share of the wet area that may be kept from steepening, mean of about ten steps [-].
+        Real steepest = 2;       ///< slope of the surface beyond which it is held back from steepening [-]
+        /// Share of the wet area that may be held back so, mean of about ten steps [-].
         Real most_overturning = 0.25;
     };
 
@@ -335,7 +335,7 @@ private:
         }
     }
 
-    /// Keeps slopes that are too steep from growing.
+    /// Holds slopes that are too steep back from growing.
     void hold_slopes(Real dt);
     /// Fills columns to their new volumes; what went through level faces.
     void renew();

@@ -6,8 +6,8 @@
 namespace abrade {
 
 /// Where two columns differ by more than the steepest slope allows, after the step and by more than before
-/// it, the growth flows back. Half of it would make the difference what it was; each of up to 2 (Dim - 1)
-/// pairs that a column may be part of gets its share of that, so that they do not overshoot.
+/// it, half of the growth flows back, in three dimensions a quarter: the surface steepens that much less. All
+/// of it would make a dam's front on a thin film slower than it is.
 template <int Dim>
 void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     const Real weight = -gravity_[vertical];
