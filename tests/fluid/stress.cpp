@@ -9,13 +9,14 @@ TEST_CASE("thin water on cut walls, slots, fronts that meet, walls that move: sp
 
 TEST_CASE("a brimful box walled off from its outflow is refused before its first step is over") {
     using P = Point<2>;
-    GridFluid<2>::Params params{.grid = {.cells = {16, 8}, .spacing = P::Constant(stress::cell)},
-                                .sides = Sides<2>::all(Side::wall),
-                                .side_velocity = [](const P& x, Real) { return P(x[0] < 0.01 ? 1e-4 : 0, 0); },
-                                .wall = [](const P& x) { return std::abs(x[0] - 0.6) - 0.06; },
-                                .water = [](const P&) { return 1.0; },
-                                .inflow_water = [](const P&) { return 1.0; },
-                                .gravity = {0, -stress::g}};
+    GridFluid<2>::Params params{
+        .grid = {.cells = {16, 8}, .spacing = P::Constant(stress::cell)},
+        .sides = Sides<2>::all(Side::wall),
+        .side_velocity = [](const P& x, Real) { return P(x[0] < 0.01 ? 1e-4 : 0, 0); },
+        .wall = [](const P& x) { return std::abs(x[0] - 0.6) - 0.06; },
+        .water = [](const P&) { return 1.0; },
+        .inflow_water = [](const P&) { return 1.0; },
+        .gravity = {0, -stress::g}};
     params.sides[0] = {Side::inflow, Side::outflow};
     GridFluid<2> flow(params);
     const Real volume = flow.liquid().volume();

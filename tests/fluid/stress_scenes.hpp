@@ -18,12 +18,12 @@ template <int Dim>
 struct Scene {
     std::string name;
     GridFluidParams<Dim> params{};
-    Real end = 2;        ///< [s]
-    Real fall = 1;       ///< height that the water may fall through, dz [m]
-    Real inflow = 0;     ///< fastest velocity that is given, u_in [m/s]
+    Real end = 2;         ///< [s]
+    Real fall = 1;        ///< height that the water may fall through, dz [m]
+    Real inflow = 0;      ///< fastest velocity that is given, u_in [m/s]
     bool fronts = false;  ///< fronts meet and focus: single faces may have three times the speed, not 1.5
-    int mirror = -1;     ///< axis along which the scene is its own mirror image
-    Real impact = 0;     ///< until when asymmetry is looked at: water meets water then [s]
+    int mirror = -1;      ///< axis along which the scene is its own mirror image
+    Real impact = 0;      ///< until when asymmetry is looked at: water meets water then [s]
     std::function<PlaceFunction<Dim>(Real)> moved{};  ///< wall at a time, set before each step
 };
 
@@ -124,9 +124,7 @@ inline std::vector<Scene<2>> plane_scenes() {
     // Water that falls onto water, and fronts that meet.
     {
         auto& s = add(box<2>("droplet into a pool", {40, 40}));
-        s.params.water = [](const P& x) {
-            return std::max(0.5 - x[1], 0.2 - (x - P(1, 1.2)).norm());
-        };
+        s.params.water = [](const P& x) { return std::max(0.5 - x[1], 0.2 - (x - P(1, 1.2)).norm()); };
         s.end = 2, s.fall = 1, s.fronts = true, s.mirror = 0, s.impact = 0.3;
     }
     {
@@ -302,12 +300,12 @@ inline std::vector<Scene<3>> space_scenes() {
 
 /// What a run of a scene showed.
 struct Outcome {
-    Real speed = 0;       ///< fastest face that carries liquid over sqrt(2 g dz + u_in^2) [-]
-    Real beyond = 0;      ///< largest share of the momentum on faces above 1.5 of that [-]
-    Real gained = 0;      ///< most that mechanical energy grew from an earlier time, over the scene's [-]
-    Real overfull = 0;    ///< most that a cell held beyond its volume, in shares of that [-]
-    Real lost = 0;        ///< change of volume where nothing flows in or out, over that of the start [-]
-    Real asymmetry = 0;   ///< of volume fractions, up to the impact [-]
+    Real speed = 0;      ///< fastest face that carries liquid over sqrt(2 g dz + u_in^2) [-]
+    Real beyond = 0;     ///< largest share of the momentum on faces above 1.5 of that [-]
+    Real gained = 0;     ///< most that mechanical energy grew from an earlier time, over the scene's [-]
+    Real overfull = 0;   ///< most that a cell held beyond its volume, in shares of that [-]
+    Real lost = 0;       ///< change of volume where nothing flows in or out, over that of the start [-]
+    Real asymmetry = 0;  ///< of volume fractions, up to the impact [-]
     Index steps = 0;
     std::string error{};  ///< of a run that ended early
     std::string where{};  ///< the fastest face
@@ -327,8 +325,10 @@ Real energy(const Flow& flow, const Scene<Dim>& scene) {
         const Real open = flow.walls() ? flow.walls()->open_volume()[at] : 1;
         Point<Dim> x = grid.centre(c);
         const Real share = std::min(f[at], Real(1));
-        if (f[at] < 1 && f[at + up] < f[at - up]) x[Dim - 1] -= 0.5 * (1 - share) * grid.size(Dim - 1, c[Dim - 1]);
-        if (f[at] < 1 && f[at + up] > f[at - up]) x[Dim - 1] += 0.5 * (1 - share) * grid.size(Dim - 1, c[Dim - 1]);
+        if (f[at] < 1 && f[at + up] < f[at - up])
+            x[Dim - 1] -= 0.5 * (1 - share) * grid.size(Dim - 1, c[Dim - 1]);
+        if (f[at] < 1 && f[at + up] > f[at - up])
+            x[Dim - 1] += 0.5 * (1 - share) * grid.size(Dim - 1, c[Dim - 1]);
         Real height = weight * x[Dim - 1];
         for (int a = 0; a + 1 < Dim; ++a) height -= scene.params.gravity[a] * x[a];
         potential += height * (f[at] + surplus[at]) * open * grid.volume(c);
@@ -358,7 +358,8 @@ void look(const Flow& flow, const Scene<Dim>& scene, Outcome& seen) {
             seen.speed = ratio;
             seen.where = "[";
             for (int b = 0; b < Dim; ++b) seen.where += (b ? "," : "") + std::to_string(c[b]);
-            seen.where += "] " + std::to_string(a) + " t " + short_text(flow.time()) + " holds " + short_text(mass);
+            seen.where +=
+                "] " + std::to_string(a) + " t " + short_text(flow.time()) + " holds " + short_text(mass);
         }
     });
     if (all > 0) seen.beyond = std::max(seen.beyond, fast / all);

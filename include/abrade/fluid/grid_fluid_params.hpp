@@ -47,10 +47,10 @@ struct GridFluidParams {
     BodyForce<Dim> body_force{};
     Real density = 1000;       ///< [kg/m3]
     Real viscosity = 1.31e-3;  ///< dynamic [Pa s]
-    /// Limit of dt (sum |u_a| / h_a + 2 nu sum 1 / h_a^2) [-]. A channel's depth and speed are the same at 0.9
-    /// to four digits; waves, jumps and walls that cut cells lose up to a percent more there.
+    /// Limit of dt (sum |u_a| / h_a + 2 nu sum 1 / h_a^2) [-]. A channel's depth and speed are the same at
+    /// 0.9 to four digits; waves, jumps and walls that cut cells lose up to a percent more there.
     Real courant = 0.5;
-    Real largest_step = 0;     ///< [s]; 0: none
+    Real largest_step = 0;  ///< [s]; 0: none
     /// Root mean square of the share of its volume that a cell may gain or lose in a step [-]. Where there is
     /// a surface the next step takes it back: no volume is lost, whatever the tolerance.
     Real tolerance = 1e-6;

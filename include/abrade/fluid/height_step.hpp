@@ -1,7 +1,7 @@
 #pragma once
 // How HeightOfFluid ends a step: slopes that may not grow, columns filled to their new volumes.
 
-#include <abrade/fluid/height_of_fluid.hpp>
+#include <abrade/fluid/height_of_fluid_class.hpp>
 
 namespace abrade {
 
@@ -158,6 +158,60 @@ void HeightOfFluid<Dim>::renew_plane(int plane) {
             rise += moved_[0][c] - moved_[0][c + across] - fill(0, k, c);
         }
     }
+}
+
+template <int Dim>
+void HeightOfFluid<Dim>::begin(const auto& water) {
+    for_each_column([&](int plane, int j, Index n) {
+        int air = -1;
+        for (int k = columns_.first(n); k < columns_.levels(); ++k) {
+            const Real f = fraction_[columns_.cell(plane, j, k)];
+            if (air >= 0 && f > fraction_[columns_.cell(plane, j, air)] + 0.5) fail_air(plane, j, k);
+            if (air < 0 || f < fraction_[columns_.cell(plane, j, air)]) air = k;
+        }
+        const int whole = columns_.whole_from(n);
+        if (!water || columns_.closed(n) || whole == columns_.first(n)) return;
+        Point<Dim> x = grid_.centre(number(plane, j, 0));
+        const auto depth = [&](Real z) { return x[vertical] = z, water(x); };
+        // A tilted surface reaches down into a cut cell from the whole one above it.
+        Real low = grid_.face(vertical, columns_.first(n));
+        Real high = grid_.face(vertical, std::min(whole + 1, columns_.levels()));
+        if (depth(high) > 0) return;
+        if (!(depth(low) > 0)) {  // dry but for a corner
+            Real corner = 0;
+            for (int k = columns_.first(n); k < columns_.levels(); ++k) {
+                const Offset c = columns_.cell(plane, j, k);
+                corner += fraction_[c] * columns_.open(c) * columns_.volume(k);
+            }
+            if (corner < 0.5 * columns_.volume(0)) set_fractions(plane, j, n, 0);
+            return;
+        }
+        for (int step = 0; step < 60; ++step) {
+            const Real z = 0.5 * (low + high);
+            (depth(z) > 0 ? low : high) = z;
+        }
+        set_fractions(plane, j, n, columns_.volume_below(plane, j, low));
+    });
+}
+
+template <int Dim>
+Real HeightOfFluid<Dim>::outflow_rate(const FaceField<Dim>& u) const {
+    Real largest = 0;
+    for_each_column([&](int plane, int j, Index n) {
+        if (!is_wet(n)) return;
+        const Offset c = columns_.cell(plane, j, top_[at(n)]);
+        Real rate = 0;
+        for (int a = 0; a < Dim - 1; ++a) {
+            const Offset s = layout_.stride[a];
+            const Real low = open_faces_ ? (*open_faces_)[a][c] : 1;
+            const Real high = open_faces_ ? (*open_faces_)[a][c + s] : 1;
+            rate += (high * std::max(u[a][c + s], Real(0)) + low * std::max(-u[a][c], Real(0))) /
+                    grid_.size(a, 0);
+        }
+        rate /= std::max(columns_.open(c), Real(0.5));
+        if (!(rate <= largest)) largest = rate;
+    });
+    return largest;
 }
 
 }  // namespace abrade

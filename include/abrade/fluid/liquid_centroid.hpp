@@ -181,7 +181,9 @@ Real liquid_offset(const HeightOfFluid<Dim>& liquid, const Walls<Dim>* walls, Of
     const Grid<Dim>& grid = liquid.grid();
     const int level = grid.layout().number(c)[vertical];
     std::array<HalfSpace<Dim>, 2> halves;
-    halves[0].constant = (liquid.height(liquid.columns().column(grid.layout().number(c))) - grid.centre(vertical, level)) / grid.size(vertical, level);
+    halves[0].constant =
+        (liquid.height(liquid.columns().column(grid.layout().number(c))) - grid.centre(vertical, level)) /
+        grid.size(vertical, level);
     halves[0].slope[vertical] = -1;
     halves[1] = above_wall(grid, *wall);
     const PartOfCell<Dim> part = part_of_cell<Dim>(halves);

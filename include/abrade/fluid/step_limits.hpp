@@ -32,8 +32,8 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
         if (surface) fall += std::abs((*causes.gravity)[a]) / size;
         shortest = std::min(shortest, size);
     }
-    // One limit for both, or what each of them allows alone would be too much together. Heun's method is stable
-    // for real eigenvalues down to -2/dt; those of friction reach -4 nu sum 1/h^2.
+    // One limit for both, or what each of them allows alone would be too much together. Heun's method is
+    // stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum 1/h^2.
     const Real friction = 2 * causes.viscosity * per_h2, rate = causes.fastest + friction;
     // At its end gravity may have made the water faster by g dt.
     const Real twice = rate + std::sqrt(square(rate) + 4 * fall * params.courant);

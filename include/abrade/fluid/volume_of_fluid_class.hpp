@@ -125,13 +125,7 @@ public:
     }
 
     /// Brings what cells hold beyond their volume to where there is room: after walls have changed.
-    void make_room() {
-        grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) {
-            if (surplus_[c] > wisp) push_surplus(c, cell[vertical], static_cast<std::size_t>(layout_.total));
-        });
-        wet_.find(fraction_);
-        locate();
-    }
+    void make_room();
 
     /// One step. `velocity` [m/s]: component a of a cell on its lower face along a, also at the upper sides
     /// and, where cells at the surface have air beside them, on the faces of that air. Throws InputError
@@ -323,25 +317,7 @@ private:
     Real rate_of(const FaceField<Dim>& velocity, Index i) const noexcept;
 
     // The surface moves in a step by less than a cell; wisps that are moved aside, by one more.
-    void locate() {
-        touched_ = active_;
-        active_ = wet_.dilated(2, sides_.periodic_axes());
-        include_inflows();
-        touched_.include(active_);
-        fill_ghosts(fraction_, touched_, sides_);
-        const std::vector<Index> band_before(band_.cells().begin(), band_.cells().end());
-        band_.find(fraction_, marks_, active_, sides_);
-        // What has left the band with less air than makes a surface is full from now on; the rest is surplus.
-        const auto close = [&](Index c) {
-            if (fraction_[c] < 1 - void_amid_water() || band_.holds(c)) return;
-            surplus_[c] += fraction_[c] - 1;
-            fraction_[c] = 1;
-        };
-        parallel_for(static_cast<Index>(band_before.size()), [&](Index i) { close(band_before[index(i)]); });
-        for (const Index c : settled_) close(c);
-        settled_.clear();
-        reconstruct(false);
-    }
+    void locate();
     void include_inflows();
     void reconstruct(bool within_step);
     void carry_bulk();

@@ -80,7 +80,11 @@ void VolumeOfFluid<Dim>::push_surplus(Offset c, Index level, std::size_t reach) 
             for (const int side : {-1, 1}) {
                 const Way here = ways[at];
                 const Offset step = layout_.stride[index(a)], around = side * layout_.cells[index(a)] * step;
-                Way way{here.cell + side * step, at, here.level, a, side,
+                Way way{here.cell + side * step,
+                        at,
+                        here.level,
+                        a,
+                        side,
                         side > 0 ? here.cell + step : here.cell};
                 if (a == vertical) way.level += side;
                 if ((marks_[way.cell] & cell_mark::inside) == 0) {
@@ -203,6 +207,15 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
             step.moved_aside += std::abs(amount - left);
             step.left_over += std::abs(surplus_[c]) > wisp;
         }
+}
+
+template <int Dim>
+void VolumeOfFluid<Dim>::make_room() {
+    grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) {
+        if (surplus_[c] > wisp) push_surplus(c, cell[vertical], static_cast<std::size_t>(layout_.total));
+    });
+    wet_.find(fraction_);
+    locate();
 }
 
 }  // namespace abrade

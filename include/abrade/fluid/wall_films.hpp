@@ -14,8 +14,9 @@ namespace abrade::detail {
 /// Liquid between dry cells flies: nothing would ever hold it up on the wall that it lies on. A wall takes
 /// from it what moves into the wall, as an inelastic impact does, and leaves what moves along the wall or off
 /// it:
-///   v <- v - min(v . n, 0) n,   v: velocity of the faces that the cell gives liquid to, n: the wall's normal,
-///   which the divergence theorem gives from the apertures of the cell's faces, sides of the box included.
+///   v <- v - min(v . n, 0) n,   v: velocity of the faces that the cell gives liquid to, n: the wall's
+///   normal, which the divergence theorem gives from the apertures of the cell's faces, sides of the box
+///   included.
 /// Where all of them are open or closed as a whole, each axis has a wall of its own: a corner. The kinetic
 /// energy of a film falls by that, never grows.
 template <int Dim>
@@ -81,8 +82,7 @@ public:
                 if (count == 2) v[a] *= 0.5;
             }
             if (film.corner)
-                for (int a = 0; a < Dim; ++a)
-                    push_[k][a] = film.normal[a] * v[a] < 0 ? -v[a] : Real(0);
+                for (int a = 0; a < Dim; ++a) push_[k][a] = film.normal[a] * v[a] < 0 ? -v[a] : Real(0);
             else
                 push_[k] = std::max(-film.normal.dot(v), Real(0)) * film.normal;
         });
@@ -105,7 +105,7 @@ private:
         Point<Dim> normal = Point<Dim>::Zero();     ///< into the water
         bool corner = false;                        ///< of walls along the grid's planes alone
     };
-    std::vector<Cell> cells_;  ///< beside a wall or a closed side, in the order of memory
+    std::vector<Cell> cells_;       ///< beside a wall or a closed side, in the order of memory
     std::vector<Point<Dim>> push_;  ///< [m/s], of each
     RowStarts<Dim> starts_;
 };

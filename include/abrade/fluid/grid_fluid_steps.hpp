@@ -1,0 +1,204 @@
+#pragma once
+// What a step of GridFluid does, and what it goes back to where it goes wrong. Users include grid_fluid.hpp.
+
+#include <abrade/fluid/grid_fluid_class.hpp>
+
+namespace abrade {
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step(Real dt) {
+    require_positive(dt, "GridFluid.step: dt", "s");
+    refuse_beyond_stable(dt);
+    sides_.keep(velocity_);
+    try {
+        if constexpr (has_surface)
+            step_below_surface(dt);
+        else
+            step_full(dt);
+    } catch (const std::exception& wrong) {  // more than a cell would leave it, a given function fails
+        take_back();
+        throw FluidError(detail::place_in_time(steps_, time_, dt) + wrong.what());
+    } catch (...) {
+        take_back();
+        throw;
+    }
+    check(dt);
+    if (energy_) energy_->took(energy_view(), dt);
+    find_eddies();
+    time_ += dt, late_.took(dt);
+    ++steps_;
+    if constexpr (has_surface) record_.took(), outflows_.took();
+    if (!params_.steady_sides) enters_ = sides_.rate_of_inflow(velocity_);
+    fastest_ = std::max(report_.courant / dt, enters_);
+    if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
+}
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence>::refuse_beyond_stable(Real dt) const {
+    std::string cause;
+    try {
+        const FluidStep stable = stable_step();
+        constexpr Real round_off = 1e-9;
+        if (dt <= stable.seconds * (1 + round_off)) return;
+        cause = "beyond stable_step(), which " + std::string(stable.limit) + " limits to " +
+                short_text(stable.seconds) + " s; advance() takes as many steps as it needs";
+    } catch (const std::exception& wrong) {  // a given function fails
+        cause = wrong.what();
+    }
+    throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);
+}
+
+/// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage_`
+/// how water at rest is accelerated [m/s2].
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence>::find_pressure_of_weight(Real tolerance) {
+    pressure_.fill(0);
+    for (auto& component : stage_) component.fill(0);
+    const Point<Dim> falls = params_.acceleration(time_);
+    if (falls.isZero()) return;
+    for (int a = 0; a < Dim; ++a) {
+        stage_[a].fill(falls[a]);
+        sides_.close(stage_[a], a);
+    }
+    water_->clear_walls(stage_);
+    carry_weight(stage_, falls);
+    outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1], true});
+    projection_.project(stage_, pressure_, {1, tolerance});
+    water_->clear_air(stage_);
+    finish(stage_);
+}
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step_full(Real dt) {
+    const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
+    if (!params_.steady_sides) sides_.set_time(time_ + dt);
+    saved_pressure_ = pressure_;  // the velocity is kept by the second stage
+    sides_.fill_cells(pressure_);
+    const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
+        Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
+        advance(projection_.faces(), s);
+        sides_.leave(result);
+    };
+    stage(velocity_, stage_, 0);
+    if (!side_friction_.empty()) sides_.join(stage_);
+    const auto taken = side_friction_.apply(stage_, nullptr, dt, nu());
+    if (energy_) energy_->walls_took(taken);
+    sides_.fill(stage_);
+    stage(stage_, saved_velocity_, 0.5);
+    side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
+    std::swap(velocity_, saved_velocity_);
+    if (!params_.steady_sides) sides_.fill(velocity_);
+    project({dt, params_.tolerance, false, nullptr, late_.pace(dt)});
+    if (late_.brief(dt)) pressure_ = saved_pressure_;  // what pushes so briefly is none to go on with
+    finish(velocity_);
+}
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step_below_surface(Real dt) {
+    auto& water = *water_;
+    if (record_.keep(velocity_, pressure_, water, late_, dt)) {
+        finish(velocity_);
+        if (steps_ > 0 && !water.liquid().can_advance(velocity_, dt))  // too long a first one is told
+            record_.stay(velocity_), finish(velocity_);
+    }
+    if (late_.grows(dt)) {
+        find_pressure_of_weight(1e-3);
+        record_.add_excess(pressure_, late_.last / dt);
+    }
+    sides_.join(pressure_);
+    water.move(velocity_, dt);
+    if (energy_) energy_->liquid_moved(energy_view());
+    // The velocity goes from half a step before the new surface to half a step behind it.
+    const Point<Dim> falls = params_.acceleration(time_ + dt);
+    const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
+        Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), falls};
+        s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
+        s.open_area = water.open_area(), s.open_friction = water.open_friction();
+        if constexpr (is_height) s.bounded_below = Liquid::bounded_below;
+        advance(water.faces(), s);
+        // At the surface the pressure falls to 0 within another distance than that of the centres.
+        const auto open_faces = projection_.open_faces();
+        parallel_for(static_cast<Index>(open_faces.size()), [&](Index n) {
+            const OpenFace& open = open_faces[static_cast<std::size_t>(n)];
+            if (open.plain == 0) return;
+            Real& u = result[open.axis][open.face];
+            u += push * (open.slope - open.plain) * pressure_[open.cell];
+            u -= (kept == 0 ? 1 : -0.5) * (1 - open.weight) * dt * falls[open.axis];
+        });
+        for (const WaterFace& f : water.still())
+            result[f.axis][f.face] = record_.velocity()[f.axis][f.face] + kept * 2 * dt * falls[f.axis];
+        water.share_shear(result, by, (1 - kept) * dt * nu());
+        sides_.leave(result, water.open_area());
+    };
+    stage(velocity_, stage_, 0, -dt);
+    sides_.join(stage_);  // friction of walls looks across the ends
+    // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
+    const auto taken = water.friction().apply(stage_, &water.rows(), dt, nu());
+    if (energy_) energy_->walls_took(taken);
+    if (!params_.steady_sides) sides_.set_time(time_ + dt);
+    finish(stage_);
+    water.carry_by(stage_, dt);
+    // The old pressure is taken back: below the new surface it pushes anew.
+    stage(stage_, velocity_, 0.5, 0.5 * dt);
+    water.friction().take(velocity_, &water.rows(), taken, 0.5);
+    water.find(projection_, pressure_);
+    water.weigh_reached(velocity_, 0.5 * dt * falls);
+    water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * falls);
+    for (const WaterFace& f : water.still()) velocity_[f.axis][f.face] = record_.velocity()[f.axis][f.face];
+    carry_weight(velocity_, dt * falls);
+    outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
+    // Whole sides: where they change there may not have been water before.
+    if (!params_.steady_sides) sides_.fill(velocity_);
+    project({dt, params_.tolerance, true, surplus(), late_.pace(dt)});
+    if constexpr (is_height) detail::slow_thin_water(velocity_, water.liquid(), dt, nu());
+    finish(velocity_);
+}
+
+/// What is left beyond `most_left` is solved for once more: single precision may have lost its way.
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence>::project(
+    typename Projection<Dim, State>::Demand demand) {
+    report_ = projection_.project(velocity_, pressure_, demand);
+    if (report_.after <= most_left()) return;
+    demand.push = false;
+    const auto first = std::exchange(report_, projection_.project(velocity_, pressure_, demand));
+    report_.iterations += first.iterations, report_.rounds += first.rounds;
+}
+
+/// Back to what a step that went wrong began with.
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence>::restore() {
+    if constexpr (has_surface) {
+        record_.restore(velocity_, pressure_, *water_);
+        water_->find(projection_, pressure_);
+    } else {
+        std::swap(velocity_, saved_velocity_), std::swap(pressure_, saved_pressure_);
+    }
+    sides_.back(velocity_);
+    if constexpr (has_surface) finish(velocity_), sides_.fill(velocity_);  // what the step reached, too
+}
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence>::check(Real dt) {
+    Real size = 0;
+    for (int a = 0; a < Dim; ++a) size = std::max(size, grid_->largest(a));
+    // Without a surface and an outflow the pressure is known but for a constant, and takes no volume.
+    const bool found = report_.after <= most_left();
+    const bool brimful = !found && enters_ > 0 && projection_.multigrid().floating();
+    // The bound is cheap, the speed itself is not.
+    if (found && (report_.courant / dt * size <= params_.fastest ||
+                  detail::FastFace<Dim>(*grid_, velocity_).speed <= params_.fastest))
+        return;
+    const std::string cause =
+        brimful ? "more flows in than out, and no surface is left to rise; make a "
+                  "side that it reaches an outflow"
+                : detail::wrong_flow(*grid_, velocity_, report_.after, most_left(), enters_ > 0);
+    restore();
+    throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);
+}
+
+static_assert(AdvancingFluid<GridFluid<2>> && AdvancingFluid<GridFluid<3>>);
+static_assert(AccountsForEnergy<GridFluid<2>> && AccountsForEnergy<GridFluid<3, FullBox>>);
+static_assert(AdvancingFluid<GridFluid<2, HeightSurface>> && AdvancingFluid<GridFluid<3, HeightSurface>>);
+
+}  // namespace abrade

@@ -1,0 +1,360 @@
+#pragma once
+// Water below a free surface: where it is, what it touches, and what carries its momentum.
+
+#include <abrade/fluid/grid_fluid_params.hpp>
+#include <abrade/fluid/height_of_fluid.hpp>
+#include <abrade/fluid/open_friction.hpp>
+#include <abrade/fluid/projection.hpp>
+#include <abrade/fluid/velocity_extension.hpp>
+#include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/wall_films.hpp>
+#include <abrade/fluid/water_start.hpp>
+
+#include <cstring>
+#include <memory>
+#include <utility>
+
+namespace abrade::detail {
+
+/// What GridFluid knows of its liquid beside velocity and pressure.
+template <int Dim, class Liquid = VolumeOfFluid<Dim>>
+class SurfaceWater {
+    static constexpr bool is_height = std::same_as<Liquid, HeightOfFluid<Dim>>;
+    static constexpr int inner = Layout<Dim>::inner, outer = Layout<Dim>::outer,
+                         vertical = Grid<Dim>::vertical;
+    /// Nearer to a cell's centre than this share of the way to the next one the surface is taken to be here:
+    /// conductances grow as its inverse.
+    static constexpr Real least_share = 1e-8;
+
+public:
+    SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
+        : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides, liquid_params(params)),
+          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get()),
+          friction_(grid, params.sides, params.wall_law, walls_.get()), before_(grid.layout().total),
+          burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
+          rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
+          open_in_(static_cast<std::size_t>(grid.layout().planes())) {
+        for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
+        if (sides_.periodic(vertical))
+            fail({"GridFluid.sides.z", "not periodic where there is a surface", "",
+                  "close the floor, or take a FullBox"},
+                 "periodic");
+        liquid_.set_gravity(params.gravity);
+        if (walls_) {
+            if constexpr (is_height)
+                liquid_.set_walls(*walls_);
+            else
+                liquid_.set_walls(&walls_->open_area(), &walls_->open_volume());
+            extension_.set_walls(*walls_);
+            held_ = Field<Real>(layout().total);
+            open_friction_ = open_friction_of(*walls_, sides_);
+        }
+        give_water(params, walls_.get(), liquid_);
+        if constexpr (is_height) liquid_.begin(params.water);
+        settle();
+    }
+
+    const Liquid& liquid() const noexcept { return liquid_; }
+    const Walls<Dim>* walls() const noexcept { return walls_.get(); }
+    /// Liquid in each cell, as a share of the whole cell [-]: now, and when the step began.
+    const Field<Real>& held() const noexcept { return walls_ ? held_ : liquid_.fraction(); }
+    const Field<Real>& held_before() const noexcept { return before_; }
+    /// See MomentumStage.
+    const PerAxis<FaceField<Dim, float>, Dim>* open_friction() const noexcept {
+        return walls_ ? &open_friction_ : nullptr;
+    }
+    const FaceField<Dim>* open_area() const noexcept { return walls_ ? &walls_->open_area() : nullptr; }
+    /// Of momentum, in the stage at work [m3].
+    const FaceField<Dim>& carrier() const noexcept { return liquid_.moved(); }
+    const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }  ///< that carry momentum
+    const Field<std::uint8_t>& wet() const noexcept { return wet_; }  ///< 1 where the pressure is unknown
+    /// Faces of wet cells to cells that are dry for their wall alone: they move as what is beside them did.
+    std::span<const WaterFace> still() const noexcept { return still_; }
+    const WallFriction<Dim>& friction() const noexcept { return friction_; }
+    const WetRows<Dim>& rows() const noexcept { return rows_; }
+
+    /// Copies to beyond periodic sides.
+    void join(auto& field) const noexcept { fill_periodic(field, layout(), sides_); }
+
+    /// Moves the liquid with the velocity over a step.
+    void move(const FaceField<Dim>& velocity, Real step) {
+        rows_.copy(held(), before_);
+        join(before_);
+        liquid_.advance(velocity, step);
+        rows_before_ = rows_;
+        find_rows();
+        find_held();
+        join(liquid_.moved());
+    }
+
+    /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
+    /// So it is where that velocity crosses more than a cell: the pressure of an impact, which lasted one
+    /// step, has pushed it for another, and a speed that carries itself would grow without bound.
+    /// A trace of air makes no surface, or round-off would choose between the two.
+    void carry_by(const FaceField<Dim>& stage, Real step);
+
+    /// Which cells are wet below the present surface and where it crosses the lines between centres; takes
+    /// the pressure from dry cells.
+    void find(Projection<Dim, Real>& projection, Field<Real>& pressure) {
+        WetRows<Dim> rows = rows_;
+        rows.include(rows_before_);
+        const Field<Real>& f = liquid_.fraction();
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout().row_start(plane, row);
+            const Real* const __restrict liquid = f.data() + start;
+            const Real* const __restrict room = walls_ ? walls_->open_volume().data() + start : liquid;
+            std::uint8_t* const __restrict wet = wet_.data() + start;
+            Real* const __restrict p = pressure.data() + start;
+#pragma omp simd
+            for (int i = r.begin; i < r.end; ++i) {
+                const bool is_wet = liquid[i] >= 0.5 && room[i] > 0;
+                wet[i] = is_wet;
+                p[i] = is_wet ? p[i] : 0;
+            }
+        });
+        if (walls_)
+            parallel_for(liquid_.planes().count(), [&](Index i) {
+                const Index c = liquid_.planes().cell[static_cast<std::size_t>(i)];
+                wet_[c] = liquid_.is_liquid(c) && is_open(c);
+                if (!wet_[c]) pressure[c] = 0;
+            });
+        join(wet_);
+        find_open_faces(projection);
+        projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
+    }
+
+    /// Nothing falls through walls.
+    void clear_walls(FaceField<Dim>& u) const {
+        if (walls_)
+            grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
+                for (int a = 0; a < Dim; ++a) u[a][c] *= walls_->open_area()[a][c] > 0;
+            });
+        for (const WaterFace& f : still_) u[f.axis][f.face] = 0;
+    }
+    /// Nothing falls where there is no water: friction of walls would take its part of that.
+    void clear_air(FaceField<Dim>& u) const {
+        grid_->for_each([&](const CellNumber<Dim>&, Offset c) {
+            for (int a = 0; a < Dim; ++a)
+                if ((wet_[c] | wet_[c - layout().stride[a]]) == 0) u[a][c] = 0;
+        });
+    }
+
+    /// Faces of cells cut by walls that have become wet: in both stages the pressure did not know them, and
+    /// air has no momentum. They begin as they were, `fallen` faster: so it finds what it finds beside them.
+    void begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before, const Field<std::uint8_t>& was_wet,
+                     const Point<Dim>& fallen) const;
+
+    /// Velocities of the air beside the water, and of films.
+    void extend(FaceField<Dim>& u) {
+        extension_.clear_left(u, rows_before_, rows_);
+        extension_.extend(u, {wet_, rows_, held(), still_});
+        films_.hold(u, rows_, wet_, held());
+        if constexpr (is_height) liquid_.hold_films(u);
+    }
+
+    /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
+    /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
+    /// back.
+    void share_shear(FaceField<Dim>& result, const FaceField<Dim>& by, Real viscous);
+
+    /// After `find`, in a step's second stage: faces that the water has just reached. What they had of the
+    /// first stage was carried on from others, on which pressure and weight balance; but the pressure is yet
+    /// to be pushed on them, so they get that half of their weight. Cells that walls cut have `begin_faces`.
+    /// `fall`: gravity times half a step [m/s].
+    void weigh_reached(FaceField<Dim>& velocity, const Point<Dim>& fall) const;
+
+    /// To the bit.
+    bool has_walls_of(const SurfaceWater& other) const {
+        if (!walls_ || !other.walls_) return walls_ == other.walls_;
+        const auto same = [](const Field<Real>& a, const Field<Real>& b) {
+            return std::memcmp(a.data(), b.data(), sizeof(Real) * static_cast<std::size_t>(a.size())) == 0;
+        };
+        bool all = same(walls_->open_volume(), other.walls_->open_volume());
+        for (int a = 0; a < Dim; ++a) all = all && same(walls_->open_area()[a], other.walls_->open_area()[a]);
+        return all;
+    }
+
+    /// After walls have changed around the water.
+    void make_room() {
+        if constexpr (!is_height) liquid_.make_room();
+        rows_before_.include(rows_);
+        find_rows();
+        find_held();
+    }
+
+    /// Puts back fractions and surplus as they were saved, in the rows of then, after so many steps.
+    void restore(const Field<Real>& fraction, const Field<Real>& surplus, const WetRows<Dim>& rows,
+                 Index steps) {
+        liquid_.set_steps(steps);
+        rows_.for_each_row([&](int plane, int row, const RowRange& r) {
+            std::fill_n(liquid_.fraction().data() + layout().row_start(plane, row) + r.begin, r.length(), 0);
+        });
+        rows.copy(fraction, liquid_.fraction());
+        Field<Real> kept = liquid_.surplus();
+        settle();
+        rows_before_.include(rows);  // what they hold more than now, water has left
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {  // of what it has closed as well
+            const Offset start = layout().row_start(plane, row);
+            for (Offset c = start + r.begin; c < start + r.end; ++c)
+                kept[c] = surplus[c] + (fraction[c] - liquid_.fraction()[c]);
+        });
+        liquid_.surplus() = std::move(kept);
+        if constexpr (is_height) liquid_.gather(), find_rows(), find_held();
+    }
+
+private:
+    static typename Liquid::Params liquid_params(const GridFluidParams<Dim>& params) {
+        if constexpr (is_height) {
+            return {.steepest = params.steepest_surface, .most_overturning = params.most_overturning};
+        } else {
+            const Real smallest = std::clamp(params.tolerance, 1e-6, 1e-4);
+            return {.smallest_void = smallest, .most_surplus = 10 * smallest};
+        }
+    }
+    const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
+    bool is_cut(Offset c, Offset back) const noexcept {
+        return walls_->open_volume()[c] < 1 || walls_->open_volume()[c - back] < 1;
+    }
+    bool is_open(Offset c) const noexcept { return !walls_ || walls_->open_volume()[c] > 0; }
+
+    void settle() {
+        liquid_.prepare();
+        rows_before_ = rows_;
+        find_rows();
+        find_held();
+    }
+    void find_held() {
+        if (!walls_) return;
+        WetRows<Dim> rows = rows_;
+        rows.include(rows_before_);
+        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout().row_start(plane, row);
+            const Real* const __restrict f = liquid_.fraction().data() + start;
+            const Real* const __restrict v = walls_->open_volume().data() + start;
+            Real* const __restrict held = held_.data() + start;
+            for (int i = r.begin; i < r.end; ++i) held[i] = f[i] * v[i];
+        });
+        join(held_);
+    }
+
+    /// Rows that hold water and what is near, and faces that carry momentum.
+    void find_rows() {
+        const WetRows<Dim>& wet = liquid_.wet();
+        rows_ = wet.dilated(VelocityExtension<Dim>::layers, sides_.periodic_axes());
+        for (int a = 0; a < Dim; ++a) {
+            const int first = sides_.periodic(a) ? 0 : 1;  // a face at a side is the side's
+            faces_[a].for_each_plane([&](int plane) {
+                for (int row = 0; row < layout().rows_per_plane(); ++row) {
+                    RowRange r = wet.row(plane, row);
+                    const int number = a == outer ? plane : row;
+                    if (a == inner) {
+                        const int n = layout().row_length();
+                        const bool around = first == 0 && r.end == n;  // its upper face is the row's first
+                        if (!r.empty()) r = {around ? 0 : std::max(first, r.begin), std::min(n, r.end + 1)};
+                    } else if (number < first) {
+                        r = {};
+                    } else {
+                        const int below = number > 0 ? number - 1 : layout().cells[a] - 1;
+                        r = hull(r, a == outer ? wet.row(below, row) : wet.row(plane, below));
+                    }
+                    faces_[a].row(plane, row) = r;
+                }
+            });
+            faces_[a].share_out();
+        }
+    }
+
+    /// Between wet cells and dry ones, and where water leaves the box.
+    void find_open_faces(const Projection<Dim, Real>& projection) {
+        rows_.for_each_plane([&](int plane) {
+            auto& open = open_in_[static_cast<std::size_t>(plane)];
+            open.clear();
+            for (int row = 0; row < layout().rows_per_plane(); ++row) {
+                const RowRange r = rows_.row(plane, row);
+                const Offset start = layout().row_start(plane, row);
+                for_edge_cells(wet_, layout(), start, r, [&](int i) {
+                    if (is_open(start + i)) add_open_faces(open, start + i, {plane, row, i});
+                });
+            }
+        });
+        open_ = projection.outflows(wet_);
+        still_.clear();
+        for (const auto& found : open_in_)
+            for (const OpenFace& open : found)
+                if (open.slope != 0)
+                    open_.push_back(open);
+                else
+                    still_.push_back({open.face, open.axis});
+    }
+
+    struct Place {
+        int plane, row, i;
+    };
+    /// The faces between a dry cell and its wet neighbours.
+    void add_open_faces(std::vector<OpenFace>& open, Offset c, const Place& place) const {
+        const auto add_along = [&](int a, int number) {
+            const Offset s = layout().stride[a];
+            const int level = Dim == 3 ? place.row : place.i, up = a == vertical;
+            // `above`: 1 where the wet cell is the upper one, -1 where it is the lower.
+            const auto add = [&](Offset face, int above) {
+                Offset wet = above > 0 ? c + s : c - s;
+                if (wet_[wet] == 0 || (walls_ && walls_->open_area()[a][face] == 0)) return;
+                const Real plain = above / grid_->gap(a, above > 0 ? number + 1 : number);
+                const Real share = liquid_.surface_share(wet, level + above * up, a, -above, least_share);
+                // Across a periodic side: what is meant stands at the other end.
+                const int end = number + above;
+                const Offset around = (end < 0 ? 1 : end < grid_->cells(a) ? 0 : -1) * grid_->cells(a) * s;
+                wet += around, face += above > 0 ? around : 0;
+                if (walls_ && liquid_.is_ashore(c))
+                    open.push_back({face, wet, a});
+                else
+                    open.push_back(open_face({face, wet, a, plain / share, plain}, share));
+            };
+            add(c + s, 1);
+            add(c, -1);
+        };
+        add_along(outer, place.plane);
+        add_along(inner, place.i);
+        if constexpr (Dim == 3) add_along(Dim - 1, place.row);
+    }
+
+    /// A cell's pressure that is 0 at its surface pushes all that enters the cell through that face. Where
+    /// walls leave less of the face than of another one of the cell it would shoot out: so the face has the
+    /// inertia of half the way to the next centre at least, of which only what lies below the surface has
+    /// weight. At rest that is the same.
+    OpenFace open_face(OpenFace open, Real share) const {
+        constexpr Real least_way = 0.5;
+        if (!walls_ || share >= least_way) return open;
+        const CellNumber<Dim> cell = layout().number(open.cell);
+        const auto area = [&](int a, Offset face) {
+            return walls_->open_area()[a][face] / grid_->size(a, cell[a]);
+        };
+        const Real own = area(open.axis, open.face);
+        for (int a = 0; a < Dim; ++a)
+            for (const Offset face : {open.cell, open.cell + layout().stride[a]})
+                if (area(a, face) > own) {
+                    open.slope = open.plain / least_way, open.weight = share / least_way;
+                    return open;
+                }
+        return open;
+    }
+
+    const Grid<Dim>* grid_;
+    Sides<Dim> sides_;
+    Liquid liquid_;
+    std::shared_ptr<const Walls<Dim>> walls_;  ///< shared among copies; the liquid points to them
+    WallFilms<Dim> films_;
+    WallFriction<Dim> friction_;
+    PerAxis<FaceField<Dim, float>, Dim> open_friction_;  ///< of sides of momentum's control volumes
+    Field<Real> held_, before_;
+    FaceField<Dim> burden_;  ///< of a face: liquid of others that moves with it [cell], 0 between uses
+    Field<std::uint8_t> wet_;
+    WetRows<Dim> rows_, rows_before_;
+    PerAxis<WetRows<Dim>, Dim> faces_;
+    VelocityExtension<Dim> extension_;
+    std::vector<OpenFace> open_;
+    std::vector<WaterFace> still_;
+    std::vector<std::vector<OpenFace>> open_in_;  ///< [plane]
+};
+
+}  // namespace abrade::detail
