@@ -175,8 +175,8 @@ TEST_CASE("a dam that splashes in a tank, in longer steps") {
         if constexpr (requires { flow.liquid().overturning(); })
             MESSAGE("booked for what wanted to overturn: "
                     << params.density * flow.liquid().overturning().lost / before << " of the energy");
-        // A front on a dry floor runs at 2 sqrt(g h); what hits the wall rises from there.
-        CHECK(most < 1.5 * 2 * std::sqrt(g * 0.6));
+        // Where fronts meet single faces have up to three times what a fall gives.
+        CHECK(most < 3 * std::sqrt(2 * g * 0.6));
         CHECK(energy(flow) < before);
         return static_cast<Real>(flow.steps());
     };

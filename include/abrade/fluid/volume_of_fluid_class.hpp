@@ -77,7 +77,7 @@ public:
           at_walls_(layout_, sizes_, params_.smallest_void), fraction_(layout_.total, 0),
           surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
           band_(layout_, void_amid_water()), wet_(layout_), active_(layout_), touched_(layout_),
-          filled_(layout_.total) {
+          filled_(layout_.total), overfull_(static_cast<std::size_t>(layout_.planes())) {
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
                 areas_[index(a)].push_back(sizes_.face(a, k));
@@ -321,7 +321,12 @@ private:
     void include_inflows();
     void reconstruct(bool within_step);
     void carry_bulk();
-    void carry_row(Offset start, Index level, const RowRange& range, bool cells);
+    struct CellAt {
+        Offset cell;
+        Index level;
+    };
+    void carry_row(Offset start, Index level, const RowRange& range, bool cells,
+                   std::vector<CellAt>& overfull);
     void sweep(int number);
     void fluxes_of_band(int axis);
     void fluxes_of_planes(int axis);
@@ -374,8 +379,9 @@ private:
     Field<Index> plane_of_;
     SurfacePlanes<Dim> planes_, planes_before_;
     SurfaceBand<Dim> band_;
-    WetRows<Dim> wet_, active_, touched_;  ///< touched: active now or in the step before
-    Field<std::uint8_t> filled_;           ///< 1: c of Weymouth and Yue; of cells of the band
+    WetRows<Dim> wet_, active_, touched_;        ///< touched: active now or in the step before
+    Field<std::uint8_t> filled_;                 ///< 1: c of Weymouth and Yue; of cells of the band
+    std::vector<std::vector<CellAt>> overfull_;  ///< [plane] of the bulk, beyond `most_surplus`
     /// Cells outside of the last band that may have to be closed: set from outside, or given what was moved
     /// aside.
     std::vector<Index> settled_;

@@ -173,12 +173,8 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
         const unsigned lanes = lanes_of(all);
         for (int lane = 0; lane < pack_lanes; ++lane) bulk[c + lane] = lanes >> lane & 1;
     });
-    struct Wrong {
-        Offset cell;
-        Index level;
-    };
     const Pack most = Pack(1 + params_.most_surplus);
-    std::vector<std::vector<Wrong>> wrong(static_cast<std::size_t>(layout_.planes()));
+    std::vector<std::vector<CellAt>> wrong(static_cast<std::size_t>(layout_.planes()));
     for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
         const PackMask in_bulk = detail::flags_at(bulk.data() + c);
         const Pack f = Pack::load(fraction_.data() + c), surplus = Pack::load(surplus_.data() + c);
@@ -197,16 +193,20 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
         }
     });
     // One after the other, in order: few, and the same for any number of threads.
+    constexpr std::size_t reach = Dim == 3 ? 2000 : 200;
     for (const auto& plane : wrong)
         for (const auto& [c, level] : plane) {
             const Real room = open_volume(c, level), amount = surplus_[c] * room;
             if (std::abs(surplus_[c]) <= wisp) continue;  // a neighbour has evened it out
             surplus_[c] = share_out(c, level, amount) / room;
-            if (surplus_[c] > wisp) push_surplus(c, level, Dim == 3 ? 2000 : 200);
+            if (surplus_[c] > wisp) push_surplus(c, level, reach);
             const Real left = surplus_[c] * room;
             step.moved_aside += std::abs(amount - left);
             step.left_over += std::abs(surplus_[c]) > wisp;
         }
+    for (const auto& plane : overfull_)
+        for (const auto& [c, level] : plane)
+            if (surplus_[c] > params_.most_surplus) push_surplus(c, level, reach);
 }
 
 template <int Dim>

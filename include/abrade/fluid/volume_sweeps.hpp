@@ -137,21 +137,24 @@ Real VolumeOfFluid<Dim>::rate_of(const FaceField<Dim>& velocity, Index i) const 
 template <int Dim>
 void VolumeOfFluid<Dim>::carry_bulk() {
     const int rows = layout_.rows_per_plane(), planes = layout_.planes(), n = layout_.row_length();
+    for (auto& overfull : overfull_) overfull.clear();
     touched_.for_each_row([&](int p, int r, const RowRange& range) {
         const Offset start = layout_.row_start(p, r);
+        std::vector<CellAt>& overfull = overfull_[index(p)];
         // Whole packs: what lies before and behind the range is dry, and faces of ghosts that follow are
         // those of the upper side.
         RowRange all{range.begin / pack_lanes * pack_lanes, range.end + (range.end == n)};
         all.end = (all.end + pack_lanes - 1) / pack_lanes * pack_lanes;
-        carry_row(start, r, all, true);
-        if (p == planes - 1) carry_row(start + layout_.stride[0], r, all, false);
-        if (Dim == 3 && r == rows - 1) carry_row(start + layout_.stride[Dim - 1], r, all, false);
+        carry_row(start, r, all, true, overfull);
+        if (p == planes - 1) carry_row(start + layout_.stride[0], r, all, false, overfull);
+        if (Dim == 3 && r == rows - 1) carry_row(start + layout_.stride[Dim - 1], r, all, false, overfull);
     });
 }
 
 /// One row of it. Rows of ghosts have faces (of the upper sides), but no cells.
 template <int Dim>
-void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& range, bool cells) {
+void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& range, bool cells,
+                                   std::vector<CellAt>& overfull) {
     const Real* f = fraction_.data() + start;
     Real* surplus = surplus_.data() + start;
     const std::uint8_t* band = band_.data() + start;
@@ -185,11 +188,18 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         const bool deep = in_band == std::array<std::uint8_t, pack_lanes>{};
         Pack lost = gone * at_level(per_volume_, level_of(i));
         if (open_volumes_) lost /= Pack::load(open_volumes_->data() + start + i);
-        if (deep && full == (1u << pack_lanes) - 1)
-            (Pack::load(surplus + i) - lost).store(surplus + i);
-        else
+        if (deep && full == (1u << pack_lanes) - 1) {
+            const Pack left = Pack::load(surplus + i) - lost;
+            left.store(surplus + i);
+            if (!any(left > Pack(params_.most_surplus))) continue;
+        } else {
             for (int lane = 0; lane < pack_lanes; ++lane)
                 if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0) surplus[i + lane] -= lost[lane];
+        }
+        for (int lane = 0; lane < pack_lanes; ++lane)
+            if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0 &&
+                surplus[i + lane] > params_.most_surplus)
+                overfull.push_back({start + i + lane, Dim == 3 ? level : Index{i + lane}});
     }
 }
 
