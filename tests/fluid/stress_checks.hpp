@@ -18,8 +18,9 @@ void check(const std::vector<Scene<Dim>>& scenes) {
                            << seen.overfull << ", asymmetry " << seen.asymmetry << ", " << seen.steps
                            << " steps");
         CHECK(seen.error == "");
-        // Of what a fall through the scene's height gives; where fronts meet, single faces have more.
-        CHECK(seen.speed < (scene.fronts ? 3 : 1.5));
+        // Of what a fall through the scene's height gives; where fronts meet, single faces have three times
+        // that, and by round-off a little more.
+        CHECK(seen.speed < (scene.fronts ? 3.3 : 1.5));
         // How the energy is measured errs by a percent of what thin water has.
         CHECK(seen.gained < 0.06);
         CHECK(seen.lost < 1e-12);  // round-off

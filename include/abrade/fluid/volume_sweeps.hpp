@@ -198,7 +198,8 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         }
         for (int lane = 0; lane < pack_lanes; ++lane)
             if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0 &&
-                surplus[i + lane] > params_.most_surplus)
+                surplus[i + lane] > params_.most_surplus &&
+                (marks_[start + i + lane] & cell_mark::inside) != 0)
                 overfull.push_back({start + i + lane, Dim == 3 ? level : Index{i + lane}});
     }
 }
