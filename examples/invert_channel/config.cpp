@@ -289,6 +289,13 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
         "fluid.model", names,
         {.fallback = "uniform",
          .help = "uniform: prescribed, shallow: depth-averaged, grid: with a free surface, or none"});
+    c.fluid.surface = in.choice(
+        "fluid.surface", {"volume", "height"},
+        {.fallback = "volume",
+         .help = "of the grid's water, volume: of any shape, height: one over each place, which is faster"});
+    c.fluid.energy = in.flag("fluid.energy", {.fallback = true,
+                                              .help = "whether the grid's water keeps its energy account, "
+                                                      "which costs a quarter of a step"});
     c.fluid.spacing = in.number(
         "fluid.spacing",
         {.unit = "m", .fallback = 0.02, .help = "of the grid of water that flows", .bound = Bound::positive});
@@ -496,7 +503,7 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
     read_contact(in, c);
     read_water(in, c);
     read_fluid(in, c);
-    find_engine(c.fluid.model, c.contact_law);
+    find_engine(c.fluid.model, c.contact_law, c.fluid.surface);
     read_sediment(in, c);
     read_wear(in, c);
     read_comparison(in, c);

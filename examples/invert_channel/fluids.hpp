@@ -36,24 +36,30 @@ ChannelRun run_in_uniform_flow_elastic_plastic(const ChannelConfig& config,
                                                const std::filesystem::path& stem);
 ChannelRun run_in_shallow_water(const ChannelConfig& config, const std::filesystem::path& stem);
 ChannelRun run_in_grid_water(const ChannelConfig& config, const std::filesystem::path& stem);
+ChannelRun run_in_grid_water_below_height(const ChannelConfig& config, const std::filesystem::path& stem);
 
 struct ChannelEngine {
     std::string_view fluid, contact;  ///< in the TOML file
     ChannelRun (*run)(const ChannelConfig&, const std::filesystem::path&);
+    std::string_view surface = "";  ///< of a grid's water
 };
-inline constexpr std::array<ChannelEngine, 6> channel_engines{
+inline constexpr std::array<ChannelEngine, 7> channel_engines{
     {{"none", "hysteretic", run_without_fluid},
      {"uniform", "hysteretic", run_in_uniform_flow},
      {"uniform", "linear", run_in_uniform_flow_linear},
      {"uniform", "elastic_plastic", run_in_uniform_flow_elastic_plastic},
      {"shallow", "hysteretic", run_in_shallow_water},
-     {"grid", "hysteretic", run_in_grid_water}}};
+     {"grid", "hysteretic", run_in_grid_water, "volume"},
+     {"grid", "hysteretic", run_in_grid_water_below_height, "height"}}};
 
-/// Throws InputError where none was compiled for these two.
-inline const ChannelEngine& find_engine(std::string_view fluid, std::string_view contact) {
+/// Throws InputError where none was compiled for these; the surface counts where a fluid has one.
+inline const ChannelEngine& find_engine(std::string_view fluid, std::string_view contact,
+                                        std::string_view surface) {
     std::string all;
     for (const ChannelEngine& one : channel_engines) {
-        if (one.fluid == fluid && one.contact == contact) return one;
+        if (one.fluid == fluid && one.contact == contact && (one.surface.empty() || one.surface == surface))
+            return one;
+        if (!one.surface.empty() && one.surface != surface) continue;
         all += (all.empty() ? "" : ", ") + std::string(one.fluid) + " with " + std::string(one.contact);
     }
     fail({"fluid.model with contact.law", "a pair that an engine was compiled for: " + all, "",

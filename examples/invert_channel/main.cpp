@@ -159,7 +159,7 @@ int run(const Options& options) {
         std::cerr << "note: " << left.string()
                   << " was left by a run that was killed; delete it if you do not need it\n";
 
-    const ChannelEngine& engine = find_engine(config.fluid.model, config.contact_law);
+    const ChannelEngine& engine = find_engine(config.fluid.model, config.contact_law, config.fluid.surface);
     const ChannelRun run = engine.run(config, folder.path("series"));
     if (run.code != 0) {
         std::cerr << "error: " << run.went_wrong << "\n";

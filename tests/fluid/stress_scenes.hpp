@@ -311,31 +311,6 @@ struct Outcome {
     std::string where{};  ///< the fastest face
 };
 
-/// Mechanical energy of the liquid [J/density]: each cell's stands as low as its neighbours allow.
-template <class Flow, int Dim>
-Real energy(const Flow& flow, const Scene<Dim>& scene) {
-    const auto& grid = flow.grid();
-    const auto& f = flow.liquid().fraction();
-    const auto& surplus = flow.liquid().surplus();
-    const Offset up = grid.layout().stride[Dim - 1];
-    const Real weight = -scene.params.gravity[Dim - 1];
-    Real potential = 0;
-    grid.for_each([&](const CellNumber<Dim>& c, Offset at) {
-        if (f[at] + surplus[at] == 0) return;
-        const Real open = flow.walls() ? flow.walls()->open_volume()[at] : 1;
-        Point<Dim> x = grid.centre(c);
-        const Real share = std::min(f[at], Real(1));
-        if (f[at] < 1 && f[at + up] < f[at - up])
-            x[Dim - 1] -= 0.5 * (1 - share) * grid.size(Dim - 1, c[Dim - 1]);
-        if (f[at] < 1 && f[at + up] > f[at - up])
-            x[Dim - 1] += 0.5 * (1 - share) * grid.size(Dim - 1, c[Dim - 1]);
-        Real height = weight * x[Dim - 1];
-        for (int a = 0; a + 1 < Dim; ++a) height -= scene.params.gravity[a] * x[a];
-        potential += height * (f[at] + surplus[at]) * open * grid.volume(c);
-    });
-    return potential + flow.kinetic_energy() / scene.params.density;
-}
-
 template <class Flow, int Dim>
 void look(const Flow& flow, const Scene<Dim>& scene, Outcome& seen) {
     const auto& grid = flow.grid();
@@ -384,14 +359,18 @@ Outcome run(const Scene<Dim>& scene) {
         // What the water can lose: its fall to a heap on the floor, or what came in with it.
         const Real scale = volume * (g * scene.fall + 0.5 * square(scene.inflow));
         const bool driven = !closed || scene.params.body_force || scene.moved;
-        Real lowest = energy(flow, scene);
+        flow.open_energy_account();
+        const auto energy = [&] {
+            return (flow.energy().kinetic + flow.energy().potential) / scene.params.density;
+        };
+        Real lowest = energy();
         while (flow.time() < scene.end) {
             if (scene.moved) flow.set_wall(scene.moved(flow.time()));
             flow.step(std::min(flow.stable_step().seconds, scene.end / 20));
             ++seen.steps;
             look(flow, scene, seen);
             if (!driven) {
-                const Real now = energy(flow, scene);
+                const Real now = energy();
                 seen.gained = std::max(seen.gained, (now - lowest) / scale);
                 lowest = std::min(lowest, now);
             }

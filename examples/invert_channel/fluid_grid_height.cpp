@@ -1,0 +1,11 @@
+// Water on a grid below a surface that is a height.
+
+#include "fluid_grid.hpp"
+
+namespace abrade::examples {
+
+ChannelRun run_in_grid_water_below_height(const ChannelConfig& config, const std::filesystem::path& stem) {
+    return run_below<HeightSurface>(config, stem);
+}
+
+}  // namespace abrade::examples
