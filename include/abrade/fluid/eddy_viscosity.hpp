@@ -80,7 +80,7 @@ public:
                     for (int k = i; k < i + lanes; ++k) nu[k] = length2[k] * std::sqrt(nu[k]);
                 if (held) {
                     const Real* const __restrict h = held->data() + start;
-                    for (int i = r.begin; i < r.end; ++i) nu[i] = h[i] > 0 ? nu[i] : State(0);
+                    for (int i = r.begin; i < r.end; ++i) nu[i] = h[i] > least_held ? nu[i] : State(0);
                 }
                 for (int i = r.begin; i < r.end; ++i) most = std::max(most, nu[i]);
             }
@@ -100,6 +100,9 @@ public:
     Real largest() const noexcept { return largest_; }  ///< [m2/s]
 
 private:
+    /// Liquid that fills less of a cell has no layers for eddies to mix; beside it velocities are the air's.
+    static constexpr Real least_held = 0.01;
+
     /// A plane of the strain's shear.
     struct Pair {
         int a, b, number;

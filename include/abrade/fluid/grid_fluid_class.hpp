@@ -159,6 +159,7 @@ public:
         detail::check_inflows(next.params_, water.liquid(), water.walls());
         water.find(next.projection_, next.pressure_);
         next.find_pressure_of_weight(1e-3);  // the old one knows nothing of where the surface is now
+        next.give_discharge();
         next.look_at_walls();
         next.heights_.find(*grid_, water.rows(), water.held());
         next.finish(next.velocity_);

@@ -218,4 +218,25 @@ void VolumeOfFluid<Dim>::make_room() {
     locate();
 }
 
+template <int Dim>
+void VolumeOfFluid<Dim>::locate() {
+    touched_ = active_;
+    active_ = wet_.dilated(2, sides_.periodic_axes());
+    include_inflows();
+    touched_.include(active_);
+    fill_ghosts(fraction_, touched_, sides_);
+    const std::vector<Index> band_before(band_.cells().begin(), band_.cells().end());
+    band_.find(fraction_, marks_, active_, sides_);
+    // What has left the band with less air than makes a surface is full from now on; the rest is surplus.
+    const auto close = [&](Index c) {
+        if (fraction_[c] < 1 - void_amid_water() || band_.holds(c)) return;
+        surplus_[c] += fraction_[c] - 1;
+        fraction_[c] = 1;
+    };
+    parallel_for(static_cast<Index>(band_before.size()), [&](Index i) { close(band_before[index(i)]); });
+    for (const Index c : settled_) close(c);
+    settled_.clear();
+    reconstruct(false);
+}
+
 }  // namespace abrade
