@@ -95,6 +95,9 @@ holds "Manning's speed on a grid" "($(value grid/summary.json water_speed_m_per_
 holds "the ledger closes on a grid" "$(value grid/summary.json ledger_residual_relative) < 1e-6"
 holds "the water's energy account closes" "$(value grid/summary.json water_energy_residual_relative) < 1e-9"
 holds "water comes in with energy" "$(value grid/summary.json water_energy_inflow_joule) > 0"
+"$program" "${short[@]}" --fluid grid --set 'fluid.surface="height"' --set fluid.energy=false --set fluid.spacing=0.04 --set run.end_time=0.03 --out height > height.log || fail "water below a height: $(cat height.log)"
+holds "a height's depth is near that of volume of fluid" "$(value height/summary.json water_depth_m) < 1.05 * $(value grid/summary.json water_depth_m) && $(value height/summary.json water_depth_m) > 0.95 * $(value grid/summary.json water_depth_m)"
+grep -q water_energy height/summary.json && fail "an energy account that was not asked for"
 "$program" "${short[@]}" --fluid none --set run.end_time=0.01 --out none > none.log || fail "a dry channel: $(cat none.log)"
 grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
 
@@ -220,6 +223,7 @@ refused "bad measured points" 'points_bad.csv.*(row|line|:) *2' --set 'compare.m
 refused "unknown fluid" 'fluid.model.*shallow' --fluid shalow
 refused "inflow too deep" 'at most critical.*got 2 m' --fluid shallow --set fluid.inflow_depth=2
 refused "a coarse grid" 'fluid.spacing.*at most a quarter.*0.5 m' --fluid shallow --set fluid.spacing=0.5
+refused "an unknown surface" 'fluid.surface.*height' --fluid grid --set 'fluid.surface="heigth"'
 refused "a law of its own water" 'fluid.model with contact.law.*uniform with linear.*got grid with linear' --fluid grid --set 'contact.law="linear"'
 refused "a key of another law" 'contact.yield_pressure.*hysteretic.*no use' --set contact.yield_pressure=1e8
 refused "a law without a restitution" 'contact.restitution.*left out.*elastic_plastic' plain.toml --set concrete.stiffness=2e6 --set 'contact.law="elastic_plastic"' --set contact.yield_pressure=1e8 --set contact.restitution=0.5
