@@ -289,8 +289,9 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
         "fluid.model", names,
         {.fallback = "uniform",
          .help = "uniform: prescribed, shallow: depth-averaged, grid: with a free surface, or none"});
+    constexpr std::array<std::string_view, 2> surfaces{"volume", "height"};
     c.fluid.surface = in.choice(
-        "fluid.surface", {"volume", "height"},
+        "fluid.surface", surfaces,
         {.fallback = "volume",
          .help = "of the grid's water, volume: of any shape, height: one over each place, which is faster"});
     c.fluid.energy = in.flag("fluid.energy", {.fallback = true,
