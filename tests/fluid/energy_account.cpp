@@ -99,8 +99,9 @@ TEST_CASE(
             }
         const Real off = flow.energy().potential / exact - 1;
         MESSAGE(std::string(sloping ? "sloping bed" : "uneven levels") << ": off by " << off);
-        // Cells less than a tenth open are closed; here that is 0.7 % of what lies on the bed.
-        CHECK(std::abs(off) < (sloping ? 0.01 : 1e-6));
+        // Where the surface ends on the bed, cells take its place from others, and slivers are closed: of these
+        // cells, two and a half times as long as high, those less than 6e-3 open.
+        CHECK(std::abs(off) < (sloping ? 1e-3 : 1e-6));
     }
 }
 

@@ -90,7 +90,7 @@ TEST_CASE("steps beyond the stable one are refused with the limit that they brea
     GridFluid<2> flow(basin(column));
     flow.advance(0.2);
     for (const Real times : {1.01, 4.0, 100.0}) {
-        CHECK(names(push(flow, times, 1), {"dt", "beyond stable_step(), which volume of fluid limits to"}));
+        CHECK(names(push(flow, times, 1), {"dt", "beyond stable_step(), which "}));
         run(flow, 0.05);
     }
 }

@@ -159,7 +159,8 @@ public:
         detail::check_inflows(next.params_, water.liquid(), water.walls());
         water.find(next.projection_, next.pressure_);
         next.find_pressure_of_weight(1e-3);  // the old one knows nothing of where the surface is now
-        next.give_discharge();
+        if (params_.steady_sides) next.give_discharge();
+        next.enters_ = next.sides_.rate_of_inflow(next.velocity_);
         next.look_at_walls();
         next.heights_.find(*grid_, water.rows(), water.held());
         next.finish(next.velocity_);
@@ -240,9 +241,14 @@ private:
 
     void refuse_beyond_stable(Real dt) const;
 
+    /// A given force may not know the time beyond the run: where it fails, it fails the step that asks for
+    /// it.
     FluidStep smooth(FluidStep step) const {
-        if (params_.body_force && std::isfinite(step.seconds))
+        if (!params_.body_force || !std::isfinite(step.seconds)) return step;
+        try {
             step.lower(detail::smooth_step<Dim>(params_.body_force, time_, step.seconds), "body force");
+        } catch (...) {
+        }
         return step;
     }
 

@@ -175,7 +175,11 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::restore() {
         std::swap(velocity_, saved_velocity_), std::swap(pressure_, saved_pressure_);
     }
     sides_.back(velocity_);
-    if constexpr (has_surface) finish(velocity_), sides_.fill(velocity_);  // what the step reached, too
+    if constexpr (has_surface) {
+        finish(velocity_);  // what the step reached, too
+        rows()->copy(record_.velocity(), velocity_);
+        sides_.fill(velocity_);
+    }
 }
 
 template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>

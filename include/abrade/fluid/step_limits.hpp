@@ -61,7 +61,8 @@ Real smooth_step(const BodyForce<Dim>& force, Real time, Real longest) {
             path += (now - last).norm(), largest = std::max(largest, now.norm());
             last = now;
         }
-        if (!(path - (last - first).norm() > 0.1 * largest) || dt < shortest * longest) return dt;
+        if (!(path - (last - first).norm() > 0.1 * largest)) return dt;
+        if (dt < shortest * longest) return longest;
     }
 }
 

@@ -212,7 +212,8 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
 template <int Dim>
 void VolumeOfFluid<Dim>::make_room() {
     grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) {
-        if (surplus_[c] > wisp) push_surplus(c, cell[vertical], static_cast<std::size_t>(layout_.total));
+        if (surplus_[c] > params_.most_surplus)
+            push_surplus(c, cell[vertical], static_cast<std::size_t>(layout_.total));
     });
     wet_.find(fraction_);
     locate();

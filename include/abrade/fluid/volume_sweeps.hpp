@@ -377,10 +377,10 @@ Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume) const n
     if (fraction_[c] >= 0.5) return 0;
     const auto open = [&](Offset at) { return open_volumes_ ? (*open_volumes_)[at] : 1; };
     const Offset behind = c - way * layout_.stride[index(axis)];
-    constexpr std::uint8_t room = cell_mark::inside | cell_mark::open;
-    const bool held = (marks_[behind] & room) == room || sides_.periodic(axis)
-                          ? fraction_[behind] * open(behind) >= fraction_[c] * open(c)
-                          : open(c) == 1 && !(gravity_[axis] * way > 0);
+    const bool open_behind = (marks_[behind] & cell_mark::open) != 0 &&
+                             ((marks_[behind] & cell_mark::inside) != 0 || sides_.periodic(axis));
+    const bool held = open_behind ? fraction_[behind] * open(behind) >= fraction_[c] * open(c)
+                                  : open(c) == 1 && !(gravity_[axis] * way > 0);
     return held ? 0 : fraction_[c] * volume;
 }
 

@@ -17,8 +17,7 @@ namespace abrade::detail {
 ///   v <- v - min(v . n, 0) n,   v: velocity of the faces that the cell gives liquid to, n: the wall's
 ///   normal, which the divergence theorem gives from the apertures of the cell's faces, sides of the box
 ///   included.
-/// Where all of them are open or closed as a whole, each axis has a wall of its own: a corner. The kinetic
-/// energy of a film falls by that, never grows.
+/// Where all of them are open or closed as a whole, each axis has a wall of its own: a corner.
 template <int Dim>
 class WallFilms {
 public:
@@ -86,15 +85,16 @@ public:
             else
                 push_[k] = std::max(-film.normal.dot(v), Real(0)) * film.normal;
         });
-        starts_.for_each(&rows, [&](std::size_t k) {
-            if (push_[k].isZero(0)) return;
-            for (int a = 0; a < Dim; ++a)
-                for (const int end : {0, 1}) {
+        // A face is the upper one of one cell, the lower one of another: cells of both planes may give to it.
+        for (const int end : {0, 1})
+            starts_.for_each(&rows, [&](std::size_t k) {
+                if (push_[k].isZero(0)) return;
+                for (int a = 0; a < Dim; ++a) {
                     const Offset face = cells_[k].face[a][end];
                     if (face >= 0 && gives(cells_[k], a, end, u[a][face] + push_[k][a]))
                         u[a][face] += push_[k][a];
                 }
-        });
+            });
     }
 
 private:

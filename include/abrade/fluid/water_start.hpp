@@ -6,7 +6,9 @@
 #include <abrade/fluid/volume_of_fluid.hpp>
 #include <abrade/fluid/water_among_walls.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -46,11 +48,17 @@ void refuse_in_full_box(const GridFluidParams<Dim>& params) {
              "given");
 }
 
-/// Walls inside the box, none where none are given. Throws as `Walls` does.
+/// Walls inside the box, none where none are given. In cells that are longer than high a sliver takes in, by
+/// its large faces, many times what its small ones let out: of such cells more are closed, up to a tenth of
+/// those of 10:1. Throws as `Walls` does.
 template <int Dim>
 std::shared_ptr<const Walls<Dim>> walls_inside(const Grid<Dim>& grid, const GridFluidParams<Dim>& params) {
     if (!params.wall) return nullptr;
-    const typename Walls<Dim>::Params how{.closed_below = 0.1, .called = "GridFluid.wall"};
+    Real longest = 0, shortest = std::numeric_limits<Real>::infinity();
+    for (int a = 0; a < Dim; ++a)
+        longest = std::max(longest, grid.largest(a)), shortest = std::min(shortest, grid.smallest(a));
+    const Real closed_below = std::min(1e-3 * square(longest / shortest), 0.1);
+    const typename Walls<Dim>::Params how{.closed_below = closed_below, .called = "GridFluid.wall"};
     const auto walls = std::make_shared<Walls<Dim>>(grid, params.wall, how);
     walls->repeat(params.sides, params.wall);
     return walls;
