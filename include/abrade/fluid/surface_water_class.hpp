@@ -324,7 +324,7 @@ private:
     /// weight. At rest that is the same.
     OpenFace open_face(OpenFace open, Real share) const {
         constexpr Real least_way = 0.5;
-        if (!walls_ || share >= least_way || walls_->open_volume()[open.cell] == 1) return open;
+        if (!walls_ || share >= least_way) return open;
         const CellNumber<Dim> cell = layout().number(open.cell);
         const auto area = [&](int a, Offset face) {
             return walls_->open_area()[a][face] / grid_->size(a, cell[a]);
