@@ -42,7 +42,7 @@ void same_wherever_it_begins(const GridFluidParams<Dim>& params, const CellNumbe
     Real volume_off = 0;
     const auto run = [&](int count) {
         for (int k = 0; k < count; ++k) {
-            const Real dt = 0.999 * flow.stable_step().seconds;
+            const Real dt = std::min(flow.stable_step().seconds, flow_moved.stable_step().seconds);
             flow.step(dt), flow_moved.step(dt);
             volume_off = std::max(volume_off, std::abs(flow.liquid().volume() / volume - 1));
         }

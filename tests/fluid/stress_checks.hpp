@@ -25,7 +25,7 @@ void check(const std::vector<Scene<Dim>>& scenes) {
         CHECK(seen.gained < (scene.fronts ? 0.05 : 0.08));
         CHECK(seen.lost < 1e-12);  // round-off
         // Ten times what makes no surface may stay, and what the last projection has left comes to it.
-        CHECK(seen.overfull < (scene.moved ? 1e-4 : 2e-5));
+        CHECK(seen.overfull < (scene.moved ? 5e-4 : 2e-5));
         // A cell is wet from half full on: round-off of the pressure decides when.
         CHECK(seen.asymmetry < 0.1);
     }

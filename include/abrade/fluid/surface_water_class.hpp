@@ -148,8 +148,10 @@ public:
     void extend(FaceField<Dim>& u) {
         extension_.clear_left(u, rows_before_, rows_);
         extension_.extend(u, {wet_, rows_, held(), still_});
-        films_.hold(u, rows_, wet_, held());
-        if constexpr (is_height) liquid_.hold_films(u);
+        if constexpr (is_height)
+            liquid_.hold_films(u);
+        else
+            films_.hold(u, rows_, wet_, held());
     }
 
     /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these

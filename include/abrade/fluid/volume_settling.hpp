@@ -62,7 +62,8 @@ Real VolumeOfFluid<Dim>::share_out(Offset c, Index level, Real amount) {
 }
 
 /// Pushes liquid that a cell has no room for along full cells to the nearest ones that have room, in
-/// proportion to that; each cell on the way hands on to the next. What finds none among `reach` cells stays.
+/// proportion to that, or draws what it lacks from the nearest ones that hold it; each cell on the way hands
+/// on to the next. What finds none among `reach` cells stays.
 template <int Dim>
 void VolumeOfFluid<Dim>::push_surplus(Offset c, Index level, std::size_t reach) {
     struct Way {
@@ -73,6 +74,7 @@ void VolumeOfFluid<Dim>::push_surplus(Offset c, Index level, std::size_t reach) 
         Offset face = 0, twin = -1;  ///< twin: the same face at the other end of a periodic axis, or none
         Real room = 0;               ///< [m3]
     };
+    const Real sign = surplus_[c] > 0 ? 1 : -1;
     std::vector<Way> ways{{c, 0, level}};
     std::unordered_set<Offset> seen{c};
     const auto look_beside = [&](std::size_t at) {
@@ -96,9 +98,10 @@ void VolumeOfFluid<Dim>::push_surplus(Offset c, Index level, std::size_t reach) 
                     (open_faces_ && (*open_faces_)[index(a)][way.face] <= 0) || !seen.insert(way.cell).second)
                     continue;
                 // A full cell may lack what the next projection draws in: that much is no room.
-                const Real lacks = 1 - fraction_[way.cell] - surplus_[way.cell];
-                if (fraction_[way.cell] < 1 || lacks > params_.most_surplus)
-                    way.room = std::max(lacks, Real(0)) * open_volume(way.cell, way.level);
+                const Real holds = fraction_[way.cell] + surplus_[way.cell];
+                const Real room = sign > 0 ? 1 - holds : fraction_[way.cell] < 1 ? holds : holds - 1;
+                if (fraction_[way.cell] < 1 || room > params_.most_surplus)
+                    way.room = std::max(room, Real(0)) * open_volume(way.cell, way.level);
                 ways.push_back(way);
             }
     };
@@ -115,12 +118,12 @@ void VolumeOfFluid<Dim>::push_surplus(Offset c, Index level, std::size_t reach) 
             set_cell(to.cell, fraction_[to.cell] + surplus_[to.cell] + share);
     };
     // Layer by layer: cells as far away have the same right.
-    for (std::size_t first = 0, last = 1; first < last && last < reach && surplus_[c] > wisp;) {
+    for (std::size_t first = 0, last = 1; first < last && last < reach && sign * surplus_[c] > wisp;) {
         for (; first < last; ++first) look_beside(first);  // which are full by now
         Real room = 0;
         for (std::size_t k = last; k < ways.size(); ++k) room += ways[k].room;
-        const Real amount = std::min(surplus_[c] * open_volume(c, level), room);
-        if (amount > 0) {
+        const Real amount = sign * std::min(sign * surplus_[c] * open_volume(c, level), room);
+        if (amount != 0) {
             for (std::size_t k = last; k < ways.size(); ++k)
                 if (ways[k].room > 0) give(ways[k], amount * (ways[k].room / room));
             surplus_[c] -= amount / open_volume(c, level);
@@ -206,7 +209,7 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
         }
     for (const auto& plane : overfull_)
         for (const auto& [c, level] : plane)
-            if (surplus_[c] > params_.most_surplus) push_surplus(c, level, reach);
+            if (std::abs(surplus_[c]) > params_.most_surplus) push_surplus(c, level, reach);
 }
 
 template <int Dim>

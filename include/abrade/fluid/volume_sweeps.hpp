@@ -191,14 +191,14 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         if (deep && full == (1u << pack_lanes) - 1) {
             const Pack left = Pack::load(surplus + i) - lost;
             left.store(surplus + i);
-            if (!any(left > Pack(params_.most_surplus))) continue;
+            if (!any((left > Pack(params_.most_surplus)) | (left < Pack(-params_.most_surplus)))) continue;
         } else {
             for (int lane = 0; lane < pack_lanes; ++lane)
                 if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0) surplus[i + lane] -= lost[lane];
         }
         for (int lane = 0; lane < pack_lanes; ++lane)
             if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0 &&
-                surplus[i + lane] > params_.most_surplus &&
+                std::abs(surplus[i + lane]) > params_.most_surplus &&
                 (marks_[start + i + lane] & cell_mark::inside) != 0)
                 overfull.push_back({start + i + lane, Dim == 3 ? level : Index{i + lane}});
     }
