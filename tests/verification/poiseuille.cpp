@@ -42,7 +42,7 @@ TEST_CASE("between walls at an angle to the grid: second order is missed") {
     struct Case {
         Real degrees, profile, resistance;  ///< as above
     };
-    for (const Case& wall : {Case{10, 0.0082, 0.0103}, Case{30, 0.0084, 0.0197}, Case{45, 0.0070, 0.0049}}) {
+    for (const Case& wall : {Case{10, 0.0084, 0.0121}, Case{30, 0.0084, 0.0197}, Case{45, 0.0070, 0.0049}}) {
         const Real angle = wall.degrees * pi / 180;
         const Errors coarse = Channel{.cells = 8, .angle = angle}.errors(),
                      fine = Channel{.cells = 16, .angle = angle}.errors();
