@@ -6,10 +6,12 @@
 #include <doctest/doctest.h>
 
 #include "../message_of.hpp"
+#include "height_cells.hpp"
 
 #include <cmath>
 
 using namespace abrade;
+using namespace height_cells;
 
 namespace {
 
@@ -21,26 +23,6 @@ GridFluidParams<2> box(int along, int up, Real spacing) {
     return {.grid = {.cells = {along, up}, .spacing = {spacing, spacing}},
             .sides = Sides<2>::all(Side::slip),
             .gravity = {0, -g}};
-}
-
-/// Fractions that columns hold, not what the class says of itself.
-Real volume_in_cells(const auto& flow) {
-    long double sum = 0;
-    flow.grid().for_each([&](const auto& cell, Offset c) {
-        const Real open = flow.walls() ? flow.walls()->open_volume()[c] : 1;
-        sum += static_cast<long double>(open * flow.grid().volume(cell)) *
-               static_cast<long double>(flow.liquid().fraction()[c] + flow.liquid().surplus()[c]);
-    });
-    return static_cast<Real>(sum);
-}
-
-Real fastest(const auto& flow) {
-    Real most = 0;
-    flow.grid().for_each([&](const auto&, Offset c) {
-        for (int a = 0; a < 2; ++a)
-            if (flow.liquid().fraction()[c] > 0) most = std::max(most, std::abs(flow.velocity()[a][c]));
-    });
-    return most;
 }
 
 /// Steps of its own up to a time; volume in each.

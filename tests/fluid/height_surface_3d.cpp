@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "height_cells.hpp"
+
 #if defined(_OPENMP)
 #include <omp.h>
 #endif
@@ -11,6 +13,7 @@
 #include <cmath>
 
 using namespace abrade;
+using namespace height_cells;
 
 namespace {
 
@@ -24,25 +27,6 @@ GridFluidParams<3> tank(int n, PlaceFunction<3> wall, PlaceFunction<3> water) {
     params.wall = std::move(wall);
     params.water = std::move(water);
     return params;
-}
-
-Real volume_in_cells(const Flow& flow) {
-    long double sum = 0;
-    flow.grid().for_each([&](const auto& cell, Offset c) {
-        const Real open = flow.walls() ? flow.walls()->open_volume()[c] : 1;
-        sum += static_cast<long double>(open * flow.grid().volume(cell)) *
-               static_cast<long double>(flow.liquid().fraction()[c] + flow.liquid().surplus()[c]);
-    });
-    return static_cast<Real>(sum);
-}
-
-Real fastest(const Flow& flow) {
-    Real most = 0;
-    flow.grid().for_each([&](const auto&, Offset c) {
-        for (int a = 0; a < 3; ++a)
-            if (flow.liquid().fraction()[c] > 0) most = std::max(most, std::abs(flow.velocity()[a][c]));
-    });
-    return most;
 }
 
 const PlaceFunction<3> hill = [](const Vec3& x) {

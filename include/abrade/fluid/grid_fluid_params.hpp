@@ -74,13 +74,6 @@ struct GridFluidParams {
         return sum;
     }
 
-    /// Axes along which gravity or a body force may act.
-    PerAxis<bool, Dim> pressed_axes() const {
-        PerAxis<bool, Dim> pressed;
-        for (int a = 0; a < Dim; ++a) pressed[a] = gravity[a] != 0 || body_force;
-        return pressed;
-    }
-
     void validate() const {
         grid.validate();
         sides.validate();
