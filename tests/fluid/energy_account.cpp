@@ -117,7 +117,8 @@ TEST_CASE("water at rest keeps what it has") {
     look_at("rest", flow);
     const WaterEnergy& e = flow.energy();
     const Real weight = 1000 * g * 0.5;
-    CHECK(e.potential == doctest::Approx(0.25 * weight).epsilon(1e-9).scale(0));
+    // To the tolerance of its pressure.
+    CHECK(e.potential == doctest::Approx(0.25 * weight).epsilon(1e-8).scale(0));
     CHECK(e.kinetic < 1e-12 * weight);
     CHECK(std::abs(e.numerical) < 1e-9 * weight);
     CHECK(e.supplied() == 0);
@@ -153,10 +154,8 @@ TEST_CASE("a standing wave over ten periods: what the scheme gains") {
         look_at("wave of " + short_text(height) + " m", flow);
         MESSAGE("lost in ten periods " << 100 * e.numerical / wave << " % of the wave, gained in one at most "
                                        << 100 * most_gained / wave << " %");
-        CHECK(most_gained < 3e-3 * wave);
-        WARN(most_gained < 2e-3 * wave);
-        WARN(least > -2e-3 * wave);  // missed by the small wave: its gain grows
-        CHECK(least > -0.03 * wave);
+        CHECK(most_gained < 2e-3 * wave);
+        CHECK(least > -2e-3 * wave);
     }
 }
 
@@ -256,9 +255,12 @@ TEST_CASE("a laminar film on a side and on a bed inside a cell: gravity's work i
         const Real exact = 1000 * 0.4 * square(g * std::sin(slope)) * cube(0.78) / (3 * 0.2);
         CHECK(e.body_force == doctest::Approx(exact).epsilon(0.01).scale(0));
         CHECK(e.dissipated() == doctest::Approx(e.body_force).epsilon(0.01).scale(0));
-        CHECK(e.dissipated() + e.gained() == doctest::Approx(e.body_force).epsilon(1e-6).scale(0));
+        // The film's uppermost fifth of a cell rides: what of gravity's push it gives on, as in an inelastic
+        // impact, is lost in part.
+        const Real least = bed > 0 ? 2e-5 : 1e-6;
+        CHECK(e.dissipated() + e.gained() == doctest::Approx(e.body_force).epsilon(least).scale(0));
         CHECK((e.wall_friction > 0) == (bed > 0));
-        CHECK(std::abs(e.numerical) < 1e-6 * e.body_force);
+        CHECK(std::abs(e.numerical) < least * e.body_force);
     }
 }
 

@@ -399,17 +399,22 @@ TEST_CASE("a planar surface is exact up to walls that cut cells") {
                        through(0.5, 0.45 + 0.2 * uniform(random));
         const auto water_level = [&](const Point<2>& x) { return up.dot(x - through); };
         const auto in_wall = [](const Point<2>& x) { return (x - Point<2>(0.5, 0.6)).norm() - 0.47; };
-        Field<Real> open(grid.layout().total, 0), wet(grid.layout().total, 0), plane = wet;
+        Field<Real> open(grid.layout().total, 0), plane = open;
         fill_below<2>(open, grid, in_wall, 4);
-        fill_below<2>(
-            wet, grid, [&](const Point<2>& x) { return std::max(in_wall(x), water_level(x)); }, 4);
         fill_below<2>(plane, grid, water_level, 0);
         const Walls<2> walls(grid, [&](const Point<2>& x) { return -in_wall(x); });
         VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall));
         water.set_walls(&walls.open_area(), &open);
-        grid.for_each([&](const CellNumber<2>&, Offset c) {
+        grid.for_each([&](const CellNumber<2>& cell, Offset c) {
+            const auto at = [&](const Point<2>& unit) {
+                return -water_level({grid.face(0, cell[0]) + unit[0] * grid.size(0, cell[0]),
+                                     grid.face(1, cell[1]) + unit[1] * grid.size(1, cell[1])});
+            };
             if (open[c] > smallest_open_volume)
-                water.fraction()[c] = open[c] == 1 ? plane[c] : std::clamp(wet[c] / open[c], 0.0, 1.0);
+                water.fraction()[c] = open[c] == 1
+                                          ? plane[c]
+                                          : detail::WaterAmongWalls<2>::share(
+                                                walls.open_area(), grid.layout().stride, c, open[c], at);
         });
         water.prepare();
         grid.for_each([&](const CellNumber<2>& cell, Offset c) {

@@ -1,4 +1,5 @@
-// The water of the start in cells that walls cut: closed forms, and what lies on both sides of a surface.
+// Water in cells that walls cut: closed forms, and what lies on both sides of a surface.
+#include <abrade/fluid/walls.hpp>
 #include <abrade/fluid/water_among_walls.hpp>
 
 #include <doctest/doctest.h>
@@ -13,7 +14,11 @@ template <int Dim>
 Real share(const auto& wall, const auto& water) {
     typename Grid<Dim>::Params params;
     params.cells.fill(1), params.spacing = Point<Dim>::Ones();
-    return detail::WaterAmongWalls<Dim>::share(Grid<Dim>(params), {}, wall, water);
+    const Grid<Dim> grid(params);
+    const Walls<Dim> walls(grid, wall, {.closed_below = 0, .bounded_slope = false});
+    const Offset cell = grid.layout().at({});
+    return detail::WaterAmongWalls<Dim>::share(walls.open_area(), grid.layout().stride, cell,
+                                               walls.open_volume()[cell], water);
 }
 
 }  // namespace

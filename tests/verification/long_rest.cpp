@@ -5,8 +5,6 @@
 
 #include <doctest/doctest.h>
 
-#include <vector>
-
 using namespace waves;
 
 namespace {
@@ -62,14 +60,6 @@ Real report(Real depth, Real slope, bool curved) {
     return found;
 }
 
-/// Of the scenes of these depths [m] how many rest.
-template <int Dim>
-int resting(const std::vector<Real>& depths, Real slope) {
-    int met = 0;
-    for (const Real depth : depths) met += report<Dim>(depth, slope, true) < gate;
-    return met;
-}
-
 }  // namespace
 
 TEST_CASE("level and tilted, in a box and in an invert") {
@@ -77,47 +67,30 @@ TEST_CASE("level and tilted, in a box and in an invert") {
     for (const Real depth : {0.246, 0.247})
         for (const Real slope : {0.0, 0.05})
             for (const bool curved : {false, true}) {
-                const Real found = report<2>(depth, slope, curved);
-                if (depth == 0.247 && slope > 0 && curved) {
-                    WARN(found < gate);
-                    CHECK(found < 1e-5);
-                } else {
-                    CHECK(found < gate);
-                }
+                CHECK(report<2>(depth, slope, curved) < gate);
                 CHECK(report<3>(depth, slope, curved) < gate);
             }
 }
 
 TEST_CASE("a surface that ends on the curved bed") {
-    std::vector<Real> depths;
-    for (int mm = 61; mm <= 130; mm += 3) depths.push_back(0.001 * mm);
-    const int all = static_cast<int>(depths.size());
+    for (const Real slope : {0.0, 0.02, 0.05})
+        for (int mm = 61; mm <= 130; mm += 3) CHECK(report<2>(0.001 * mm, slope, true) < gate);
     int met = 0;
-    for (const Real slope : {0.0, 0.02, 0.05}) met += resting<2>(depths, slope);
-    MESSAGE("2-D: " << met << " of " << 3 * all << " rest");
-    WARN(met == 3 * all);
-    CHECK(met >= 65);  // which of them miss it depends on round-off
-
-    const std::vector<Real> few{0.07, 0.083, 0.09, 0.097, 0.103, 0.111, 0.118, 0.125};
-    const int met_3d = resting<3>(few, 0) + resting<3>(few, 0.05);
-    MESSAGE("3-D: " << met_3d << " of 16 rest");
-    WARN(met_3d == 16);
-    CHECK(met_3d >= 12);
+    for (const Real slope : {0.0, 0.05})
+        for (const Real depth : {0.07, 0.083, 0.09, 0.097, 0.103, 0.111, 0.118, 0.125}) {
+            const Real found = report<3>(depth, slope, true);
+            met += found < gate;
+            CHECK(found < 1e-4);
+        }
+    MESSAGE("3-D: " << met << " of 16 rest");
+    WARN(met == 16);
+    CHECK(met >= 14);  // round-off decides which of them miss it
 }
 
 // Each cell beside it is all but full or all but dry, and those that walls cut are told by them where it is.
 TEST_CASE("a level surface on the curved bed, at faces of cells") {
-    for (const int cells : {3, 4, 5, 6, 7}) {
-        const Real found = report<2>(cells * cell, 0, true);
-        WARN(found < gate);
-        // With other flags than the tests' round-off makes it 0.06; 0.3 where planes of traces err.
-        CHECK(found < 0.05);
-    }
-    for (const int cells : {2, 3, 4}) {
-        const Real found = report<3>(cells * 2 * cell, 0, true);
-        WARN(found < gate);
-        if (cells != 3) CHECK(found < 0.05);  // that one reaches 0.4
-    }
+    for (const int cells : {3, 4, 5, 6, 7}) CHECK(report<2>(cells * cell, 0, true) < gate);
+    for (const int cells : {2, 3, 4}) CHECK(report<3>(cells * 2 * cell, 0, true) < gate);
 }
 
 TEST_CASE("a surface that passes through centres of cells") {

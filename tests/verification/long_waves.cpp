@@ -23,14 +23,14 @@ TEST_CASE("standing waves: frequency and energy over cells and steps") {
         }
 }
 
-TEST_CASE("solitary waves over twenty depths") {
+TEST_CASE("solitary waves over twenty depths, by half of the stable step") {
     for (const Real height : {0.1, 0.2, 0.3})
         for (const int n : {10, 20}) {
             const SolitaryWave wave{.height = height};
             auto flow = wave.channel(n);
             const Real energy = wave_energy(flow), way = 20 * wave.depth;
             const Crest begins = crest(flow, wave.depth);
-            flow.advance(way / wave.speed());
+            advance_by_parts(flow, way / wave.speed(), 0.5);
             const Crest ends = crest(flow, wave.depth);
             const Real kept = ends.height / begins.height;
             const Real speed = (ends.place - begins.place) / way;

@@ -24,6 +24,12 @@ Real fastest(const Flow& flow) {
     return most;
 }
 
+/// To a time [s], by steps of `part` of the stable one.
+template <class Flow>
+void advance_by_parts(Flow& flow, Real end, Real part) {
+    while (flow.time() < end) flow.step(std::min(part * flow.stable_step().seconds, end - flow.time()));
+}
+
 /// A wave that runs around in a box whose ends are one: eta = a cos(k x - omega t), omega^2 = g k tanh(k h),
 ///   u = a omega cosh(k z) / sinh(k h) cos(k x - omega t),  w = a omega sinh(k z) / sinh(k h) sin(k x - omega
 ///   t).

@@ -115,37 +115,29 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step_below_surface(Real
         s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
         s.open_area = water.open_area(), s.open_friction = water.open_friction();
         if constexpr (is_height) s.bounded_below = Liquid::bounded_below;
+        s.surface_push = &water.surface_push(), s.wet = &water.wet();
         advance(water.faces(), s);
-        // At the surface the pressure falls to 0 within another distance than that of the centres.
-        const auto open_faces = projection_.open_faces();
-        parallel_for(static_cast<Index>(open_faces.size()), [&](Index n) {
-            const OpenFace& open = open_faces[static_cast<std::size_t>(n)];
-            if (open.plain == 0) return;
-            Real& u = result[open.axis][open.face];
-            u += push * (open.slope - open.plain) * pressure_[open.cell];
-            u -= (kept == 0 ? 1 : -0.5) * (1 - open.weight) * dt * falls[open.axis];
-        });
-        for (const WaterFace& f : water.still())
-            result[f.axis][f.face] = record_.velocity()[f.axis][f.face] + kept * 2 * dt * falls[f.axis];
-        water.share_shear(result, by, (1 - kept) * dt * nu());
+        for (const WaterFace& f : water.still()) result[f.axis][f.face] = 0;
         sides_.leave(result, water.open_area());
     };
+    water.find_surface_push(projection_.open_faces(), pressure_, dt, falls);
     stage(velocity_, stage_, 0, -dt);
-    sides_.join(stage_);  // friction of walls looks across the ends
+    finish(stage_);
     // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
-    const auto taken = water.friction().apply(stage_, &water.rows(), dt, nu());
+    const auto taken = water.slow(stage_, dt, nu());
     if (energy_) energy_->walls_took(taken);
     if (!params_.steady_sides) sides_.set_time(time_ + dt);
-    finish(stage_);
+    sides_.fill(stage_, rows());
     water.carry_by(stage_, dt);
     // The old pressure is taken back: below the new surface it pushes anew.
     stage(stage_, velocity_, 0.5, 0.5 * dt);
+    water.clear_surface_push(projection_.open_faces());
     water.friction().take(velocity_, &water.rows(), taken, 0.5);
+    water.let_go(velocity_);
     water.find(projection_, pressure_);
-    water.weigh_reached(velocity_, 0.5 * dt * falls);
-    water.begin_faces(velocity_, record_.velocity(), record_.wet(), dt * falls);
-    for (const WaterFace& f : water.still()) velocity_[f.axis][f.face] = record_.velocity()[f.axis][f.face];
+    water.load_carriers(velocity_, record_.wet());
     carry_weight(velocity_, dt * falls);
+    for (const WaterFace& f : water.still()) velocity_[f.axis][f.face] = 0;
     outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
     // Whole sides: where they change there may not have been water before.
     if (!params_.steady_sides) sides_.fill(velocity_);

@@ -14,6 +14,11 @@ namespace abrade {
 /// u_face by an advection scheme, W what carries: a velocity, or the liquid that went through in the step. M
 /// is the share of V that liquid fills, by which momentum goes with the same fluxes as the liquid; 1 without
 /// a surface. kept = 0 for the first stage, 1/2 for the second: Heun's method. `result` may be `start`.
+///
+/// What flows into a volume in the second stage has got the first one's acceleration b = g - dp/dx_a already;
+/// what was in it gets that here, and a volume that fills or empties moves as one that does not:
+///   result = kept velocity + (1 - kept) (M_before (start + dt b) - dt/V sum A G) / M + dt dp/dx_a,
+/// with which the old pressure is taken back as a whole. That is the same where M = M_before and w = dt/2.
 /// Eddies, where there are any, act in the Laplacian's form div((nu + nu_t) grad u): the transposed gradient
 /// is left out, since beside walls and surfaces that cut cells it is not known.
 template <int Dim, class State>
@@ -37,6 +42,10 @@ struct MomentumStage {
     /// distance between the middles of what they leave open of both volumes [1/cell]; with open_area.
     const PerAxis<FaceField<Dim, float>, Dim>* open_friction = nullptr;
     const Field<State>* eddy_viscosity = nullptr;  ///< nu_t of cells, ghosts filled [m2/s]; where Eddies
+    /// What the pressure of the step before pushes more than over the distance of the centres, in dt [m/s]; 0
+    /// but at the surface, beside cells that are not wet.
+    const FaceField<Dim, State>* surface_push = nullptr;
+    const Field<std::uint8_t>* wet = nullptr;  ///< with surface_push
     /// Below this share of a control volume what is carried into it is kept among what is around [-].
     Real bounded_below = 0.5;
 };
@@ -184,6 +193,7 @@ private:
         const auto gravity = static_cast<State>(s_.time_step * s_.acceleration[a]);
         const auto sliver = static_cast<State>(s_.bounded_below);
         const auto kept = static_cast<State>(s_.kept), fresh = static_cast<State>(1 - s_.kept);
+        const auto early = static_cast<State>(s_.kept == 0), late = 1 - early;
         const State* const __restrict p = s_.pressure.data() + start;
         const State* const __restrict p_back = p - back;
         const State* const velocity = s_.velocity[a].data() + start;
@@ -204,11 +214,13 @@ private:
         const State* const middle_above = velocity + layout_.stride[Dim - 1];
         const State* const now = s_.held ? s_.held->data() + start : nullptr;
         const State* const before = s_.held ? s_.held_before->data() + start : nullptr;
+        const State* const at_surface = s_.surface_push ? (*s_.surface_push)[a].data() + start : now;
+        const State surface = s_.surface_push ? 1 : 0;
         const Real* const open = s_.open_area ? (*s_.open_area)[a].data() + start : nullptr;
         for (int first = pack(r.begin); first < r.end; first += lanes) {
             // Read as a whole before it is written: `result` may be `start`.
             alignas(64) State value[lanes];
-            if (!now || is_full(now + first, before + first, back)) {
+            if (!now || (is_wet(start + first, back) && is_full(now + first, before + first, back))) {
 #pragma omp simd
                 for (int k = 0; k < lanes; ++k) {
                     const int i = first + k;
@@ -221,6 +233,10 @@ private:
                     const int i = first + k;
                     const State mass = upper[i] * now[i] + lower[i] * now[i - back];
                     const State mass_before = upper[i] * before[i] + lower[i] * before[i - back];
+                    // The second stage takes the old pressure back as a whole, and by half.
+                    const State by_pressure =
+                        (early - 2 * late) * push[i] * (p[i] - p_back[i]) + surface * at_surface[i];
+                    const State faster = gravity + by_pressure;
                     // What is carried into little liquid is a mean of what was there and around: a sweep
                     // after another may have moved more liquid out of a sliver than it held at the beginning.
                     State least = velocity[i], most = least;
@@ -231,13 +247,14 @@ private:
                     widen(begin[i]), widen(outer_below[i]), widen(outer_above[i]), widen(velocity[i - 1]);
                     widen(velocity[i + 1]), widen(middle_below[i]), widen(middle_above[i]);
                     const State some = mass > State(least_mass) ? mass : State(least_mass);
-                    const State carried = (mass_before * begin[i] + change(i)) / some;
+                    const State carried =
+                        (mass_before * (begin[i] + late * faster) + change(i)) / some - late * faster;
                     const State raised = carried < least ? least : carried;
                     const State bounded = raised > most ? most : raised;
-                    const State moved = (mass < sliver ? bounded : carried) + gravity;
-                    const State part = fresh * moved;
-                    value[k] = kept * velocity[i] + (mass > State(least_mass) ? part : State(0)) +
-                               push[i] * (p[i] - p_back[i]);
+                    const State moved = mass < State(least_mass) ? begin[i]
+                                        : mass < sliver          ? bounded
+                                                                 : carried;
+                    value[k] = kept * velocity[i] + fresh * (moved + faster) - late * by_pressure;
                 }
             }
             if (open)
@@ -248,6 +265,17 @@ private:
                 for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
                     result[i] = value[i - first];
         }
+    }
+
+    /// Whether all cells of a pack's control volumes are.
+    bool is_wet(Offset first, Offset back) const noexcept {
+        if (!s_.wet) return true;
+        const std::uint8_t* const wet = s_.wet->data() + first;
+        const std::uint8_t* const wet_back = wet - back;
+        unsigned dry = 0;
+#pragma omp simd reduction(+ : dry)
+        for (int k = 0; k < lanes; ++k) dry += (wet[k] & wet_back[k]) == 0;
+        return dry == 0;
     }
 
     /// Whether a pack's control volumes are full of liquid, before and now.

@@ -3,6 +3,7 @@
 
 #include <abrade/fluid/wet_rows.hpp>
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,6 +20,7 @@ public:
         : rows_per_plane_(layout.rows_per_plane()),
           first_(static_cast<std::size_t>(layout.planes() * rows_per_plane_) + 1, 0) {
         for (std::size_t k = 0; k < count; ++k) {
+            assert(k == 0 || cell_of(k - 1) <= cell_of(k));
             const CellNumber<Dim> cell = layout.number(cell_of(k));
             ++first_[row_of(cell[Layout<Dim>::outer], Dim == 3 ? cell[Dim - 1] : 0) + 1];
         }

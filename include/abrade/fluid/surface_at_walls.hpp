@@ -55,7 +55,7 @@ public:
             if (whole && fraction[planes.cell[k]] > full_)
                 known_[k] = of_trace;
             else
-                known_[k] = whole && is_wide(planes, k, fraction) &&
+                known_[k] = whole && fraction[planes.cell[k]] > 1 - full_ && is_wide(planes, k, fraction) &&
                             ((mark & cell_mark::ringed) != 0 || is_held(planes, k, fraction, marks));
             planes.told[k] = 0;
             if (fraction[planes.cell[k]] == 0) planes.distance[k] = -1;  // nothing of it may be rounded
@@ -122,18 +122,24 @@ private:
     }
 
     /// Whether the surface cuts more than a corner off a cell. The smaller its area there, the more a little
-    /// liquid moves it: pressure and surface would answer each other faster than steps allow.
+    /// liquid moves it: pressure and surface would answer each other faster than steps allow. A little liquid
+    /// is a surface where there is more below it, a little air where there is more above.
     bool is_wide(const SurfacePlanes<Dim>& planes, std::size_t k, const Real* fraction) const noexcept {
         constexpr Real corner = 0.13, narrow = 0.5;
-        const Real f = fraction[planes.cell[k]];
+        const Index c = planes.cell[k];
+        const Real f = fraction[c];
         if (f > corner && f < 1 - corner) return true;
         const CellPlane<Dim> plane = planes.plane(static_cast<Index>(k));
-        Real most = 0;
-        for (const Real n : plane.normal) most = std::max(most, std::abs(n));
-        const Real way = 1e-6 * most;
-        return liquid_fraction<Dim>(plane.normal, plane.distance + way) -
-                   liquid_fraction<Dim>(plane.normal, plane.distance - way) >
-               2e-6 * narrow;
+        int nearest = 0;
+        for (int a = 1; a < Dim; ++a)
+            if (std::abs(plane.normal[at(a)]) > std::abs(plane.normal[at(nearest)])) nearest = a;
+        const Real along = plane.normal[at(nearest)], way = 1e-6 * std::abs(along);
+        const bool up = along > 0, little = f <= corner;
+        const Real beyond = fraction[c + (up == little ? -1 : 1) * stride_[nearest]];
+        return (little ? beyond > 1 - corner : beyond < corner) &&
+               liquid_fraction<Dim>(plane.normal, plane.distance + way) -
+                       liquid_fraction<Dim>(plane.normal, plane.distance - way) >
+                   2e-6 * narrow;
     }
 
     /// Takes the mean of known planes around a cell. Planes that are not known are not touched by others.
@@ -170,12 +176,15 @@ private:
         const Real held = fraction[planes.cell[own]];
         if ((marks[planes.cell[own]] & cell_mark::whole) != 0) {
             planes.distance[own] = plane_distance<Dim>(planes.plane(i).normal, held);
+            if (held > 1 - full_ && is_wide(planes, own, fraction))
+                planes.position[own] = planes.distance[own];
             return true;
         }
         CellPlane<Dim> plane = planes.plane(i);
         plane.distance = planes.position[own];
         planes.told[own] = (plane.distance >= 0) == (held >= 0.5) ||
                            std::abs(open_below(planes.cell[own], plane) - held) < 0.25;
+        if (planes.told[own] && held > 0 && held < full_) answer(planes, own, plane, held);
         if (held > 0)
             planes.distance[own] = plane_distance<Dim>(plane.normal, held);
         else
@@ -204,25 +213,30 @@ private:
         }
     }
 
-    /// Share of what is open of a cell that lies below a plane, the wall being a plane as well [-].
-    Real open_below(Offset c, const CellPlane<Dim>& plane) const noexcept {
-        std::array<Real, Dim> wall;  // its area vector, into the water
+    /// Where a carried-on plane leaves out some of what the cell holds, or takes too much, it rises or sinks
+    /// by that over its area: the pressure of each cell answers the cell's own liquid. Were it to answer that
+    /// of others, water at rest could run away from it.
+    void answer(SurfacePlanes<Dim>& planes, std::size_t own, CellPlane<Dim> plane, Real held) const {
+        constexpr Real narrow = 0.1;  // area of the plane in the open over the cell's [-]: see `is_wide`
+        const Index c = planes.cell[own];
         Real size = 0;
-        for (std::size_t a = 0; a < Dim; ++a) {
-            wall[a] = (*open_faces_)[a][c + stride_[a]] - (*open_faces_)[a][c];
-            size += std::abs(wall[a]);
-        }
-        if (!(size > 0)) return liquid_fraction(plane);
-        const Real solid = plane_distance<Dim>(wall, 1 - (*open_volumes_)[c]);
-        return detail::WaterAmongWalls<Dim>::template share<0>([&](const Point<Dim>& unit) {
-            std::array<Real, 2> both{-solid, plane.distance};
-            for (int a = 0; a < Dim; ++a) {
-                const auto k = static_cast<std::size_t>(a);
-                both[0] += wall[k] * (unit[a] - 0.5);
-                both[1] -= plane.normal[k] * (unit[a] - 0.5);
-            }
-            return both;
-        });
+        for (const Real component : plane.normal) size = std::max(size, std::abs(component));
+        const Real missing = held - open_below(c, plane), way = 1e-4 * size;
+        plane.distance += way;
+        const Real more = open_below(c, plane);
+        plane.distance -= 2 * way;
+        const Real per_way = (more - open_below(c, plane)) / (2 * way);
+        if (per_way * size * (*open_volumes_)[c] > narrow) planes.position[own] += missing / per_way;
+    }
+
+    /// Share of what is open of a cell that lies below a plane [-].
+    Real open_below(Offset c, const CellPlane<Dim>& plane) const {
+        const auto depth = [&](const Point<Dim>& unit) {
+            Real below = plane.distance;
+            for (int a = 0; a < Dim; ++a) below -= plane.normal[at(a)] * (unit[a] - 0.5);
+            return below;
+        };
+        return detail::WaterAmongWalls<Dim>::share(*open_faces_, stride_, c, (*open_volumes_)[c], depth);
     }
 
     detail::Stencil<Dim> stencil_{};

@@ -29,7 +29,7 @@ class SurfaceWater {
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides, liquid_params(params)),
-          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get()),
+          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get(), params.gravity.norm()),
           friction_(grid, params.sides, params.wall_law, walls_.get()), before_(grid.layout().total),
           burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
           rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
@@ -85,6 +85,7 @@ public:
         find_rows();
         find_held();
         join(liquid_.moved());
+        find_air();
     }
 
     /// In the bulk the second stage is carried by its own velocity; at the surface by the liquid's fluxes.
@@ -121,6 +122,7 @@ public:
         join(wet_);
         find_open_faces(projection);
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
+        find_air();
     }
 
     /// Nothing falls through walls.
@@ -139,31 +141,47 @@ public:
         });
     }
 
-    /// Faces of cells cut by walls that have become wet: in both stages the pressure did not know them, and
-    /// air has no momentum. They begin as they were, `fallen` faster: so it finds what it finds beside them.
-    void begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before, const Field<std::uint8_t>& was_wet,
-                     const Point<Dim>& fallen) const;
+    /// At the surface the pressure falls to 0 within another distance than that of the centres.
+    void find_surface_push(std::span<const OpenFace> open_faces, const Field<Real>& pressure, Real step,
+                           const Point<Dim>& gravity) {
+        for (const OpenFace& open : open_faces)
+            if (open.plain != 0)
+                burden_[open.axis][open.face] = -step * ((open.slope - open.plain) * pressure[open.cell] +
+                                                         (1 - open.weight) * gravity[open.axis]);
+    }
+    void clear_surface_push(std::span<const OpenFace> open_faces) {
+        for (const OpenFace& open : open_faces) burden_[open.axis][open.face] = 0;
+    }
+    const FaceField<Dim>& surface_push() const noexcept { return burden_; }
 
     /// Velocities of the air beside the water, and of films.
     void extend(FaceField<Dim>& u) {
         extension_.clear_left(u, rows_before_, rows_);
-        extension_.extend(u, {wet_, rows_, held(), still_});
+        extension_.extend(u);
         if constexpr (is_height)
             liquid_.hold_films(u);
         else
             films_.hold(u, rows_, wet_, held());
     }
 
-    /// Liquid of faces between dry cells moves as the faces beside it that carry it: what shear does to these
-    /// in `viscous` = nu dt [m2] moves both. Momentum gave it to their own liquid alone: the rest is taken
-    /// back.
-    void share_shear(FaceField<Dim>& result, const FaceField<Dim>& by, Real viscous);
+    /// What walls take in a step, of what is given to the liquid in the air, too.
+    auto slow(FaceField<Dim>& u, Real step, Real viscosity) {
+        extension_.add_to_own(u, -1);
+        auto taken = friction_.apply(u, &rows_, step, viscosity);
+        extension_.add_to_own(u, 1);
+        return taken;
+    }
 
-    /// After `find`, in a step's second stage: faces that the water has just reached. What they had of the
-    /// first stage was carried on from others, on which pressure and weight balance; but the pressure is yet
-    /// to be pushed on them, so they get that half of their weight. Cells that walls cut have `begin_faces`.
-    /// `fall`: gravity times half a step [m/s].
-    void weigh_reached(FaceField<Dim>& velocity, const Point<Dim>& fall) const;
+    /// In a step's second stage: in the first one the old pressure pushed what carries other faces. The new
+    /// one is yet to push them, so they begin with what they had of their own there: what flowed to them, and
+    /// its fall.
+    void let_go(FaceField<Dim>& velocity) const { extension_.give_own(velocity); }
+
+    /// After `find`, before the pressure is: what rides on a face gives it its momentum, as in an inelastic
+    /// impact. What begins to ride in this step does not speed it up: what it is faster by it had for nothing
+    /// when it began to move by itself, for a pressure that ends at a surface near a cell's centre pushes
+    /// next to no mass there. Kept, a wave of ten periods would gain 9 % however short the step.
+    void load_carriers(FaceField<Dim>& velocity, const Field<std::uint8_t>& was_wet);
 
     /// To the bit.
     bool has_walls_of(const SurfaceWater& other) const {
@@ -218,6 +236,10 @@ private:
         return walls_->open_volume()[c] < 1 || walls_->open_volume()[c - back] < 1;
     }
     bool is_open(Offset c) const noexcept { return !walls_ || walls_->open_volume()[c] > 0; }
+
+    void find_air() { extension_.find({wet_, rows_, held(), still_}); }
+    /// In the control volume of a face [m3].
+    Real liquid_of(int a, Offset face, const Field<Real>& held) const noexcept;
 
     void settle() {
         liquid_.prepare();
@@ -349,7 +371,9 @@ private:
     WallFriction<Dim> friction_;
     PerAxis<FaceField<Dim, float>, Dim> open_friction_;  ///< of sides of momentum's control volumes
     Field<Real> held_, before_;
-    FaceField<Dim> burden_;  ///< of a face: liquid of others that moves with it [cell], 0 between uses
+    /// Of a face: what pushes it at the surface [m/s], then liquid of others that moves with it [m3]; 0
+    /// between.
+    FaceField<Dim> burden_;
     Field<std::uint8_t> wet_;
     WetRows<Dim> rows_, rows_before_;
     PerAxis<WetRows<Dim>, Dim> faces_;

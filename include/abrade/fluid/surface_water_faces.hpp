@@ -45,68 +45,31 @@ void SurfaceWater<Dim, Liquid>::carry_by(const FaceField<Dim>& stage, Real step)
 }
 
 template <int Dim, class Liquid>
-void SurfaceWater<Dim, Liquid>::begin_faces(FaceField<Dim>& u, const FaceField<Dim>& before,
-                                            const Field<std::uint8_t>& was_wet,
-                                            const Point<Dim>& fallen) const {
-    if (!walls_) return;
-    for (const Index c : liquid_.planes().cell) {
-        if (wet_[c] == 0 || was_wet[c] != 0 || walls_->open_volume()[c] == 1) continue;
-        const CellNumber<Dim> cell = layout().number(c);
-        for (int a = 0; a < Dim; ++a)
-            for (const int end : {0, 1}) {
-                const Offset s = layout().stride[a], face = c + end * s, other = face - (1 - end) * s;
-                const int number = cell[a] + end;
-                const bool at_side = number == 0 || number == grid_->cells(a);
-                if ((at_side && !sides_.periodic(a)) || was_wet[other] != 0 ||
-                    walls_->open_area()[a][face] == 0)
-                    continue;
-                const Offset inside = face - (number == grid_->cells(a) ? number * s : 0);
-                u[a][inside] = before[a][inside] + fallen[a];
-            }
-    }
-}
-
-template <int Dim, class Liquid>
-void SurfaceWater<Dim, Liquid>::share_shear(FaceField<Dim>& result, const FaceField<Dim>& by, Real viscous) {
-    parallel_tasks(Dim, [&](Index component) {
-        const int a = static_cast<int>(component);
-        Field<Real>& burden = burden_[a];
-        const Offset back = layout().stride[a];
-        const auto mass = [&](Offset c) { return 0.5 * (held()[c] + held()[c - back]); };
-        const auto& riders = extension_.riders(a);
-        for (const auto& r : riders) burden[r.carrier] += r.share * mass(r.face);
-        for (const auto& r : riders) {
-            const Real own = mass(r.carrier), more = std::exchange(burden[r.carrier], 0);
-            // Little liquid has bounds of its own in momentum; beside walls shear acts on open shares
-            // only.
-            if (more == 0 || own < 0.5 || (walls_ && is_cut(r.carrier, back))) continue;
-            const CellNumber<Dim> cell = layout().number(r.carrier);
-            if ((cell[a] == 0 && !sides_.periodic(a)) || cell[a] >= grid_->cells(a)) continue;
-            Real shear = 0;
-            for (int b = 0; b < Dim; ++b) {
-                const int n = cell[b];
-                const Offset s = layout().stride[b], c = r.carrier;
-                const Real below = a == b ? grid_->size(b, n - 1) : grid_->gap(b, n),
-                           above = a == b ? grid_->size(b, n) : grid_->gap(b, n + 1);
-                shear += ((by[a][c + s] - by[a][c]) / above - (by[a][c] - by[a][c - s]) / below) /
-                         (a == b ? grid_->gap(b, n) : grid_->size(b, n));
-            }
-            result[a][r.carrier] -= viscous * shear * (1 / own - 1 / (own + more));
-        }
-    });
-}
-
-template <int Dim, class Liquid>
-void SurfaceWater<Dim, Liquid>::weigh_reached(FaceField<Dim>& velocity, const Point<Dim>& fall) const {
+void SurfaceWater<Dim, Liquid>::load_carriers(FaceField<Dim>& velocity, const Field<std::uint8_t>& was_wet) {
     for (int a = 0; a < Dim; ++a) {
-        if (fall[a] == 0) continue;
-        Offset last = -1;  // a face has as many riders as carriers, one after the other
+        // Riders of a carrier come one after the other: its mass grows by each.
         for (const auto& r : extension_.riders(a)) {
-            if (r.face == std::exchange(last, r.face)) continue;
-            if (walls_ && is_cut(r.face, layout().stride[a])) continue;
-            if ((wet_[r.face] | wet_[r.face - layout().stride[a]]) != 0) velocity[a][r.face] += fall[a];
+            Real& v = velocity[a][r.carrier];
+            const Real faster = velocity[a][r.face] - v;
+            const bool begins = was_wet[r.face] != 0 || was_wet[r.face - layout().stride[a]] != 0;
+            if (begins && faster * v > 0) continue;
+            Real& more = burden_[a][r.carrier];
+            const Real has = liquid_of(a, r.carrier, held()) + more;
+            const Real adds = r.share * liquid_of(a, r.face, held());
+            if (has + adds > 0) v += faster * adds / (has + adds);
+            more += adds;
         }
+        for (const auto& r : extension_.riders(a)) burden_[a][r.carrier] = 0;
     }
+    extension_.lead(velocity);
+}
+
+template <int Dim, class Liquid>
+Real SurfaceWater<Dim, Liquid>::liquid_of(int a, Offset face, const Field<Real>& held) const noexcept {
+    CellNumber<Dim> cell = layout().number(face);
+    const Real above = held[face] * grid_->volume(cell);
+    --cell[a];
+    return 0.5 * (above + held[face - layout().stride[a]] * grid_->volume(cell));
 }
 
 }  // namespace abrade::detail

@@ -1,12 +1,14 @@
 #pragma once
-// Velocities of the air beside water: the water's, carried on outward.
+// Velocities of the air beside water, and of the liquid in it: the water's, carried on outward.
 
 #include <abrade/fluid/walls.hpp>
 #include <abrade/fluid/water_cells.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,9 +21,15 @@ struct WaterFace {
     int axis = 0;
 };
 
-/// Gives faces between dry cells the mean of the known velocities around them, layer by layer outward from
-/// the water, as far as the stencils of the next step reach. Known are faces of wet cells; beyond the first
-/// layer also those that hold liquid of their own, which fly on as they do; beside walls, beyond the last.
+/// Faces between dry cells get the mean of those beside them that are nearer to the water, layer by layer
+/// outward, as far as the stencils of the next step reach. Liquid among them:
+/// - beside a face of a wet cell it rides on that, its carrier;
+/// - farther off, where walls cut no cell, it flies on as it does: drops and sheets thinner than a cell;
+/// - on walls that cut cells, where a surface ends in a wedge of several cells that have no pressure, it has
+///   a velocity of its own, from which the pressure of the water takes what moves the wedge towards it and
+///   no more: v = own + push, push between 0 and -own,
+///   push: the change of what the layers carry to it. Liquid of other faces could otherwise gain a speed
+///   whose momentum no one gave.
 /// Same bits for any number of threads.
 template <int Dim>
 class VelocityExtension {
@@ -30,8 +38,12 @@ public:
     static constexpr int wedge = 8;  ///< longest of water on a wall that has no pressure of its own [cells]
 
     VelocityExtension(const Layout<Dim>& layout, const Sides<Dim>& sides)
-        : layout_(layout), sides_(sides), state_(layout.total, unknown), before_(layout),
-          found_(static_cast<std::size_t>(layout.planes())), waiting_(found_), riders_in_(found_.size()) {}
+        : layout_(layout), sides_(sides), rows_(layout), waiting_(static_cast<std::size_t>(layout.planes())),
+          riders_in_(waiting_.size()) {
+        for (auto& state : state_) state = Field<std::uint8_t>(layout.total, unknown);
+        for (auto& of_axis : means_)
+            for (auto& of_layer : of_axis) of_layer.resize(waiting_.size());
+    }
 
     /// Walls that close faces; they must outlive this.
     void set_walls(const Walls<Dim>& walls) {
@@ -50,37 +62,70 @@ public:
         std::span<const WaterFace> still{};  ///< faces of wet cells that no pressure moves
     };
 
-    template <class State>
-    void extend(FaceField<Dim, State>& u, const Water& water) {
-        const auto& [wet, rows, held, still] = water;
-        // Where water has left nothing is known any more.
-        before_.for_each_row([&](int plane, int row, const RowRange& r) {
-            std::fill_n(state_.data() + layout_.row_start(plane, row) + r.begin, r.length(), unknown);
-        });
-        before_ = rows;
+    /// Finds which faces lie in which layer, until water has moved.
+    void find(const Water& water) {
         for (int a = 0; a < Dim; ++a) {
-            begin(a, u[a], wet, rows);
-            for (const WaterFace& face : still)
-                if (face.axis == a) state_[face.face] = unknown;
-            riders_[a].clear();
-            for (int layer = 0; layer < layers; ++layer) {
-                join(u[a]);
-                take_means(u[a], rows);
-                if (layer == 0) find_riders(a, held, rows);
-                know_found(rows);
-                if (layer == 0) know_liquid(a, held, rows);
-            }
-            if (walls_) extend_wedges(u[a], rows);
-            rows.for_each_row([&](int plane, int row, const RowRange& r) {
-                const Offset start = layout_.row_start(plane, row);
-                State* const __restrict v = u[a].data() + start;
-                const std::uint8_t* const __restrict state = state_.data() + start;
-                for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
-                    if (!any_unknown(state + first)) continue;
-                    for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
-                        v[i] = state[i] == unknown ? State(0) : v[i];
-                }
+            // Where water has left nothing is known any more.
+            rows_.for_each_row([&](int plane, int row, const RowRange& r) {
+                std::fill_n(state_[a].data() + layout_.row_start(plane, row) + r.begin, r.length(), unknown);
             });
+            begin(a, water);
+            for (const WaterFace& face : water.still)
+                if (face.axis == a) state_[a][face.face] = closed;
+            for (int layer = 0; layer < layers; ++layer) {
+                find_layer(a, layer, water.rows);
+                if (layer == 0) find_riders(a, water);
+                know(a, layer);
+                if (layer == 0) find_liquid(a, water);
+            }
+            find_wedges(a);
+        }
+        rows_ = water.rows;
+    }
+
+    /// Velocities of the air and of the liquid in it.
+    template <class State>
+    void extend(FaceField<Dim, State>& u) {
+        for (int a = 0; a < Dim; ++a) {
+            for (Rider& rider : riders_[a]) rider.own = u[a][rider.face];
+            for (Film& film : films_[a]) film.own = u[a][film.face];
+            take_means(a, u[a]);
+            for (Film& film : films_[a]) {
+                const Real led = u[a][film.face], push = led - film.led.value_or(film.own);
+                const auto [least, most] = std::minmax({-film.own, Real(0)});
+                u[a][film.face] = static_cast<State>(film.own + std::clamp(push, least, most));
+                film.led = led;
+            }
+            clear_unknown(a, u[a]);
+        }
+    }
+
+    /// Before a pressure pushes the water: what it carries outward until then.
+    template <class State>
+    void lead(FaceField<Dim, State>& u) {
+        for (int a = 0; a < Dim; ++a) {
+            if (films_[a].empty()) continue;
+            for (Film& film : films_[a]) film.own = u[a][film.face];
+            take_means(a, u[a]);
+            for (Film& film : films_[a]) film.led = std::exchange(u[a][film.face], film.own);
+        }
+    }
+
+    /// To what is a face's own, before and after something else changes the velocity that it was given.
+    template <class State>
+    void add_to_own(const FaceField<Dim, State>& u, Real times) {
+        for (int a = 0; a < Dim; ++a) {
+            for (Rider& rider : riders_[a]) rider.own += times * u[a][rider.face];
+            for (Film& film : films_[a]) film.own += times * u[a][film.face];
+        }
+    }
+
+    /// Faces that others carried begin as they were left by themselves.
+    template <class State>
+    void give_own(FaceField<Dim, State>& u) const {
+        for (int a = 0; a < Dim; ++a) {
+            for (const Rider& rider : riders_[a]) u[a][rider.face] = static_cast<State>(rider.own);
+            for (const Film& film : films_[a]) u[a][film.face] = static_cast<State>(film.own);
         }
     }
 
@@ -106,47 +151,52 @@ public:
     struct Rider {
         Offset face = 0, carrier = 0;
         Real share = 0;  ///< of its liquid that this carrier bears [-]
+        Real own = 0;    ///< what it moved at by itself in the last extension [m/s]
     };
-    const std::vector<Rider>& riders(int a) const noexcept { return riders_[a]; }  ///< of the last extension
+    const std::vector<Rider>& riders(int a) const noexcept { return riders_[a]; }
 
 private:
     static constexpr std::uint8_t unknown = 0, known = 1;
-    static constexpr std::uint8_t fixed =
-        2;  ///< what is there is of no use to others: closed, or a side's own
+    static constexpr std::uint8_t fixed = 2;   ///< a side's own: of no use to others
+    static constexpr std::uint8_t closed = 4;  ///< of no use to others, and 0
+    static constexpr std::uint8_t has_value = known | fixed;
 
-    /// Faces of wet cells are known, closed ones fixed at 0.
-    template <class State>
-    void begin(int a, Field<State>& u, const Field<std::uint8_t>& wet, const WetRows<Dim>& rows) {
+    /// A face that has the mean of those known beside it; bit 2 n + 1 of `from` is the upper one along axis
+    /// n.
+    struct Mean {
+        Offset face = 0;
+        unsigned from = 0;
+    };
+    struct Film {
+        Offset face = 0;
+        Real own = 0;               ///< see Rider
+        std::optional<Real> led{};  ///< what the layers carried to it last [m/s]
+    };
+
+    /// Faces of wet cells are known, but for still ones.
+    void begin(int a, const Water& water) {
         const Offset back = layout_.stride[a];
         const bool walls = walls_ != nullptr;
-        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+        water.rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout_.row_start(plane, row);
-            const std::uint8_t* const __restrict here = wet.data() + start;
-            const std::uint8_t* const __restrict closed = walls ? closed_[a].data() + start : here;
-            std::uint8_t* const __restrict state = state_.data() + start;
-            State* const __restrict v = u.data() + start;
+            const std::uint8_t* const __restrict here = water.wet.data() + start;
+            const std::uint8_t* const __restrict shut = walls ? closed_[a].data() + start : here;
+            std::uint8_t* const __restrict state = state_[a].data() + start;
             const std::uint8_t* const __restrict there = here - back;
-            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
-                if (!walls || !any(closed + first)) {
+            static_assert(known == 1 && closed == 4);
+            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes)
+                if (walls)
+#pragma omp simd
+                    for (int i = first; i < first + lanes; ++i)
+                        state[i] =
+                            static_cast<std::uint8_t>(((here[i] | there[i]) & ~shut[i]) | shut[i] << 2);
+                else
 #pragma omp simd
                     for (int i = first; i < first + lanes; ++i)
                         state[i] = static_cast<std::uint8_t>(here[i] | there[i]);
-                    continue;
-                }
-                static_assert(known == 1 && fixed == 2);
-#pragma omp simd
-                for (int i = first; i < first + lanes; ++i)
-                    state[i] =
-                        static_cast<std::uint8_t>(((here[i] | there[i]) & ~closed[i]) | closed[i] << 1);
-#pragma omp simd
-                for (int i = first; i < first + lanes; ++i) {
-                    const State value = v[i];
-                    v[i] = closed[i] != 0 ? State(0) : value;
-                }
-            }
             trim(state, r);
             if (sides_.periodic(a)) return;
-            const auto fix = [&](std::uint8_t& s) { s = s == known ? known : fixed; };
+            const auto fix = [&](std::uint8_t& s) { s = s == unknown ? fixed : s; };
             if (a == Layout<Dim>::inner) {
                 if (r.begin == 0) fix(state[0]);
             } else if ((a == Layout<Dim>::outer ? plane : row) == 0) {
@@ -162,10 +212,11 @@ private:
         for (const std::uint64_t eight : eights) all |= eight;
         return all != 0;
     }
-    static bool any_unknown(const std::uint8_t* state) noexcept {
+    /// Whether one of a pack has no value.
+    static bool any_without(const std::uint8_t* state) noexcept {
         alignas(lanes) std::uint8_t is[lanes];
 #pragma omp simd
-        for (int k = 0; k < lanes; ++k) is[k] = state[k] == unknown;
+        for (int k = 0; k < lanes; ++k) is[k] = (state[k] & has_value) == 0;
         return any(is);
     }
 
@@ -176,27 +227,92 @@ private:
         std::fill_n(state + r.end, last - r.end, unknown);
     }
 
-    /// One layer.
-    template <class State>
-    void take_means(Field<State>& u, const WetRows<Dim>& rows) {
+    unsigned known_beside(int a, Offset c) const noexcept {
+        unsigned from = 0;
+        for (int n = 0; n < Dim; ++n) {
+            const Offset s = layout_.stride[n];
+            from |= unsigned{state_[a][c - s] == known} << 2 * n | unsigned{state_[a][c + s] == known}
+                                                                       << (2 * n + 1);
+        }
+        return from;
+    }
+    void for_known_beside(const Mean& mean, auto&& body) const {
+        for (int n = 0; n < Dim; ++n) {
+            if (mean.from >> 2 * n & 1) body(mean.face - layout_.stride[n]);
+            if (mean.from >> (2 * n + 1) & 1) body(mean.face + layout_.stride[n]);
+        }
+    }
+
+    /// The faces of a layer; none of them is known before all are found.
+    void find_layer(int a, int layer, const WetRows<Dim>& rows) {
+        fill_periodic(state_[a], layout_, sides_);
+        for (auto& means : means_[a][layer]) means.clear();
         rows.for_each_plane([&](int plane) {
-            std::vector<Offset>& found = found_[static_cast<std::size_t>(plane)];
-            found.clear();
+            auto& means = means_[a][layer][static_cast<std::size_t>(plane)];
             for (int row = 0; row < layout_.rows_per_plane(); ++row) {
-                const RowRange r = rows.row(plane, row);
                 const Offset start = layout_.row_start(plane, row);
-                for_edge_cells(state_, layout_, start, r, [&](int i) { found.push_back(start + i); });
+                for_edge_cells(state_[a], layout_, start, rows.row(plane, row), [&](int i) {
+                    means.push_back({start + i, known_beside(a, start + i)});
+                });
             }
-            // None of them is known before all have their value.
-            for (const Offset c : found) take_mean(u, c);
         });
     }
-    /// Faces beyond periodic sides are those inside.
-    template <class State>
-    void join(Field<State>& u) {
-        fill_periodic(state_, layout_, sides_);
-        fill_periodic(u, layout_, sides_);
+    void know(int a, int layer) {
+        for (const auto& means : means_[a][layer])
+            for (const Mean& mean : means) state_[a][mean.face] = known;
     }
+
+    /// Farther along water on walls; what is not reached flies on.
+    void find_wedges(int a) {
+        for (int layer = layers; layer < wedge; ++layer) {
+            fill_periodic(state_[a], layout_, sides_);
+            for (std::size_t p = 0; p < waiting_.size(); ++p) {
+                auto& means = means_[a][layer][p];
+                means.clear();
+                for (const Offset c : waiting_[p])
+                    if (const unsigned from = known_beside(a, c);
+                        state_[a][c] == unknown && from != 0 && is_cut(c, layout_.stride[a]))
+                        means.push_back({c, from});
+            }
+            know(a, layer);
+        }
+        films_[a].clear();
+        for (auto& waiting : waiting_) {
+            for (const Offset c : waiting)
+                if (std::exchange(state_[a][c], known) == known) films_[a].push_back({c});
+            waiting.clear();
+        }
+    }
+
+    template <class State>
+    void take_means(int a, Field<State>& u) const {
+        for (const auto& of_layer : means_[a]) {
+            fill_periodic(u, layout_, sides_);
+            parallel_for(static_cast<Index>(of_layer.size()), [&](Index plane) {
+                for (const Mean& mean : of_layer[static_cast<std::size_t>(plane)]) {
+                    State sum = 0;
+                    for_known_beside(mean, [&](Offset n) { sum += u[n]; });
+                    u[mean.face] = sum / static_cast<State>(std::popcount(mean.from));
+                }
+            });
+        }
+    }
+
+    template <class State>
+    void clear_unknown(int a, Field<State>& u) const {
+        rows_.for_each_row([&](int plane, int row, const RowRange& r) {
+            const Offset start = layout_.row_start(plane, row);
+            State* const __restrict v = u.data() + start;
+            const std::uint8_t* const __restrict state = state_[a].data() + start;
+            for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
+                if (!any_without(state + first)) continue;
+                for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
+                    v[i] = (state[i] & has_value) == 0 ? State(0) : v[i];
+            }
+        });
+    }
+
+    /// Faces beyond periodic sides are those inside.
     Offset inside(Offset face) const noexcept {
         const CellNumber<Dim> number = layout_.number(face);
         for (int a = 0; a < Dim; ++a)
@@ -205,80 +321,41 @@ private:
                         ((number[a] < 0) - (number[a] >= layout_.cells[a]));
         return face;
     }
-    /// Of what is known beside a face; answers whether anything is.
-    template <class State>
-    bool take_mean(Field<State>& u, Offset c) const noexcept {
-        State sum = 0;
-        int count = 0;
-        for (const Offset s : layout_.stride)
-            for (const Offset n : {c - s, c + s})
-                if (state_[n] == known) sum += u[n], ++count;
-        if (count > 0) u[c] = sum / static_cast<State>(count);
-        return count > 0;
-    }
-    void know_found(const WetRows<Dim>& rows) {
-        rows.for_each_plane([&](int plane) {
-            for (const Offset c : found_[static_cast<std::size_t>(plane)]) state_[c] = known;
-        });
-    }
 
-    /// Farther along water on walls; what is not reached flies on.
-    template <class State>
-    void extend_wedges(Field<State>& u, const WetRows<Dim>& rows) {
-        rows.for_each_plane([&](int plane) { found_[static_cast<std::size_t>(plane)].clear(); });
-        for (int layer = layers; layer < wedge; ++layer) {
-            join(u);
-            for (std::size_t p = 0; p < waiting_.size(); ++p)
-                for (const Offset c : waiting_[p])
-                    if (state_[c] == unknown && take_mean(u, c)) found_[p].push_back(c);
-            know_found(rows);
-        }
-        for (auto& waiting : waiting_) {
-            for (const Offset c : waiting)
-                if (state_[c] == unknown) state_[c] = known;
-            waiting.clear();
-        }
-    }
-
-    /// While faces of the first layer are found, but not yet known.
-    void find_riders(int a, const Field<Real>& held, const WetRows<Dim>& rows) {
-        const auto wet = [&](Offset c) { return state_[c] == known; };
-        rows.for_each_plane([&](int plane) {
+    /// Those of the first layer that hold liquid.
+    void find_riders(int a, const Water& water) {
+        water.rows.for_each_plane([&](int plane) {
             std::vector<Rider>& riders = riders_in_[static_cast<std::size_t>(plane)];
             riders.clear();
-            for (const Offset c : found_[static_cast<std::size_t>(plane)]) {
-                if (held[c] + held[c - layout_.stride[a]] < liquid_of_a_face) continue;
-                int count = 0;
-                for (const Offset s : layout_.stride) count += wet(c - s) + wet(c + s);
-                for (const Offset s : layout_.stride)
-                    for (const Offset n : {c - s, c + s})
-                        if (wet(n)) riders.push_back({c, inside(n), 1.0 / count});
+            for (const Mean& mean : means_[a][0][static_cast<std::size_t>(plane)]) {
+                if (water.held[mean.face] + water.held[mean.face - layout_.stride[a]] < liquid_of_a_face)
+                    continue;
+                const Real share = 1.0 / std::popcount(mean.from);
+                for_known_beside(mean, [&](Offset n) { riders.push_back({mean.face, inside(n), share}); });
             }
         });
+        riders_[a].clear();
         for (const auto& riders : riders_in_)
             riders_[a].insert(riders_[a].end(), riders.begin(), riders.end());
     }
 
-    /// Drops and sheets thinner than a cell. Not beside cells that walls cut: where a surface meets a wall
-    /// at a shallow angle it ends in a wedge of several such cells, which lies on the wall.
-    void know_liquid(int a, const Field<Real>& held, const WetRows<Dim>& rows) {
+    /// Faces that hold liquid and do not ride wait for what is carried to them.
+    void find_liquid(int a, const Water& water) {
         const Offset back = layout_.stride[a];
-        rows.for_each_row([&](int plane, int row, const RowRange& r) {
+        water.rows.for_each_row([&](int plane, int row, const RowRange& r) {
             const Offset start = layout_.row_start(plane, row);
-            const Real* const h = held.data() + start;
-            const Real* const open = walls_ ? walls_->open_volume().data() + start : nullptr;
-            std::uint8_t* const state = state_.data() + start;
+            const Real* const h = water.held.data() + start;
+            const std::uint8_t* const state = state_[a].data() + start;
             for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
-                if (!any_unknown(state + first)) continue;
-                for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i) {
-                    if (state[i] != unknown || !(h[i] + h[i - back] > liquid_of_a_face)) continue;
-                    if (!open || (open[i] == 1 && open[i - back] == 1))
-                        state[i] = known;
-                    else
+                if (!any_without(state + first)) continue;
+                for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
+                    if (state[i] == unknown && h[i] + h[i - back] > liquid_of_a_face)
                         waiting_[static_cast<std::size_t>(plane)].push_back(start + i);
-                }
             }
         });
+    }
+    bool is_cut(Offset face, Offset back) const noexcept {
+        return walls_ && (walls_->open_volume()[face] < 1 || walls_->open_volume()[face - back] < 1);
     }
 
     static constexpr int lanes = Layout<Dim>::lanes;
@@ -286,10 +363,11 @@ private:
     Sides<Dim> sides_;
     const Walls<Dim>* walls_ = nullptr;
     FaceField<Dim, std::uint8_t> closed_;  ///< 1 where walls close a face; a byte of it costs less to read
-    Field<std::uint8_t> state_;
-    WetRows<Dim> before_;  ///< looked at the last time
+    FaceField<Dim, std::uint8_t> state_;
+    WetRows<Dim> rows_;                                                   ///< looked at
+    PerAxis<PerAxis<std::vector<std::vector<Mean>>, wedge>, Dim> means_;  ///< [component][layer][plane]
     PerAxis<std::vector<Rider>, Dim> riders_;
-    std::vector<std::vector<Offset>> found_;     ///< [plane] faces of a layer
+    PerAxis<std::vector<Film>, Dim> films_;
     std::vector<std::vector<Offset>> waiting_;   ///< [plane] faces of water on walls
     std::vector<std::vector<Rider>> riders_in_;  ///< [plane]
 };

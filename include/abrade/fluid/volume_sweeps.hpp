@@ -70,7 +70,8 @@ void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
             const Index before = keep ? plane_of_[c + lane] : -1;
             planes_.cell[next] = static_cast<Index>(c + lane);
             planes_.level[next] = Dim == 3 ? level : level + lane;
-            planes_.has_normal[next] = before >= 0 || !holds, planes_.told[next] = 0;
+            planes_.has_normal[next] = before >= 0 || !holds;
+            planes_.told[next] = before >= 0 ? planes_before_.told[static_cast<std::size_t>(before)] : 0;
             if (planes_.has_normal[next])
                 for (std::size_t a = 0; a < Dim; ++a)
                     planes_.normal[a][next] =
@@ -374,13 +375,13 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 /// moves there moves along it.
 template <int Dim>
 Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume) const noexcept {
-    if (fraction_[c] >= 0.5) return 0;
+    if (fraction_[c] >= 0.5 || planes_.told[index(plane_of_[c])] != 0) return 0;
     const auto open = [&](Offset at) { return open_volumes_ ? (*open_volumes_)[at] : 1; };
     const Offset behind = c - way * layout_.stride[index(axis)];
     const bool open_behind = (marks_[behind] & cell_mark::open) != 0 &&
                              ((marks_[behind] & cell_mark::inside) != 0 || sides_.periodic(axis));
-    const bool held = open_behind ? fraction_[behind] * open(behind) >= fraction_[c] * open(c)
-                                  : open(c) == 1 && !(gravity_[axis] * way > 0);
+    const bool held =
+        open_behind ? fraction_[behind] >= fraction_[c] : open(c) == 1 && !(gravity_[axis] * way > 0);
     return held ? 0 : fraction_[c] * volume;
 }
 

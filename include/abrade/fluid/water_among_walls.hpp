@@ -1,68 +1,64 @@
 #pragma once
-// How much of what walls leave open of a cell lies in the water of the start.
+// How much of what a wall leaves open of a cell lies in the water.
 
+#include <abrade/fluid/cut_cell.hpp>
 #include <abrade/fluid/grid.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
 namespace abrade::detail {
 
-/// Of what lies of a cell in the open, the share in the water; each is where a function is above 0.
+/// Of what lies of a cell in the open, the share in the water. The cell's wall is the plane that its open
+/// faces and its open volume tell: so the surface of water at rest, which is found by the same rule, stays
+/// where it began.
 ///
-/// The cell is cut in half `Levels` times along each axis and its parts into simplices, one for each order of
-/// the axes (H. Freudenthal 1942); in a simplex both functions are linear. Of two planes that cross in one
-/// cell the share is exact, which that of the lesser function is not: between two corners this has a kink.
+/// The cell is cut into simplices, one for each order of the axes (H. Freudenthal 1942); in a simplex both
+/// functions are linear. Of two planes that cross in one cell the share is exact, which that of the lesser
+/// function is not: between two corners this has a kink.
 template <int Dim>
 class WaterAmongWalls {
 public:
-    using Both = std::array<Real, 2>;  ///< wall, water
-
-    /// `both` answers at places in the cell, 0 to 1 along each axis [-]. What is closed holds none.
-    template <int Levels>
-    static Real share(const auto& both) {
-        constexpr int parts = 1 << Levels, points = parts + 1;
-        constexpr auto count = [](int along) { return Dim == 3 ? along * along * along : along * along; };
-        std::array<Both, static_cast<std::size_t>(count(points))> value;
-        for (int n = 0; n < count(points); ++n) {
+    /// `open_faces`, `open_volume`: what is open of the cell `c` [-]. `water` answers at places in it, 0 to 1
+    /// along each axis: above 0 in the water.
+    static Real share(const FaceField<Dim>& open_faces, const PerAxis<Offset, Dim>& stride, Offset c,
+                      Real open_volume, const auto& water) {
+        std::array<Real, Dim> wall;  // its area, into the open
+        Real size = 0;
+        for (int a = 0; a < Dim; ++a) {
+            wall[at(a)] = open_faces[a][c + stride[at(a)]] - open_faces[a][c];
+            size += std::abs(wall[at(a)]);
+        }
+        const Real solid = size > 0 ? plane_distance<Dim>(wall, 1 - open_volume) : -1;
+        constexpr int corners = 1 << Dim;
+        std::array<Both, corners> value;
+        for (int n = 0; n < corners; ++n) {
             Point<Dim> x;
-            for (int a = 0, rest = n; a < Dim; ++a, rest /= points)
-                x[a] = static_cast<Real>(rest % points) / parts;
-            value[static_cast<std::size_t>(n)] = both(x);
+            Real in_the_open = -solid;
+            for (int a = 0; a < Dim; ++a) {
+                x[a] = n >> a & 1;
+                in_the_open += wall[at(a)] * (x[a] - 0.5);
+            }
+            value[at(n)] = {in_the_open, water(x)};
         }
         Real open = 0, wet = 0;
-        for (int part = 0; part < count(parts); ++part) {
-            int lowest = 0;
-            for (int a = 0, rest = part, step = 1; a < Dim; ++a, rest /= parts, step *= points)
-                lowest += rest % parts * step;
-            std::array<int, Dim> order{};
-            for (int a = 0; a < Dim; ++a) order[static_cast<std::size_t>(a)] = a;
-            do {
-                Simplex corner;
-                int n = lowest;
-                corner[0] = value[static_cast<std::size_t>(n)];
-                for (std::size_t k = 0; k < Dim; ++k) {
-                    n += order[k] == 0 ? 1 : order[k] == 1 ? points : points * points;
-                    corner[k + 1] = value[static_cast<std::size_t>(n)];
-                }
-                open += positive(corner, 0, 1), wet += positive(corner, 0, 2);
-            } while (std::next_permutation(order.begin(), order.end()));
-        }
+        std::array<int, Dim> order{};
+        for (int a = 0; a < Dim; ++a) order[at(a)] = a;
+        do {
+            Simplex corner{value[0]};
+            for (int n = 0, k = 0; k < Dim; ++k) corner[at(k + 1)] = value[at(n |= 1 << order[at(k)])];
+            open += positive(corner, 0, 1), wet += positive(corner, 0, 2);
+        } while (std::next_permutation(order.begin(), order.end()));
         return open > 0 ? wet / open : 0;
-    }
-    static Real share(const Grid<Dim>& grid, const CellNumber<Dim>& cell, const auto& wall,
-                      const auto& water) {
-        return share<1>([&](const Point<Dim>& unit) {
-            Point<Dim> x;
-            for (int a = 0; a < Dim; ++a) x[a] = grid.face(a, cell[a]) + grid.size(a, cell[a]) * unit[a];
-            return Both{wall(x), water(x)};
-        });
     }
 
 private:
+    using Both = std::array<Real, 2>;  ///< wall, water: above 0 in the open, in the water
     using Simplex = std::array<Both, Dim + 1>;
+    static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
     /// Share of a simplex where functions `which` up to, not including, `end` are above 0.
     static Real positive(const Simplex& corner, std::size_t which, std::size_t end) noexcept {

@@ -80,8 +80,33 @@ void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, Liq
                 if (!wanted(cell) || (walls && walls->open_volume()[c] == 0)) return;
                 const Real share = filled.open_volume()[c];
                 const bool cut = walls && (liquid.marks()[c] & cell_mark::whole) == 0;
+                const auto place = [&](const Point<Dim>& unit) {
+                    Point<Dim> x;
+                    for (int a = 0; a < Dim; ++a)
+                        x[a] = grid.face(a, cell[a]) + grid.size(a, cell[a]) * unit[a];
+                    return x;
+                };
+                // Within the wall there may be other water, or none: there goes on what is in the open.
+                const auto at = [&](const Point<Dim>& unit) {
+                    const Point<Dim> x = place(unit);
+                    if (params.wall(x) >= 0) return water(x);
+                    Point<Dim> open = x;
+                    for (int n = 0; n < 1 << Dim; ++n) {
+                        Point<Dim> corner;
+                        for (int a = 0; a < Dim; ++a) corner[a] = n >> a & 1;
+                        if (params.wall(place(corner)) > params.wall(open)) open = place(corner);
+                    }
+                    Real value = water(open);
+                    for (int a = 0; a < Dim; ++a) {
+                        Point<Dim> step = Point<Dim>::Zero();
+                        step[a] = 1e-3 * grid.size(a, cell[a]);
+                        value += (x[a] - open[a]) * (water(open + step) - water(open - step)) / (2 * step[a]);
+                    }
+                    return value;
+                };
                 f[c] = cut && share > 0 && share < 1
-                           ? WaterAmongWalls<Dim>::share(grid, cell, params.wall, water)
+                           ? WaterAmongWalls<Dim>::share(walls->open_area(), grid.layout().stride, c,
+                                                         walls->open_volume()[c], at)
                            : share;
             },
             Layout<Dim>::ghosts);
