@@ -88,17 +88,15 @@ struct Jump {
             0;  ///< behind over before it, over Belanger's at the Froude number that the jump sees [-]
         Real lost = 0;  ///< energy lost over Belanger's [-]
     };
-    /// On `n` cells, by steps of `part` of the stable one; means from one time to another [h_1 / sqrt(g
-    /// h_1)].
-    Found run(int n, Real from, Real to, Real part = 1) const {
+    /// On `n` cells; means from one time to another [h_1 / sqrt(g h_1)].
+    Found run(int n, Real from, Real to) const {
         auto flow = channel(n);
         const Real unit = depth / wave();
-        const auto step = [&] { flow.step(part * flow.stable_step().seconds); };
-        while (flow.time() < from * unit) step();
+        flow.advance(from * unit);
         Section before, behind;
         Real front_sum = 0, time_sum = 0, product = 0, squares = 0, count = 0;
         while (flow.time() < to * unit) {
-            step();
+            flow.step(flow.stable_step().seconds);
             const Real x = front(flow), t = flow.time();
             front_sum += x, time_sum += t, product += x * t, squares += t * t, count += 1;
             add(before, flow, 3), add(behind, flow, length - 5);
