@@ -87,7 +87,7 @@ TEST_CASE("a surface that ends on the curved bed") {
     CHECK(met >= 14);  // round-off decides which of them miss it
 }
 
-// Each cell beside it is all but full or all but dry, and those that walls cut are told by them where it is.
+// Each cell beside it is all but full or all but dry.
 TEST_CASE("a level surface on the curved bed, at faces of cells") {
     for (const int cells : {3, 4, 5, 6, 7}) CHECK(report<2>(cells * cell, 0, true) < gate);
     for (const int cells : {2, 3, 4}) CHECK(report<3>(cells * 2 * cell, 0, true) < gate);

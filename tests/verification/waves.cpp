@@ -69,8 +69,7 @@ TEST_CASE("a wave that runs around a periodic box three times") {
 }
 
 TEST_CASE("a solitary wave keeps height, energy and speed over twenty depths") {
-    // What it loses is the time step's: near the surface momentum is carried by the liquid that moved half a
-    // step before.
+    // What it loses is proportional to the time step.
     for (const Real part : {1.0, 0.5}) {
         const SolitaryWave wave;
         auto flow = wave.channel(10);

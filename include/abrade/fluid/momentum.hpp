@@ -19,6 +19,7 @@ namespace abrade {
 /// what was in it gets that here, and a volume that fills or empties moves as one that does not:
 ///   result = kept velocity + (1 - kept) (M_before (start + dt b) - dt/V sum A G) / M + dt dp/dx_a,
 /// with which the old pressure is taken back as a whole. That is the same where M = M_before and w = dt/2.
+///
 /// Eddies, where there are any, act in the Laplacian's form div((nu + nu_t) grad u): the transposed gradient
 /// is left out, since beside walls and surfaces that cut cells it is not known.
 template <int Dim, class State>
@@ -63,8 +64,8 @@ class MomentumRows {
     static constexpr int lanes = Eddies ? 64 / static_cast<int>(sizeof(State)) : Layout<Dim>::lanes;
     static constexpr int pack(int i) noexcept { return i & ~(lanes - 1); }
     using Table = LevelTable<Dim, State>;
-    /// Below this share of a control volume there is no momentum to speak of: the velocity is taken from
-    /// outside.
+    /// Below this share of a control volume there is no momentum to speak of: the velocity stays, but for
+    /// weight and pressure.
     static constexpr Real least_mass = 1e-9;
 
 public:
@@ -267,7 +268,7 @@ private:
         }
     }
 
-    /// Whether all cells of a pack's control volumes are.
+    /// Whether all cells of a pack's control volumes have a pressure: beside others `surface_push` may act.
     bool is_wet(Offset first, Offset back) const noexcept {
         if (!s_.wet) return true;
         const std::uint8_t* const wet = s_.wet->data() + first;

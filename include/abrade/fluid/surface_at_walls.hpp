@@ -12,11 +12,11 @@ namespace abrade {
 
 /// A liquid fraction in a cell that a wall cuts says nothing of a plane in the whole cell. There the surface
 /// is that of the neighbours which no wall cuts, the mean of their planes, carried on from cell to cell where
-/// a wall leaves at a shallow angle. So a planar surface stays exact up to the wall: water in a curved invert
-/// rests. The plane that holds the cell's volume (`distance`) gets the same normal. Whole cells of which the
-/// surface cuts a corner only, or whose whole neighbours do not tell its tilt, are treated alike. Cells that
-/// no neighbour tells of keep what they have, but for traces of water or air in whole ones: these follow the
-/// fractions of all that is around.
+/// a wall leaves at a shallow angle, and moved by what that leaves out of the cell's own liquid. So a planar
+/// surface stays exact up to the wall, and water in a curved invert rests. The plane that holds the cell's
+/// volume (`distance`) gets the same normal. Whole cells of which the surface cuts a corner only, or whose
+/// whole neighbours do not tell its tilt, are treated alike. Cells that no neighbour tells of keep what they
+/// have, but for traces of water or air in whole ones: these follow the fractions of all that is around.
 ///
 /// Where a cut cell holds about as much as would lie below that plane, it is `told` on which side of the
 /// surface its centre is: a cell half full of its open part may have its centre above the water, inside the

@@ -141,13 +141,16 @@ public:
         });
     }
 
-    /// At the surface the pressure falls to 0 within another distance than that of the centres.
+    /// At the surface the pressure falls to 0 within another distance than that of the centres: what that
+    /// changes in a step [m/s].
     void find_surface_push(std::span<const OpenFace> open_faces, const Field<Real>& pressure, Real step,
                            const Point<Dim>& gravity) {
-        for (const OpenFace& open : open_faces)
+        parallel_for(static_cast<Index>(open_faces.size()), [&](Index n) {
+            const OpenFace& open = open_faces[static_cast<std::size_t>(n)];
             if (open.plain != 0)
                 burden_[open.axis][open.face] = -step * ((open.slope - open.plain) * pressure[open.cell] +
                                                          (1 - open.weight) * gravity[open.axis]);
+        });
     }
     void clear_surface_push(std::span<const OpenFace> open_faces) {
         for (const OpenFace& open : open_faces) burden_[open.axis][open.face] = 0;
@@ -180,7 +183,8 @@ public:
     /// After `find`, before the pressure is: what rides on a face gives it its momentum, as in an inelastic
     /// impact. What begins to ride in this step does not speed it up: what it is faster by it had for nothing
     /// when it began to move by itself, for a pressure that ends at a surface near a cell's centre pushes
-    /// next to no mass there. Kept, a wave of ten periods would gain 9 % however short the step.
+    /// next to no mass there. Kept, waves gain energy however short
+    /// the step.
     void load_carriers(FaceField<Dim>& velocity, const Field<std::uint8_t>& was_wet);
 
     /// To the bit.
@@ -232,14 +236,11 @@ private:
         }
     }
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
-    bool is_cut(Offset c, Offset back) const noexcept {
-        return walls_->open_volume()[c] < 1 || walls_->open_volume()[c - back] < 1;
-    }
     bool is_open(Offset c) const noexcept { return !walls_ || walls_->open_volume()[c] > 0; }
 
     void find_air() { extension_.find({wet_, rows_, held(), still_}); }
     /// In the control volume of a face [m3].
-    Real liquid_of(int a, Offset face, const Field<Real>& held) const noexcept;
+    Real liquid_of(int a, Offset face) const noexcept;
 
     void settle() {
         liquid_.prepare();

@@ -1,5 +1,5 @@
 #pragma once
-// Faces at and beside the surface: what carries them in a stage, how they begin, what shear does to them.
+// Faces at and beside the surface: what carries them in a stage, what they give to others.
 
 #include <abrade/fluid/surface_water_class.hpp>
 
@@ -46,7 +46,8 @@ void SurfaceWater<Dim, Liquid>::carry_by(const FaceField<Dim>& stage, Real step)
 
 template <int Dim, class Liquid>
 void SurfaceWater<Dim, Liquid>::load_carriers(FaceField<Dim>& velocity, const Field<std::uint8_t>& was_wet) {
-    for (int a = 0; a < Dim; ++a) {
+    parallel_tasks(Dim, [&](Index component) {
+        const int a = static_cast<int>(component);
         // Riders of a carrier come one after the other: its mass grows by each.
         for (const auto& r : extension_.riders(a)) {
             Real& v = velocity[a][r.carrier];
@@ -54,22 +55,22 @@ void SurfaceWater<Dim, Liquid>::load_carriers(FaceField<Dim>& velocity, const Fi
             const bool begins = was_wet[r.face] != 0 || was_wet[r.face - layout().stride[a]] != 0;
             if (begins && faster * v > 0) continue;
             Real& more = burden_[a][r.carrier];
-            const Real has = liquid_of(a, r.carrier, held()) + more;
-            const Real adds = r.share * liquid_of(a, r.face, held());
+            const Real has = liquid_of(a, r.carrier) + more;
+            const Real adds = r.share * liquid_of(a, r.face);
             if (has + adds > 0) v += faster * adds / (has + adds);
             more += adds;
         }
         for (const auto& r : extension_.riders(a)) burden_[a][r.carrier] = 0;
-    }
+    });
     extension_.lead(velocity);
 }
 
 template <int Dim, class Liquid>
-Real SurfaceWater<Dim, Liquid>::liquid_of(int a, Offset face, const Field<Real>& held) const noexcept {
+Real SurfaceWater<Dim, Liquid>::liquid_of(int a, Offset face) const noexcept {
     CellNumber<Dim> cell = layout().number(face);
-    const Real above = held[face] * grid_->volume(cell);
+    const Real above = held()[face] * grid_->volume(cell);
     --cell[a];
-    return 0.5 * (above + held[face - layout().stride[a]] * grid_->volume(cell));
+    return 0.5 * (above + held()[face - layout().stride[a]] * grid_->volume(cell));
 }
 
 }  // namespace abrade::detail

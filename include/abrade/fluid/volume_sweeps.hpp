@@ -370,18 +370,17 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 }
 
 /// A film thinner than its cell whose plane lies at the end that it comes from: a slab of the other end would
-/// find nothing, for ever. Unless as much liquid behind it holds it, or a closed face that gravity does not
-/// pull it off, it leaves as if it filled the cell evenly. A wall that cuts the cell holds nothing back: what
-/// moves there moves along it.
+/// find nothing, for ever. Unless the cell behind is at least as full, a closed face that gravity does not
+/// pull it off holds it, or it is part of a surface that its neighbours tell, it leaves as if it filled the
+/// cell evenly. A wall that cuts the cell holds nothing back: what moves there moves along it.
 template <int Dim>
 Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume) const noexcept {
     if (fraction_[c] >= 0.5 || planes_.told[index(plane_of_[c])] != 0) return 0;
-    const auto open = [&](Offset at) { return open_volumes_ ? (*open_volumes_)[at] : 1; };
+    const bool whole = !open_volumes_ || (*open_volumes_)[c] == 1;
     const Offset behind = c - way * layout_.stride[index(axis)];
     const bool open_behind = (marks_[behind] & cell_mark::open) != 0 &&
                              ((marks_[behind] & cell_mark::inside) != 0 || sides_.periodic(axis));
-    const bool held =
-        open_behind ? fraction_[behind] >= fraction_[c] : open(c) == 1 && !(gravity_[axis] * way > 0);
+    const bool held = open_behind ? fraction_[behind] >= fraction_[c] : whole && !(gravity_[axis] * way > 0);
     return held ? 0 : fraction_[c] * volume;
 }
 

@@ -64,6 +64,33 @@ std::shared_ptr<const Walls<Dim>> walls_inside(const Grid<Dim>& grid, const Grid
     return walls;
 }
 
+/// What `water` tells at a place of a cell, 0 to 1 along each axis. Within the wall there may be other water,
+/// or none: there goes on, linearly, what it tells at the corner farthest in the open.
+template <int Dim>
+Real water_in_the_open(const Grid<Dim>& grid, const CellNumber<Dim>& cell, const Point<Dim>& unit,
+                       const PlaceFunction<Dim>& wall, const PlaceFunction<Dim>& water) {
+    const auto place = [&](const Point<Dim>& at) {
+        Point<Dim> x;
+        for (int a = 0; a < Dim; ++a) x[a] = grid.face(a, cell[a]) + grid.size(a, cell[a]) * at[a];
+        return x;
+    };
+    const Point<Dim> x = place(unit);
+    if (wall(x) >= 0) return water(x);
+    Point<Dim> open = x;
+    for (int n = 0; n < 1 << Dim; ++n) {
+        Point<Dim> corner;
+        for (int a = 0; a < Dim; ++a) corner[a] = n >> a & 1;
+        if (wall(place(corner)) > wall(open)) open = place(corner);
+    }
+    Real value = water(open);
+    for (int a = 0; a < Dim; ++a) {
+        Point<Dim> step = Point<Dim>::Zero();
+        step[a] = 1e-3 * grid.size(a, cell[a]);
+        value += (x[a] - open[a]) * (water(open + step) - water(open - step)) / (2 * step[a]);
+    }
+    return value;
+}
+
 /// Shares of the open volume that lie in the water of the start, and beyond inflows. Throws InputError where
 /// a function answers no number, and what it throws.
 template <int Dim, class Liquid>
@@ -80,29 +107,8 @@ void give_water(const GridFluidParams<Dim>& params, const Walls<Dim>* walls, Liq
                 if (!wanted(cell) || (walls && walls->open_volume()[c] == 0)) return;
                 const Real share = filled.open_volume()[c];
                 const bool cut = walls && (liquid.marks()[c] & cell_mark::whole) == 0;
-                const auto place = [&](const Point<Dim>& unit) {
-                    Point<Dim> x;
-                    for (int a = 0; a < Dim; ++a)
-                        x[a] = grid.face(a, cell[a]) + grid.size(a, cell[a]) * unit[a];
-                    return x;
-                };
-                // Within the wall there may be other water, or none: there goes on what is in the open.
                 const auto at = [&](const Point<Dim>& unit) {
-                    const Point<Dim> x = place(unit);
-                    if (params.wall(x) >= 0) return water(x);
-                    Point<Dim> open = x;
-                    for (int n = 0; n < 1 << Dim; ++n) {
-                        Point<Dim> corner;
-                        for (int a = 0; a < Dim; ++a) corner[a] = n >> a & 1;
-                        if (params.wall(place(corner)) > params.wall(open)) open = place(corner);
-                    }
-                    Real value = water(open);
-                    for (int a = 0; a < Dim; ++a) {
-                        Point<Dim> step = Point<Dim>::Zero();
-                        step[a] = 1e-3 * grid.size(a, cell[a]);
-                        value += (x[a] - open[a]) * (water(open + step) - water(open - step)) / (2 * step[a]);
-                    }
-                    return value;
+                    return water_in_the_open(grid, cell, unit, params.wall, water);
                 };
                 f[c] = cut && share > 0 && share < 1
                            ? WaterAmongWalls<Dim>::share(walls->open_area(), grid.layout().stride, c,
