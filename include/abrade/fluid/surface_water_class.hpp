@@ -31,7 +31,7 @@ public:
         : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides, liquid_params(params)),
           walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get(), params.gravity.norm()),
           friction_(grid, params.sides, params.wall_law, walls_.get()), before_(grid.layout().total),
-          burden_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
+          surface_push_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
           rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
           open_in_(static_cast<std::size_t>(grid.layout().planes())) {
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
@@ -148,14 +148,15 @@ public:
         parallel_for(static_cast<Index>(open_faces.size()), [&](Index n) {
             const OpenFace& open = open_faces[static_cast<std::size_t>(n)];
             if (open.plain != 0)
-                burden_[open.axis][open.face] = -step * ((open.slope - open.plain) * pressure[open.cell] +
-                                                         (1 - open.weight) * gravity[open.axis]);
+                surface_push_[open.axis][open.face] =
+                    -step * ((open.slope - open.plain) * pressure[open.cell] +
+                             (1 - open.weight) * gravity[open.axis]);
         });
     }
     void clear_surface_push(std::span<const OpenFace> open_faces) {
-        for (const OpenFace& open : open_faces) burden_[open.axis][open.face] = 0;
+        for (const OpenFace& open : open_faces) surface_push_[open.axis][open.face] = 0;
     }
-    const FaceField<Dim>& surface_push() const noexcept { return burden_; }
+    const FaceField<Dim>& surface_push() const noexcept { return surface_push_; }
 
     /// Velocities of the air beside the water, and of films.
     void extend(FaceField<Dim>& u) {
@@ -181,10 +182,9 @@ public:
     void let_go(FaceField<Dim>& velocity) const { extension_.give_own(velocity); }
 
     /// After `find`, before the pressure is: what rides on a face gives it its momentum, as in an inelastic
-    /// impact. What begins to ride in this step does not speed it up: what it is faster by it had for nothing
-    /// when it began to move by itself, for a pressure that ends at a surface near a cell's centre pushes
-    /// next to no mass there. Kept, waves gain energy however short
-    /// the step.
+    /// impact. What begins to ride in this step may only slow it down: what it is faster by it had for
+    /// nothing when it began to move by itself, for a pressure that ends at a surface near a cell's centre
+    /// pushes next to no mass there. Given on, waves would gain energy however short the step.
     void load_carriers(FaceField<Dim>& velocity, const Field<std::uint8_t>& was_wet);
 
     /// To the bit.
@@ -372,9 +372,8 @@ private:
     WallFriction<Dim> friction_;
     PerAxis<FaceField<Dim, float>, Dim> open_friction_;  ///< of sides of momentum's control volumes
     Field<Real> held_, before_;
-    /// Of a face: what pushes it at the surface [m/s], then liquid of others that moves with it [m3]; 0
-    /// between.
-    FaceField<Dim> burden_;
+    /// Of a face, within a step [m/s].
+    FaceField<Dim> surface_push_;
     Field<std::uint8_t> wet_;
     WetRows<Dim> rows_, rows_before_;
     PerAxis<WetRows<Dim>, Dim> faces_;

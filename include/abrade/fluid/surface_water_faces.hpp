@@ -48,19 +48,21 @@ template <int Dim, class Liquid>
 void SurfaceWater<Dim, Liquid>::load_carriers(FaceField<Dim>& velocity, const Field<std::uint8_t>& was_wet) {
     parallel_tasks(Dim, [&](Index component) {
         const int a = static_cast<int>(component);
-        // Riders of a carrier come one after the other: its mass grows by each.
-        for (const auto& r : extension_.riders(a)) {
-            Real& v = velocity[a][r.carrier];
-            const Real faster = velocity[a][r.face] - v;
-            const bool begins = was_wet[r.face] != 0 || was_wet[r.face - layout().stride[a]] != 0;
-            if (begins && faster * v > 0) continue;
-            Real& more = burden_[a][r.carrier];
-            const Real has = liquid_of(a, r.carrier) + more;
-            const Real adds = r.share * liquid_of(a, r.face);
-            if (has + adds > 0) v += faster * adds / (has + adds);
-            more += adds;
+        const auto& riders = extension_.riders(a);
+        for (auto first = riders.begin(), last = first; first != riders.end(); first = last) {
+            Real& v = velocity[a][first->carrier];
+            Real mass = liquid_of(a, first->carrier), given = 0, given_by_new = 0;
+            for (; last != riders.end() && last->carrier == first->carrier; ++last) {
+                const bool is_new = was_wet[last->face] != 0 || was_wet[last->face - layout().stride[a]] != 0;
+                const Real adds = last->share * liquid_of(a, last->face);
+                (is_new ? given_by_new : given) += adds * (velocity[a][last->face] - v);
+                mass += adds;
+            }
+            if (mass <= 0) continue;
+            v += given / mass;
+            const auto [least, most] = std::minmax({-v, Real(0)});
+            v += std::clamp(given_by_new / mass, least, most);
         }
-        for (const auto& r : extension_.riders(a)) burden_[a][r.carrier] = 0;
     });
     extension_.lead(velocity);
 }

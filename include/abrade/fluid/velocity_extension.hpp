@@ -153,6 +153,7 @@ public:
         Real share = 0;  ///< of its liquid that this carrier bears [-]
         Real own = 0;    ///< what it moved at by itself in the last extension [m/s]
     };
+    /// Those of a carrier one after the other.
     const std::vector<Rider>& riders(int a) const noexcept { return riders_[a]; }
 
 private:
@@ -337,6 +338,9 @@ private:
         riders_[a].clear();
         for (const auto& riders : riders_in_)
             riders_[a].insert(riders_[a].end(), riders.begin(), riders.end());
+        std::sort(riders_[a].begin(), riders_[a].end(), [](const Rider& r, const Rider& s) {
+            return std::pair(r.carrier, r.face) < std::pair(s.carrier, s.face);
+        });
     }
 
     /// Faces that hold liquid and do not ride wait for what is carried to them.
