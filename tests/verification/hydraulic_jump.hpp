@@ -22,6 +22,7 @@ struct Section {
     Real depth = 0;                        ///< [m]
     Real flow = 0, square = 0;             ///< u, u^2
     Real head = 0, energy = 0, count = 0;  ///< H, u H
+    Real thrust = 0;                       ///< u^2 + p / rho, times the step [m3/s]
 
     /// Energy over weight that go through it as one sees who moves at `speed` [m].
     Real head_at(Real speed) const {
@@ -67,7 +68,7 @@ struct Jump {
         return grid.high(0);
     }
     /// At x [h_1].
-    void add(Section& s, const GridFluid<2>& flow, Real x) const {
+    void add(Section& s, const GridFluid<2>& flow, Real x, Real step) const {
         const Grid<2>& grid = flow.grid();
         const int i = static_cast<int>(x * depth / grid.size(0, 0));
         for (int k = 0; k < grid.cells(1); ++k) {
@@ -78,8 +79,23 @@ struct Jump {
             const Real head = grid.centre(1, k) + (flow.pressure()[c] + 0.5 * (u * u + w * w)) / gravity;
             s.depth += high, s.flow += high * u, s.square += high * u * u;
             s.head += high * head, s.energy += high * u * head;
+            s.thrust += step * (high * u * u + flow.pressure()[c] * grid.size(1, k));
         }
         s.count += 1;
+    }
+    /// Momentum along the channel between two places [h_1], over density and width [m3/s].
+    Real momentum(const GridFluid<2>& flow, Real from, Real to) const {
+        const Grid<2>& grid = flow.grid();
+        const auto column = [&](Real x) { return static_cast<int>(x * depth / grid.size(0, 0)); };
+        Real sum = 0;
+        for (int i = column(from); i < column(to); ++i)
+            for (int k = 0; k < grid.cells(1); ++k) {
+                const Offset c = grid.layout().at({i, k});
+                const Real u =
+                    0.5 * (flow.velocity()[0][c] + flow.velocity()[0][c + grid.layout().stride[0]]);
+                sum += flow.liquid().fraction()[c] * grid.volume({i, k}) * u;
+            }
+        return sum;
     }
 
     struct Found {
@@ -87,6 +103,9 @@ struct Jump {
         Real depth =
             0;  ///< behind over before it, over Belanger's at the Froude number that the jump sees [-]
         Real lost = 0;  ///< energy lost over Belanger's [-]
+        /// Momentum that comes in, less what goes out and what is stored, over what comes in: no wall holds
+        /// the water along the channel [-].
+        Real momentum_lost = 0;
     };
     /// On `n` cells; means from one time to another [h_1 / sqrt(g h_1)].
     Found run(int n, Real from, Real to) const {
@@ -94,12 +113,15 @@ struct Jump {
         const Real unit = depth / wave();
         flow.advance(from * unit);
         Section before, behind;
+        constexpr Real first = 3;
+        const Real last = length - 5, held = momentum(flow, first, last);
         Real front_sum = 0, time_sum = 0, product = 0, squares = 0, count = 0;
         while (flow.time() < to * unit) {
-            flow.step(flow.stable_step().seconds);
+            const Real step = flow.stable_step().seconds;
+            flow.step(step);
             const Real x = front(flow), t = flow.time();
             front_sum += x, time_sum += t, product += x * t, squares += t * t, count += 1;
-            add(before, flow, 3), add(behind, flow, length - 5);
+            add(before, flow, first, step), add(behind, flow, last, step);
         }
         const Real shallow = before.depth / count, deep = behind.depth / count;
         Found found;
@@ -110,9 +132,11 @@ struct Jump {
         seen.froude = (before.flow / before.depth - speed) / seen.wave();
         found.depth = deep / shallow / seen.sequent();
         found.lost = (before.head_at(speed) - behind.head_at(speed)) / (seen.lost() * shallow);
+        found.momentum_lost = 1 - (behind.thrust + momentum(flow, first, last) - held) / before.thrust;
         MESSAGE("F = " << froude << ", " << n << " cells: it runs at " << 100 * found.speed
                        << " % of the stream's speed; depth behind over Belanger's " << found.depth
-                       << "; energy lost " << found.lost << " of Belanger's; discharge behind "
+                       << "; energy lost " << found.lost << " of Belanger's; momentum lost "
+                       << 100 * found.momentum_lost << " %; discharge behind "
                        << behind.flow / count / (stream() * depth) << "; depth there over the tailwater's "
                        << deep / depth / sequent());
         return found;
