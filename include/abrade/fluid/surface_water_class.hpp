@@ -232,7 +232,9 @@ private:
             return {.steepest = params.steepest_surface, .most_overturning = params.most_overturning};
         } else {
             const Real smallest = std::clamp(params.tolerance, 1e-6, 1e-4);
-            return {.smallest_void = smallest, .most_surplus = 10 * smallest};
+            return {.courant = std::max(0.5, params.courant),
+                    .smallest_void = smallest,
+                    .most_surplus = 10 * smallest};
         }
     }
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }

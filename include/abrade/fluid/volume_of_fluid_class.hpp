@@ -47,9 +47,6 @@ template <int Dim>
 class VolumeOfFluid {
 public:
     static constexpr Real wisp = 1e-12;  ///< less than this is not a fraction but surplus [-]
-    /// Largest share of a cell that may leave it in a step [-]; `stable_step` takes it. Bounds of f hold
-    /// without anything moved aside up to here (Weymouth & Yue).
-    static constexpr Real courant_limit = 0.5;
     /// Beyond this a slab is wider than its cell: refused.
     static constexpr Real courant_end = 1;
 
@@ -57,6 +54,9 @@ public:
         /// Whether normals are found anew for every sweep, not once a step (docs/verification tells what
         /// for).
         bool fit_every_sweep = false;
+        /// Largest share of a cell that may leave it in a step [-]; `stable_step` takes it. Bounds of f hold
+        /// without anything moved aside up to 0.5 (Weymouth & Yue).
+        Real courant = 0.5;
         /// Air of less than this share of a cell [-] is a defect of the velocity's divergence, not a surface:
         /// take what a projection leaves, where that is more. Amid other water ten times as much is none.
         Real smallest_void = 1e-6;
@@ -66,6 +66,8 @@ public:
         Real most_surplus = std::numeric_limits<Real>::infinity();
 
         void validate() const {
+            require(courant > 0 && courant <= courant_end,
+                    {"VolumeOfFluid.courant", "in (0, 1]", "", "0.5 is usual"}, courant);
             require(smallest_void >= 0 && smallest_void <= 1e-3,
                     {"VolumeOfFluid.smallest_void", "from 0 to 1e-3", "", "1e-6 is usual"}, smallest_void);
         }
@@ -148,11 +150,11 @@ public:
 
     /// Whether `advance` would take such a step.
     bool can_advance(const FaceField<Dim>& u, Real dt) const { return dt * outflow_rate(u) <= courant_end; }
-    /// The largest step [s] at which no more than `courant_limit` of a cell at the surface leaves it;
+    /// The largest step [s] at which no more than `Params::courant` of a cell at the surface leaves it;
     /// infinite where nothing moves there.
     Real stable_step(const FaceField<Dim>& velocity) const {
         const Real rate = outflow_rate(velocity);
-        return rate > 0 ? courant_limit / rate : std::numeric_limits<Real>::infinity();
+        return rate > 0 ? params_.courant / rate : std::numeric_limits<Real>::infinity();
     }
 
     /// Steps taken: they say in which order the axes are swept. Set to go back.
