@@ -464,6 +464,13 @@ TEST_CASE("Courant limits: bounds beyond the stable step, and an error that name
     CHECK(message.find("take at most stable_step()") != std::string::npos);
     auto still = face_field<2>(grid.layout());
     CHECK(std::isinf(water.stable_step(still)));
+
+    VolumeOfFluid<2> faster(grid, sides, {.courant = 0.9});
+    faster.fraction() = water.fraction();
+    faster.prepare();
+    CHECK(faster.stable_step(u) == doctest::Approx(1.8 * water.stable_step(u)).epsilon(1e-12));
+    CHECK(message_of<InputError>([&] { VolumeOfFluid<2>(grid, sides, {.courant = 2}); }) ==
+          "VolumeOfFluid.courant must be in (0, 1], got 2; 0.5 is usual");
 }
 
 TEST_CASE("a single wet cell, a full box, an empty box") {
