@@ -14,9 +14,9 @@ for file in heap.png force_and_wear.png decay.png; do [ -s "out/03_heap_at_rest/
 
 worn=$(value worn_volume_mm3)
 holds "the fall wore something" "$worn > 100"
-# 0 to the last bit for most heaps. In some a stone still rocks at 4 s: it can wear what it swings with, no more.
+# 0 to the last bit for most heaps. In some a stone still rocks at 4 s: it can wear half of what it loses, no more.
 # 1e-12: units in the last place of the sum.
-holds "rest wears only what still swings" "$(value worn_since_rest_mm3) >= 0 &&
+holds "rest wears only what is lost" "$(value worn_since_rest_mm3) >= 0 &&
     $(value worn_since_rest_mm3) <= $(value wearable_at_rest_mm3) + 1e-12 * $worn"
 holds "what still swings is little" "$(value wearable_at_rest_mm3) < 1e-7 * $worn"
 # Of the mean rate of the fall, about a second long.
