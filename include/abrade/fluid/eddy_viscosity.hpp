@@ -192,8 +192,8 @@ private:
                 if constexpr (Weighted) {
                     const State w0 = known[k], w1 = known[k + to_a], w2 = known[k + to_b],
                                 w3 = known[k + to_a + to_b];
-                    const State all = w0 + w1 + w2 + w3;
-                    sum[k] += (w0 * s0 + w1 * s1 + w2 * s2 + w3 * s3) / (all > 1 ? all : State(1));
+                    const State all = w0 + w1 + w2 + w3, none = all > 0 ? State(0) : State(1);
+                    sum[k] += (w0 * s0 + w1 * s1 + w2 * s2 + w3 * s3) / (all + none);
                 } else {
                     sum[k] += State(0.25) * (s0 + s1 + s2 + s3);
                 }

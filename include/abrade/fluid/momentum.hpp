@@ -258,7 +258,7 @@ private:
                     value[k] = kept * velocity[i] + fresh * (moved + faster) - late * by_pressure;
                 }
             }
-            if (open)
+            if (open && is_shut(open + first))
                 for (int k = 0; k < lanes; ++k) value[k] = open[first + k] > 0 ? value[k] : State(0);
             if (r.begin <= first && first + lanes <= r.end)
                 std::copy_n(value, lanes, result + first);
@@ -279,6 +279,14 @@ private:
         return dry == 0;
     }
 
+    /// Whether walls close a face of a pack.
+    static bool is_shut(const Real* open) noexcept {
+        Real shut = 0;
+#pragma omp simd reduction(+ : shut)
+        for (int k = 0; k < lanes; ++k) shut += open[k] > 0 ? Real(0) : Real(1);
+        return shut > 0;
+    }
+
     /// Whether a pack's control volumes are full of liquid, before and now.
     static bool is_full(const State* now, const State* before, Offset back) noexcept {
         const State* const now_back = now - back;
@@ -286,9 +294,8 @@ private:
         State short_of = 0;  // a number, not a flag: one width for all
 #pragma omp simd reduction(+ : short_of)
         for (int k = 0; k < lanes; ++k) {
-            const State least = now[k] < now_back[k] ? now[k] : now_back[k];
-            const State least_before = before[k] < before_back[k] ? before[k] : before_back[k];
-            short_of += (least < least_before ? least : least_before) < 1 ? State(1) : State(0);
+            short_of += (now[k] < 1 ? State(1) : State(0)) + (now_back[k] < 1 ? State(1) : State(0)) +
+                        (before[k] < 1 ? State(1) : State(0)) + (before_back[k] < 1 ? State(1) : State(0));
         }
         return short_of == 0;
     }

@@ -318,8 +318,12 @@ private:
                 for_rows(plane, [&](Offset start, RowRange r) {
                     float* const __restrict p = search_.data() + start;
                     const float* const __restrict from = z.data() + start;
+                    if (beta == 0) {  // what is there may be no number
+                        std::copy(from + r.begin, from + r.end, p + r.begin);
+                        return;
+                    }
 #pragma omp simd
-                    for (int i = r.begin; i < r.end; ++i) p[i] = beta > 0 ? from[i] + beta * p[i] : from[i];
+                    for (int i = r.begin; i < r.end; ++i) p[i] = from[i] + beta * p[i];
                 });
                 return;
             }

@@ -85,7 +85,8 @@ struct Poisson {
         for_packs(x, plane, row, [&](const auto& terms, int first) {
 #pragma omp simd
             for (int k = 0; k < lanes; ++k)
-                out[first + k] = ((k ^ parity) & 1) == 0 ? right[first + k] * terms.inverse(first + k) : 0.0f;
+                out[first + k] =
+                    right[first + k] * (((k ^ parity) & 1) == 0 ? terms.inverse(first + k) : 0.0f);
         });
     }
 
@@ -111,7 +112,7 @@ struct Poisson {
             for (int k = 0; k < lanes; ++k) {
                 const float product = terms.product(first + k);
                 to[first + k] = product;
-                sums[k] += first + k < n ? product * from[first + k] : 0.0f;  // no ghosts
+                sums[k] += product * (first + k < n ? from[first + k] : 0.0f);  // no ghosts
             }
         });
         float sum = 0;

@@ -170,10 +170,10 @@ private:
                 const Real* const open = (*water.open_area)[a].data() + start;
 #pragma omp simd
                 for (int i = r.begin; i < r.end; ++i)
-                    face[i] = (wet[i] & low[i]) != 0 ? g[i] * static_cast<float>(open[i]) : 0.0f;
+                    face[i] = g[i] * static_cast<float>(open[i]) * static_cast<float>(wet[i] & low[i]);
             } else {
 #pragma omp simd
-                for (int i = r.begin; i < r.end; ++i) face[i] = (wet[i] & low[i]) != 0 ? g[i] : 0.0f;
+                for (int i = r.begin; i < r.end; ++i) face[i] = g[i] * static_cast<float>(wet[i] & low[i]);
             }
             if (a == inner && r.begin == 0) {
                 const bool joined = sides_.periodic(a) && wet[0] != 0 && wet[l.row_length() - 1] != 0;
@@ -323,7 +323,7 @@ private:
                 const float* const __restrict inverse = m.inverse_diagonal.data() + start;
 #pragma omp simd
                 for (int i = r.begin; i < r.end; ++i)
-                    p[i] += inverse[i] > 0 ? rate * static_cast<State>(from[i]) : State(0);
+                    p[i] += (inverse[i] > 0 ? rate : State(0)) * static_cast<State>(from[i]);
             }
         });
         return root_of_squares();
@@ -348,7 +348,8 @@ private:
             }
 #pragma omp simd
             for (int i = r.begin; i < r.end; ++i)
-                v[i] -= conducts[i] > 0 ? factor * slope[i] * static_cast<State>(from[i] - low[i]) : State(0);
+                v[i] -=
+                    (conducts[i] > 0 ? factor : State(0)) * slope[i] * static_cast<State>(from[i] - low[i]);
         }
     }
 

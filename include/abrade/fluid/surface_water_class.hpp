@@ -108,9 +108,10 @@ public:
             Real* const __restrict p = pressure.data() + start;
 #pragma omp simd
             for (int i = r.begin; i < r.end; ++i) {
-                const bool is_wet = liquid[i] >= 0.5 && room[i] > 0;
-                wet[i] = is_wet;
-                p[i] = is_wet ? p[i] : 0;
+                const Real is_wet =
+                    (liquid[i] >= 0.5 ? Real(1) : Real(0)) * (room[i] > 0 ? Real(1) : Real(0));
+                wet[i] = static_cast<std::uint8_t>(is_wet);
+                p[i] *= is_wet;
             }
         });
         if (walls_)

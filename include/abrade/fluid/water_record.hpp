@@ -53,10 +53,14 @@ public:
     bool keep(FaceField<Dim>& velocity, const Field<Real>& pressure, const SurfaceWater<Dim, Liquid>& water,
               const LateSteps& late, Real dt) {
         const WetRows<Dim> before = std::exchange(rows_, water.rows());
-        const auto bounded = [](Real x, Real most) { return x > most ? most : x < -most ? -most : x; };
+        const auto bounded = [](Real x, Real most) {
+            const Real below = x > most ? most : x;
+            return below < -most ? -most : below;
+        };
         const bool begins = late.last == 0;
         brief_ = late.brief(dt);
-        const bool knows = begins || was_brief_ || (restored_ && known_);
+        const Real knows = begins || was_brief_ || (restored_ && known_) ? 1 : 0;
+        const Real per_last = begins ? 0 : 1 / late.last;
         // An equal step that went wrong has not found the change; a later one catches up.
         const bool waits = brief_ || (restored_ && !known_);
         const Real led = std::exchange(lead_, waits ? 0 : 0.5 * dt - ahead_);
@@ -83,11 +87,11 @@ public:
 #pragma omp simd
                     for (int i = first; i < first + lanes; ++i) {
                         const int of_water = (wet[i] | wet_back[i]) & (was_wet[i] | was_wet_back[i]);
-                        const bool stays = of_water != 0 && i >= begin && i < end;
+                        const Real stays = (i >= begin ? 1 : 0) * (i < end ? 1 : 0) * of_water;
                         const Real last = static_cast<Real>(changes[i]);
                         const Real began = kept[i] + bounded(led * last, led_most);
-                        const Real rate = (now[i] - began) / late.last;
-                        const auto change = static_cast<float>(stays ? (knows ? last : rate) : 0);
+                        const Real rate = (now[i] - began) * per_last;
+                        const auto change = static_cast<float>(stays * (knows * last + (1 - knows) * rate));
                         kept[i] = now[i];
                         changes[i] = change;
                         now[i] += bounded(lead_ * static_cast<Real>(change), most);
