@@ -1,89 +1,200 @@
 #pragma once
-// A column of water runs against a wall: L. Lobovsky et al. 2014, doi 10.1016/j.jfluidstructs.2014.03.009.
-// Column 0.3 m high and 0.6 m long, tank 1.61 m, pressure 3 mm above the floor.
+// Columns of water fall and run against the far wall of their tank: the pressure that the wall feels, and how
+// high the water runs up on it.
 
 #include "reference_table.hpp"
 
 #include <abrade/fluid/grid_fluid.hpp>
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 namespace dam_impact {
 
 using namespace abrade;
 
-constexpr Real height = 0.3, length = 0.6, tank = 1.61, sensor = 0.003, gravity = 9.81;  ///< [m], [m/s2]
+constexpr Real gravity = 9.81;  ///< [m/s2]
 
-struct Pressure {
-    Real time = 0, value = 0;  ///< T = t sqrt(g / H), P = p / (rho g H) [-]
+/// A column of water in a corner of a tank that has a pressure sensor in its far wall.
+struct Tank {
+    std::string reference;  ///< what was measured, by file name
+    Real height = 0;        ///< of the column, H [m]
+    Real column = 0;        ///< its length [m]
+    Real length = 0;        ///< of the tank [m]
+    Real width = 0;         ///< of the tank, in three dimensions [m]
+    int roof = 2;           ///< height of the tank [H]
+    Real sensor = 0;        ///< above the floor [m]
+    Real arrived = 0;       ///< pressure at which the water has arrived at the sensor [rho g H]
+    Real viscosity = 0;     ///< of the water, dynamic [Pa s]
+
+    Real unit() const { return std::sqrt(gravity / height); }  ///< of time: T = t sqrt(g / H) [1/s]
+};
+
+/// L. Lobovsky et al. 2014, doi 10.1016/j.jfluidstructs.2014.03.009; water at 25 degrees C.
+inline const Tank lobovsky{.reference = "flu07_dambreak_lobovsky2014_pressure.csv",
+                           .height = 0.3,
+                           .column = 0.6,
+                           .length = 1.61,
+                           .width = 0.15,
+                           .roof = 2,
+                           .sensor = 0.003,
+                           .arrived = 0.5,
+                           .viscosity = 0.89e-3};
+/// B. Buchner 2002, Green water on ship-type offshore structures, TU Delft. Height and width of the tank are
+/// not in the data; no water reaches this roof.
+inline const Tank buchner{.reference = "flu08_dambreak_buchner2002_pressure.csv",
+                          .height = 0.6,
+                          .column = 1.2,
+                          .length = 5.366 * 0.6,
+                          .width = 0.6,
+                          .roof = 4,
+                          .sensor = 0.12,
+                          .arrived = 0.3,
+                          .viscosity = 1.0e-3};
+
+/// The far wall and the floor at a time.
+struct Sample {
+    Real time = 0;      ///< T = t sqrt(g / H) [-]
+    Real pressure = 0;  ///< P = p / (rho g H) [-]
+    Real run_up = 0;    ///< where the water on the wall ends [H]
+    Real front = 0;     ///< where the water on the floor ends [H]
 };
 
 /// `n` cells to the column's height, walls without friction.
 template <int Dim>
-GridFluid<Dim> dam(int n) {
-    const Real h = height / n;
+GridFluid<Dim> dam(const Tank& tank, int n) {
+    const Real h = tank.height / n;
     GridFluidParams<Dim> params;
-    params.grid.cells.fill(std::max(static_cast<int>(std::lround(0.15 / h)), 1));  // the tank is 0.15 m wide
-    params.grid.cells[0] = static_cast<int>(std::lround(tank / h));
-    params.grid.cells[Dim - 1] = 2 * n;
+    params.grid.cells.fill(std::max(static_cast<int>(std::lround(tank.width / h)), 1));
+    params.grid.cells[0] = static_cast<int>(std::lround(tank.length / h));
+    params.grid.cells[Dim - 1] = tank.roof * n;
     params.grid.spacing = Point<Dim>::Constant(h);
-    params.grid.spacing[0] = tank / params.grid.cells[0];
+    params.grid.spacing[0] = tank.length / params.grid.cells[0];
     params.sides = Sides<Dim>::all(Side::slip);
-    params.water = [](const Point<Dim>& x) { return std::min(length - x[0], height - x[Dim - 1]); };
+    params.water = [tank](const Point<Dim>& x) {
+        return std::min(tank.column - x[0], tank.height - x[Dim - 1]);
+    };
     params.gravity[Dim - 1] = -gravity;
-    params.viscosity = 0.89e-3;
+    params.viscosity = tank.viscosity;
     return GridFluid<Dim>(params);
 }
 
-/// What the sensor sees until T = `end`: pressure at the wall, from the cells at its height.
+/// The same between walls that hold the water: no slip at roughness 0, else a rough wall's logarithmic law.
+inline GridFluid<2> dam_between_rough_walls(const Tank& tank, int n, Real roughness) {
+    auto params = dam<2>(tank, n).params();
+    params.sides = Sides<2>::all(Side::wall);
+    if (roughness > 0) params.wall_law = {WallLaw::Kind::logarithmic, roughness};
+    return GridFluid<2>(params);
+}
+
+/// The wall until T = `end`. The pressure is that of the wall's cells, linear between the two whose centres
+/// are next to the sensor; below the lowest centre it is that cell's. The water on the wall ends, from the
+/// floor up, where a twentieth of H beside the wall is less than half full for the first time: the same
+/// thickness on all grids. On the floor it ends with the last cell that is half full.
 template <int Dim>
-std::vector<Pressure> run(GridFluid<Dim>& flow, Real end) {
+std::vector<Sample> run(const Tank& tank, GridFluid<Dim>& flow, Real end) {
     const Grid<Dim>& grid = flow.grid();
-    const Real unit = std::sqrt(gravity / height);
+    const int across = grid.cells(0), up = grid.cells(Dim - 1);
+    const Real h = grid.size(Dim - 1, 0);
     CellNumber<Dim> cell;
     cell.fill(grid.cells(1) / 2);
-    cell[0] = grid.cells(0) - 1;
-    cell[Dim - 1] = static_cast<int>(sensor / grid.size(Dim - 1, 0));
-    const Offset at = grid.layout().at(cell);
-    std::vector<Pressure> seen;
-    while (flow.time() * unit < end) {
+    const auto at = [&](int i, int k) {
+        cell[0] = i, cell[Dim - 1] = k;
+        return grid.layout().at(cell);
+    };
+    const Real place = std::max(tank.sensor / h - 0.5, Real(0));
+    const int below = static_cast<int>(place);
+    const Real share = place - below;
+    const int beside = std::max(static_cast<int>(std::lround(tank.height / h)) / 20, 1);
+    std::vector<Sample> seen;
+    while (flow.time() * tank.unit() < end) {
         flow.step(flow.stable_step().seconds);
-        seen.push_back({flow.time() * unit, flow.pressure()[at] / (gravity * height)});
+        const auto& p = flow.pressure();
+        const auto& f = flow.liquid().fraction();
+        const auto is_wet = [&](int k) {
+            Real sum = 0;
+            for (int i = across - beside; i < across; ++i) sum += f[at(i, k)];
+            return sum >= 0.5 * beside;
+        };
+        int wet = 0, front = across;
+        while (wet < up && is_wet(wet)) ++wet;
+        while (front > 0 && f[at(front - 1, 0)] < 0.5) --front;
+        const Real felt = (1 - share) * p[at(across - 1, below)] + share * p[at(across - 1, below + 1)];
+        seen.push_back({flow.time() * tank.unit(), felt / (gravity * tank.height), wet * h / tank.height,
+                        front * grid.size(0, 0) / tank.height});
     }
     return seen;
 }
 
-inline std::vector<Pressure> measured() {
-    std::vector<Pressure> found;
-    for (const ReferenceRow& row : reference_table("flu07_dambreak_lobovsky2014_pressure.csv"))
-        found.push_back({row.at("T"), row.at("P")});
+/// In the order of time: the digitised points are not.
+inline std::vector<Sample> measured(const Tank& tank) {
+    std::vector<Sample> found;
+    for (const ReferenceRow& row : reference_table(tank.reference))
+        found.push_back({.time = row.at("T"), .pressure = row.at("P")});
+    std::ranges::stable_sort(found, {}, &Sample::time);
     return found;
 }
 
-/// When the pressure first reaches half of what rests there would weigh.
-inline Real arrival(const std::vector<Pressure>& series) {
-    for (const Pressure& p : series)
-        if (p.value >= 0.5) return p.time;
+/// When the pressure first reaches that of an arrival.
+inline Real arrival(const Tank& tank, const std::vector<Sample>& series) {
+    for (const Sample& s : series)
+        if (s.pressure >= tank.arrived) return s.time;
     return series.back().time;
 }
-/// Mean over a while, by the trapezium rule.
-inline Real mean(const std::vector<Pressure>& series, Real from, Real to) {
-    Real sum = 0, time = 0;
+/// Of the pressure over a while, linear between samples.
+inline Real mean(const std::vector<Sample>& series, Real from, Real to) {
+    Real sum = 0;
     for (std::size_t k = 1; k < series.size(); ++k) {
-        if (series[k - 1].time < from || series[k].time > to) continue;
-        const Real step = series[k].time - series[k - 1].time;
-        sum += 0.5 * step * (series[k - 1].value + series[k].value), time += step;
+        const Sample &a = series[k - 1], &b = series[k];
+        const Real low = std::max(a.time, from), high = std::min(b.time, to);
+        if (high <= low) continue;
+        const Real slope = (b.pressure - a.pressure) / (b.time - a.time);
+        sum += (high - low) * (a.pressure + slope * (0.5 * (low + high) - a.time));
     }
-    return sum / time;
+    return sum / (to - from);
 }
-/// Largest mean over a while, so that no single step counts.
-inline Real peak(const std::vector<Pressure>& series, Real window = 0.05) {
-    Real most = 0;
-    for (const Pressure& p : series)
-        if (p.time + window <= series.back().time)
-            most = std::max(most, mean(series, p.time, p.time + window));
+struct Peak {
+    Real height = 0;  ///< [rho g H]
+    Real time = 0;    ///< the middle of its while, T [-]
+};
+/// Largest mean over a while, so that no single step and no single point counts.
+inline Peak peak(const std::vector<Sample>& series, Real from, Real to, Real window) {
+    Peak most{-1e9, 0};
+    for (Real start = from; start + window <= to; start += 0.01)
+        if (const Real height = mean(series, start, start + window); height > most.height)
+            most = {height, start + 0.5 * window};
     return most;
+}
+
+/// What is compared with measurements, which are treated alike.
+struct Impact {
+    Real arrival = 0;  ///< T [-]
+    Peak first{};      ///< up to T = 3.5, means over 0.05
+    Real plateau = 0;  ///< mean from T = 3.5 to 5 [rho g H]
+    Peak second{};     ///< the run-up falls back: T = 5 to 7, means over 0.1
+};
+constexpr Real last_time = 7;  ///< T [-]
+inline Impact impact(const Tank& tank, const std::vector<Sample>& series) {
+    const Real end = std::min(series.back().time, last_time);
+    return {.arrival = arrival(tank, series),
+            .first = peak(series, 2, 3.5, 0.05),
+            .plateau = mean(series, 3.5, 5),
+            .second = peak(series, 5, end, 0.1)};
+}
+
+/// The front's over the last half H before the wall [sqrt(g H)].
+inline Real front_speed(const Tank& tank, const std::vector<Sample>& series) {
+    const Real wall = tank.length / tank.height;
+    Real from = 0, to = 0;
+    for (const Sample& s : series) {
+        if (from == 0 && s.front >= wall - 0.6) from = s.time;
+        if (to == 0 && s.front >= wall - 0.1) to = s.time;
+    }
+    return 0.5 / (to - from);
+}
+inline Real largest_run_up(const std::vector<Sample>& series) {
+    return std::ranges::max(series, {}, &Sample::run_up).run_up;
 }
 
 }  // namespace dam_impact
