@@ -14,27 +14,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void draw_impact(const fs::path& folder) {
-    LineChart chart{
-        .title = "A column of water against a wall: pressure 3 mm above the floor, 40 cells to its height",
-        .x = {.label = "t sqrt(g/H)", .unit = "", .min = 2.0, .max = 5.5},
-        .y = {.label = "p / (rho g H)", .unit = "", .min = 0.0, .max = 3.0},
-        .curves = {}};
-    const auto add = [&](const std::string& title, const std::vector<dam_impact::Pressure>& series,
+struct ImpactChart {
+    dam_impact::Tank tank;
+    std::string title, measured, file;
+    Real most = 0;  ///< [rho g H]
+};
+
+void draw_impact(const ImpactChart& what, const fs::path& folder) {
+    constexpr int cells = 40;
+    LineChart chart{.title = what.title + ", " + std::to_string(cells) + " cells to the column's height",
+                    .x = {.label = "t sqrt(g/H)", .unit = "", .min = 2.0, .max = dam_impact::last_time},
+                    .y = {.label = "p / (rho g H)", .unit = "", .min = 0.0, .max = what.most},
+                    .curves = {}};
+    const auto add = [&](const std::string& title, const std::vector<dam_impact::Sample>& series,
                          CurveStyle style) {
         Curve curve{.title = title, .x = {}, .y = {}, .style = style};
-        for (const auto& [time, value] : series) curve.x.push_back(time), curve.y.push_back(value);
+        for (const auto& s : series) curve.x.push_back(s.time), curve.y.push_back(s.pressure);
         chart.curves.push_back(curve);
     };
-    auto smooth = dam_impact::dam<2>(40);
-    add("walls without friction", dam_impact::run(smooth, 5.5), CurveStyle::line);
-    auto params = smooth.params();
-    params.sides = Sides<2>::all(Side::wall);
-    params.wall_law = {WallLaw::Kind::logarithmic, 2e-4};
-    GridFluid<2> rough(params);
-    add("0.2 mm rough", dam_impact::run(rough, 5.5), CurveStyle::line);
-    add("Lobovsky et al.", dam_impact::measured(), CurveStyle::points);
-    draw(chart, folder / "verification_free_surface_impact.png");
+    auto smooth = dam_impact::dam<2>(what.tank, cells);
+    add("walls without friction", dam_impact::run(what.tank, smooth, dam_impact::last_time),
+        CurveStyle::line);
+    for (const Real roughness : {2e-5, 2e-4}) {
+        auto rough = dam_impact::dam_between_rough_walls(what.tank, cells, roughness);
+        add(roughness < 1e-4 ? "0.02 mm rough" : "0.2 mm rough",
+            dam_impact::run(what.tank, rough, dam_impact::last_time), CurveStyle::line);
+    }
+    add(what.measured, dam_impact::measured(what.tank), CurveStyle::points);
+    draw(chart, folder / what.file);
 }
 
 void draw_energy(const fs::path& folder) {
@@ -65,7 +72,12 @@ int main(int argc, char** argv) {
     try {
         const fs::path folder = argc > 1 ? argv[1] : "out/charts/free_surface";
         fs::create_directories(folder);
-        draw_impact(folder);
+        draw_impact({dam_impact::lobovsky, "Pressure 0.01 H above the floor", "Lobovsky et al.",
+                     "verification_free_surface_impact.png", 3},
+                    folder);
+        draw_impact({dam_impact::buchner, "Pressure 0.2 H above the floor", "Buchner",
+                     "verification_free_surface_run_up.png", 1.5},
+                    folder);
         draw_energy(folder);
         std::cout << "pictures in " << folder.string() << '\n';
     } catch (const std::exception& problem) {

@@ -42,12 +42,12 @@ inline const Tank lobovsky{.reference = "flu07_dambreak_lobovsky2014_pressure.cs
                            .arrived = 0.5,
                            .viscosity = 0.89e-3};
 /// B. Buchner 2002, Green water on ship-type offshore structures, TU Delft. Height and width of the tank are
-/// not in the data; no water reaches this roof.
+/// not in the data: it is two-dimensional here, and no water reaches this roof.
 inline const Tank buchner{.reference = "flu08_dambreak_buchner2002_pressure.csv",
                           .height = 0.6,
                           .column = 1.2,
                           .length = 5.366 * 0.6,
-                          .width = 0.6,
+                          .width = 0,
                           .roof = 4,
                           .sensor = 0.12,
                           .arrived = 0.3,
@@ -192,6 +192,15 @@ inline Real front_speed(const Tank& tank, const std::vector<Sample>& series) {
         if (to == 0 && s.front >= wall - 0.1) to = s.time;
     }
     return 0.5 / (to - from);
+}
+/// Height and v^2 / 2g of the water that climbs, at a height of H [H]: where it gets without friction.
+inline Real climbing_head(const std::vector<Sample>& series) {
+    Real from = 0, to = 0;
+    for (const Sample& s : series) {
+        if (from == 0 && s.run_up >= 0.75) from = s.time;
+        if (to == 0 && s.run_up >= 1.25) to = s.time;
+    }
+    return 1 + 0.5 * square(0.5 / (to - from));
 }
 inline Real largest_run_up(const std::vector<Sample>& series) {
     return std::ranges::max(series, {}, &Sample::run_up).run_up;

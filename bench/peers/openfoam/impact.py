@@ -2,13 +2,14 @@
 """What air and the wall's layer do to the pressure on a wall: interFoam runs Buchner's dam break with air and with air
 a thousand times lighter, between walls that hold the water and walls that let it glide.
 
-    bench/peers/openfoam/impact.py [CELLS [CASE...]]      # to the column's height, 20 without; all cases without
+    bench/peers/openfoam/impact.py [--until T] CELLS [CASE...]      # cells to the column's height; all cases without
 
-One core, 20 cells: 3 min, 40 cells: half an hour. Each run's series at the wall goes to out/bench/openfoam_impact/: T,
+One core, 20 cells: 4 min; 40 cells with air until T = 4: 3 min. Each run's series at the wall goes to out/bench/openfoam_impact/: T,
 pressure and run-up as tests/verification/dam_impact.hpp has them. out/bench/openfoam_impact.csv is the table of all
 series there; bench/peers/openfoam/impact_measured.csv is such a table, kept.
 """
 
+import argparse
 import csv
 import datetime
 import math
@@ -23,13 +24,12 @@ from common import Failed, call, processor, root, version_of, work  # noqa: E402
 
 environment = {"WM_PROJECT_DIR": "/usr/share/openfoam"}
 height, length, roof, gravity = 0.6, 5.366 * 0.6, 4, 9.81  # H [m], the tank [m], its height [H], [m/s2]
-sensor, end = 0.2, 7.0  # [H], T = t sqrt(g/H)
-fluids = {  # density of the air [kg/m3], kinematic viscosity of the water [m2/s], what walls do
-    "air_no_slip": (1, 1e-6, "noSlip"),
-    "air_slip": (1, 1e-6, "slip"),
-    "light_air_no_slip": (1e-3, 1e-6, "noSlip"),
-    "light_air_slip": (1e-3, 1e-6, "slip"),
-    "light_air_slip_inviscid": (1e-3, 0, "slip"),
+sensor, last = 0.2, 7.0  # [H], T = t sqrt(g/H)
+fluids = {  # density of the air [kg/m3], what walls do
+    "air_no_slip": (1, "noSlip"),
+    "air_slip": (1, "slip"),
+    "light_air_no_slip": (1e-3, "noSlip"),
+    "light_air_slip": (1e-3, "slip"),
 }
 
 
@@ -38,19 +38,19 @@ def beside(n):
     return max(n // 20, 1)
 
 
-def files(n, density, viscosity, wall):
+def files(n, until, density, wall):
     across, up = round(length * n / height), roof * n
     h = height / n
     found = cases.inter_dam_break((length, roof * height, h), (across, up, 1), (2 * height, height), 1e-4,
-                                  end / math.sqrt(gravity / height), 10, adjust=0.5, flat=True)
+                                  until / math.sqrt(gravity / height), 10, adjust=0.5, flat=True)
     places = " ".join(f"({length - (i + 0.5) * length / across:.9g} {(k + 0.5) * h:.9g} {0.5 * h:.9g})"
                       for i in range(beside(n)) for k in range(up))
     found["system/controlDict"] += ("functions {wall {type probes; libs (\"libsampling.so\"); fields (p alpha.water); "
                                     f"writeControl timeStep; writeInterval 1; probeLocations ({places});}}}}\n")
     found["constant/transportProperties"] = cases.foam(
         "dictionary", "transportProperties",
-        f"phases (water air); water {{transportModel Newtonian; nu {viscosity:g}; rho 1000;}}\n"
-        f"air {{transportModel Newtonian; nu {1.48e-5 if viscosity else 0:g}; rho {density:g};}} sigma 0;")
+        "phases (water air); water {transportModel Newtonian; nu 1e-6; rho 1000;}\n"
+        f"air {{transportModel Newtonian; nu 1.48e-5; rho {density:g};}} sigma 0;")
     found["0/U"] = found["0/U"].replace("walls {type noSlip;}", f"walls {{type {wall};}}")
     return found
 
@@ -93,10 +93,11 @@ def peak(points, start, stop, window):
 
 def measures(points):
     """As tests/verification/long_dam_impact.cpp takes them."""
-    first, second = peak(points, 2, 3.5, 0.05), peak(points, 5, end, 0.1)
-    return {"arrival": next(t for t, p, *_ in points if p >= 0.3), "first_peak": first[0], "plateau": mean(points, 3.5, 5),
-            "second_peak": second[0], "second_peak_at": second[1],
-            "run_up": max(p[2] for p in points) if len(points[0]) > 2 else ""}
+    first, end = peak(points, 2, 3.5, 0.05), points[-1][0]
+    second = peak(points, 5, last, 0.1) if end > 0.99 * last else ("", "")
+    return {"arrival": next(t for t, p, *_ in points if p >= 0.3), "first_peak": first[0],
+            "plateau": mean(points, 3.5, 5) if end > 5 else "", "second_peak": second[0], "second_peak_at": second[1],
+            "run_up": max(p[2] for p in points) if len(points[0]) > 2 and end > 5 else ""}
 
 
 def shown(values):
@@ -109,11 +110,11 @@ def read(path):
     return lines[0].split()[1:], sorted(tuple(map(float, line.split(","))) for line in lines[2:])
 
 
-def run(n, name, kept):
+def run(n, name, until, kept):
     label = f"impact_{n}_{name}"
     folder = work / "openfoam" / label
     shutil.rmtree(folder, ignore_errors=True)
-    cases.write(folder, files(n, *fluids[name]))
+    cases.write(folder, files(n, until, *fluids[name]))
     for program in ("blockMesh", "setFields"):
         call([program, "-case", folder], f"openfoam_{label}_{program}", environment)
     steps = logs.steps(call(["nice", "-n", "5", "interFoam", "-case", folder], f"openfoam_{label}", environment))
@@ -132,22 +133,26 @@ def table(kept):
 
 
 if __name__ == "__main__":
-    cells, *chosen = sys.argv[1:] or ["20"]
-    if not set(chosen) <= set(fluids):
-        sys.exit(f"there is no such case; there are {', '.join(fluids)}")
+    parser = argparse.ArgumentParser(prog="bench/peers/openfoam/impact.py")
+    parser.add_argument("cells", type=int)
+    parser.add_argument("cases", nargs="*", type=str, help="of " + ", ".join(fluids))
+    parser.add_argument("--until", type=float, default=last, help="T = t sqrt(g/H) (%(default)s)")
+    options = parser.parse_args()
+    if not set(options.cases) <= set(fluids):
+        parser.error(f"there is no such case; there are {', '.join(fluids)}")
     kept = root / "out" / "bench" / "openfoam_impact"
     for folder in (work, kept):
         folder.mkdir(parents=True, exist_ok=True)
-    for case in chosen or fluids:
+    for case in options.cases or fluids:
         try:
-            run(int(cells), case, kept)
+            run(options.cells, case, options.until, kept)
         except Failed as problem:
             print(f"{case}: {problem}", flush=True)
     rows = table(kept)
     for row in rows:
         print(*row.values())
     with open(kept.with_suffix(".csv"), "w", newline="") as file:
-        file.write("# bench/peers/openfoam/impact.py 20; impact.py 40 CASE...: OpenFOAM "
+        file.write("# bench/peers/openfoam/impact.py: OpenFOAM "
                    f"{version_of('openfoam', 'interFoam')}, Debian's build, one core of {processor()}, "
                    f"{datetime.date.today()}\n")
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
