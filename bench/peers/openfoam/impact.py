@@ -4,9 +4,10 @@ a thousand times lighter, between walls that hold the water and walls that let i
 
     bench/peers/openfoam/impact.py [--until T] CELLS [CASE...]      # cells to the column's height; all cases without
 
-One core, 20 cells: 4 min; 40 cells with air until T = 4: 3 min. Each run's series at the wall goes to out/bench/openfoam_impact/: T,
-pressure and run-up as tests/verification/dam_impact.hpp has them. out/bench/openfoam_impact.csv is the table of all
-series there; bench/peers/openfoam/impact_measured.csv is such a table, kept.
+One core, 20 cells: 4 min; 40 cells with air until T = 4: 3 min. Each run's series at the wall goes to
+out/bench/openfoam_impact/: T, pressure and run-up as tests/verification/dam_impact.hpp has them.
+out/bench/openfoam_impact.csv is the table of all series there; bench/peers/openfoam/impact_measured.csv is such a
+table, kept.
 """
 
 import argparse
