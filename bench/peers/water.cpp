@@ -1,4 +1,7 @@
-// One flow of bench/peers, timed: peers_water --case NAME. Prints JSON.
+// One flow of bench/peers, timed: bench_peers_water --case NAME. Prints JSON: a whole run with what its error
+// is computed from, or for the cases that count cells the cell-steps a second.
+
+#include "../water_flows.hpp"
 
 #include <abrade/core/simd.hpp>
 #include <abrade/fluid/grid_fluid.hpp>
@@ -8,14 +11,20 @@
 
 #include <chrono>
 #include <ctime>
+#include <functional>
 #include <iostream>
+#include <map>
+#include <stdexcept>
+#include <string>
 
 using namespace abrade;
 
 namespace {
 
 struct Options {
-    std::string scene = "cavity";
+    std::string scene = "cavity", variant = "Limited";
+    int cells = 32;  ///< across the side, the column, or the channel's length
+    Real courant = 0.5;
     int warm = 10, steps = 20, rounds = 10, threads = 1;
     /// Share of a cell's volume gained or lost in a step, root mean square [-]; 0: what leaves no more of the
     /// divergence than OpenFOAM does.
@@ -44,7 +53,7 @@ Real divergence(const GridFluid<3, Surface>& fluid, Real dt) {
 }
 
 /// 64^3 cells, a lid of speed 1 on top along x, Re 1000.
-auto cavity(const Options& o) {
+auto cavity_cells(const Options& o) {
     const int n = 64;
     return GridFluid<3, FullBox>(
         {.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(1.0 / n)},
@@ -55,7 +64,7 @@ auto cavity(const Options& o) {
 }
 
 /// 80 x 40 x 80 cells, a column of 0.1461 m by 0.292 m across the whole width.
-auto dam_break(const Options& o) {
+auto dam_break_cells(const Options& o) {
     return GridFluid<3>({.grid = {.cells = {80, 40, 80}, .spacing = Vec3::Constant(0.0073)},
                          .water = [](const Vec3& x) { return std::min(0.1461 - x.x(), 0.292 - x.z()); },
                          .gravity = {0, 0, -9.81},
@@ -94,9 +103,65 @@ void measure(const Options& o, Real dt, auto&& make) {
     std::cout << result.dump() << "\n";
 }
 
+nlohmann::json data_of(const water_flows::CentreLines& f) { return {{"at", f.at}, {"u", f.u}, {"v", f.v}}; }
+nlohmann::json data_of(const water_flows::Vortices& f) {
+    return {{"u", f.u}, {"v", f.v}, {"u_at", {0, 0.5}}, {"v_at", {0.5, 0}}};
+}
+nlohmann::json data_of(const water_flows::Collapse& f) {
+    return {{"time", f.time}, {"floor", f.floor}, {"depth", f.depth}};
+}
+nlohmann::json data_of(const water_flows::Bump& f) { return {{"x", f.x}, {"level", f.surface}}; }
+
+/// A whole run to its end, by the name of a variant.
+template <class Flow>
+using Variants = std::map<std::string, std::function<Flow(int, const water_flows::Choice&)>>;
+
+template <class Flow>
+void run_whole(const Options& o, const Variants<Flow>& variants) {
+    const auto found = variants.find(o.variant);
+    if (found == variants.end()) {
+        std::string known;
+        for (const auto& [name, once] : variants) known += (known.empty() ? "" : ", ") + name;
+        throw std::runtime_error("case " + o.scene + " has no variant '" + o.variant + "'; there are " +
+                                 known);
+    }
+    const auto run = water_flows::timed([&] {
+        return found->second(o.cells,
+                             {.tolerance = o.tolerance > 0 ? o.tolerance : 1e-6, .courant = o.courant});
+    });
+    const nlohmann::json result{{"case", o.scene},
+                                {"variant", o.variant},
+                                {"cells", run.flow.cost.cells},
+                                {"steps", run.flow.cost.steps},
+                                {"seconds", run.seconds},
+                                {"data", data_of(run.flow)},
+                                {"instruction_set", instruction_set},
+                                {"compiler", ABRADE_COMPILER}};
+    std::cout << result.dump() << "\n";
+}
+
 void run(const Options& o) {
-    if (o.scene == "cavity") measure(o, 0.005, [&] { return cavity(o); });
-    if (o.scene == "dam_break") measure(o, 0.001, [&] { return dam_break(o); });
+    using namespace water_flows;
+    if (o.scene == "cavity")
+        run_whole<CentreLines>(o, {{"Limited", water_flows::cavity<Limited>},
+                                   {"Central", water_flows::cavity<Central>},
+                                   {"Limited in float", water_flows::cavity<Limited, float>},
+                                   {"Central in float", water_flows::cavity<Central, float>}});
+    if (o.scene == "taylor_green")
+        run_whole<Vortices>(o, {{"Limited", taylor_green<Limited>},
+                                {"Central", taylor_green<Central>},
+                                {"Limited in float", taylor_green<Limited, float>},
+                                {"Central in float", taylor_green<Central, float>}});
+    if (o.scene == "dam_break")
+        run_whole<Collapse>(
+            o, {{"Limited", water_flows::dam_break<Limited>}, {"Central", water_flows::dam_break<Central>}});
+    if (o.scene == "bump")
+        run_whole<Bump>(o, {{"Limited", bump<FreeSurface, Limited>},
+                            {"Central", bump<FreeSurface, Central>},
+                            {"Limited, height", bump<HeightSurface, Limited>},
+                            {"Central, height", bump<HeightSurface, Central>}});
+    if (o.scene == "cavity_cells") measure(o, 0.005, [&] { return cavity_cells(o); });
+    if (o.scene == "dam_break_cells") measure(o, 0.001, [&] { return dam_break_cells(o); });
 }
 
 }  // namespace
@@ -104,7 +169,13 @@ void run(const Options& o) {
 int main(int argc, char** argv) {
     Options options;
     CLI::App app{"Times the flows that bench/peers/run compares."};
-    app.add_option("--case", options.scene)->check(CLI::IsMember({"cavity", "dam_break"}));
+    app.add_option("--case", options.scene)
+        ->check(CLI::IsMember(
+            {"cavity", "taylor_green", "dam_break", "bump", "cavity_cells", "dam_break_cells"}));
+    app.add_option("--variant", options.variant, "scheme, state, surface");
+    app.add_option("--cells", options.cells, "across the side, the column, or along the channel")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--courant", options.courant)->check(CLI::PositiveNumber);
     app.add_option("--steps", options.steps, "timed, in each round")->check(CLI::PositiveNumber);
     app.add_option("--warm", options.warm, "steps before")->check(CLI::PositiveNumber);
     app.add_option("--rounds", options.rounds, "from the beginning each")->check(CLI::PositiveNumber);

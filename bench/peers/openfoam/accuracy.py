@@ -29,7 +29,7 @@ def run(name, files, solver, before=()):
     folder = work / "openfoam" / name
     shutil.rmtree(folder, ignore_errors=True)
     cases.write(folder, files)
-    for program in ("blockMesh", *before):
+    for program in (*(["blockMesh"] if "system/blockMeshDict" in files else []), *before):
         call([program, "-case", folder], f"openfoam_{name}_{program}", environment)
     start = time.monotonic()
     log = call(["nice", "-n", "5", *pinned(1), solver, "-case", folder], f"openfoam_{name}", environment)

@@ -138,22 +138,8 @@ def ico_taylor_green(cells, viscosity, dt, end, tolerance=1e-7):
 # --- interFoam, as its tutorial of a dam break ---------------------------------------------------------------
 
 
-def inter_dam_break(lengths, cells, column, dt, end, every, adjust=None, flat=False):
-    """A column of water (its extent along x and upwards) falls in a box that is open above. In three dimensions
-    z is up, in two y is."""
-    up = "y" if flat else "z"
-    walls = ["x0", "x1", "y0"] if flat else ["x0", "x1", "y0", "y1", "z0"]
-    patches = {"walls": ("wall", walls), "open": ("patch", [up + "1"])}
-    empty = ""
-    if flat:
-        patches["flat"] = ("empty", ["z0", "z1"])
-        empty = "flat {type empty;}"
-    corner = (column[0], column[1], lengths[2]) if flat else (column[0], lengths[1], column[1])
-    gravity = "(0 -9.81 0)" if flat else "(0 0 -9.81)"
+def inter_numerics():
     return {
-        "system/blockMeshDict": mesh(lengths, cells, patches),
-        "system/controlDict": control("interFoam", dt, end, every, adjust),
-        "system/decomposeParDict": in_ranks(2),
         "system/fvSchemes": foam("dictionary", "fvSchemes", """ddtSchemes {default Euler;}
 gradSchemes {default Gauss linear;}
 divSchemes {
@@ -177,16 +163,42 @@ snGradSchemes {default corrected;}"""),
 }
 PIMPLE {momentumPredictor no; nOuterCorrectors 1; nCorrectors 3; nNonOrthogonalCorrectors 0;}
 relaxationFactors {equations {".*" 1;}}"""),
-        "system/setFieldsDict": foam("dictionary", "setFieldsDict",
-                                     "defaultFieldValues (volScalarFieldValue alpha.water 0);\n"
-                                     "regions (boxToCell {box (-1 -1 -1) (%.12g %.12g %.12g); "
-                                     "fieldValues (volScalarFieldValue alpha.water 1);});" % corner),
+    }
+
+
+def water_and_air(gravity):
+    return {
         "constant/transportProperties": foam("dictionary", "transportProperties",
                                              "phases (water air);\n"
                                              "water {transportModel Newtonian; nu 1e-06; rho 1000;}\n"
                                              "air {transportModel Newtonian; nu 1.48e-05; rho 1;} sigma 0.07;"),
         "constant/turbulenceProperties": foam("dictionary", "turbulenceProperties", "simulationType laminar;"),
         "constant/g": foam("uniformDimensionedVectorField", "g", f"dimensions [0 1 -2 0 0 0 0]; value {gravity};"),
+    }
+
+
+def inter_dam_break(lengths, cells, column, dt, end, every, adjust=None, flat=False):
+    """A column of water (its extent along x and upwards) falls in a box that is open above. In three dimensions
+    z is up, in two y is."""
+    up = "y" if flat else "z"
+    walls = ["x0", "x1", "y0"] if flat else ["x0", "x1", "y0", "y1", "z0"]
+    patches = {"walls": ("wall", walls), "open": ("patch", [up + "1"])}
+    empty = ""
+    if flat:
+        patches["flat"] = ("empty", ["z0", "z1"])
+        empty = "flat {type empty;}"
+    corner = (column[0], column[1], lengths[2]) if flat else (column[0], lengths[1], column[1])
+    gravity = "(0 -9.81 0)" if flat else "(0 0 -9.81)"
+    return {
+        "system/blockMeshDict": mesh(lengths, cells, patches),
+        "system/controlDict": control("interFoam", dt, end, every, adjust),
+        "system/decomposeParDict": in_ranks(2),
+        **inter_numerics(),
+        "system/setFieldsDict": foam("dictionary", "setFieldsDict",
+                                     "defaultFieldValues (volScalarFieldValue alpha.water 0);\n"
+                                     "regions (boxToCell {box (-1 -1 -1) (%.12g %.12g %.12g); "
+                                     "fieldValues (volScalarFieldValue alpha.water 1);});" % corner),
+        **water_and_air(gravity),
         "0/U": field("Vector", "U", "[0 1 -1 0 0 0 0]", "uniform (0 0 0)",
                      "walls {type noSlip;} open {type pressureInletOutletVelocity; value uniform (0 0 0);} " + empty),
         "0/p_rgh": field("Scalar", "p_rgh", "[1 -1 -2 0 0 0 0]", "uniform 0",
