@@ -4,11 +4,9 @@
 // machine in the same hour; bench/peers/openfoam_measured.csv unless told otherwise.
 
 #include "../../tests/verification/reference_table.hpp"
+#include "../water_flows.hpp"
 #include "panels.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
-
-#include <ctime>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -32,18 +30,6 @@ struct Variant {
     std::function<Run(int)> run;  ///< of cells
 };
 
-/// The median of three where a run is short.
-Run timed(const std::function<Run()>& once) {
-    std::vector<Run> runs;
-    do {
-        const std::clock_t start = std::clock();
-        runs.push_back(once());
-        runs.back().seconds = static_cast<Real>(std::clock() - start) / CLOCKS_PER_SEC;
-    } while (runs.size() < 3 && runs.back().seconds < 2);
-    std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.seconds < b.seconds; });
-    return runs[runs.size() / 2];
-}
-
 /// Through the four points nearest to x; xs rise. As accuracy.py has it.
 Real cubic(const std::vector<Real>& xs, const std::vector<Real>& ys, Real x) {
     const auto above = std::lower_bound(xs.begin() + 1, xs.end() - 1, x) - xs.begin();
@@ -59,25 +45,19 @@ Real cubic(const std::vector<Real>& xs, const std::vector<Real>& ys, Real x) {
     return total;
 }
 
-/// The lid-driven cavity at Re 1000 after 40 s, against U. Ghia et al. 1982
-/// (doi 10.1016/0021-9991(82)90058-4) and the smallest u on the centre line of O. Botella and R. Peyret 1998
-/// (doi 10.1016/S0045-7930(98)00002-4).
+template <class Flow>
+Run cost_of(const water_flows::Timed<Flow>& run) {
+    return {.cells = run.flow.cost.cells, .steps = run.flow.cost.steps, .seconds = run.seconds};
+}
+
+/// The cavity against U. Ghia et al. 1982 (doi:10.1016/0021-9991(82)90058-4) and the smallest u on the centre
+/// line of O. Botella and R. Peyret 1998 (doi:10.1016/S0045-7930(98)00002-4).
 template <AdvectionScheme Scheme, class State = Real>
 Run cavity(int n, Real tolerance) {
-    GridFluid<2, FullBox, Scheme, State> flow(
-        {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)},
-         .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
-         .density = 1,
-         .viscosity = 1e-3,
-         .tolerance = tolerance});
-    flow.advance(40);
-    std::vector<Real> z{0}, u{0};
-    for (int k = 0; k < n; ++k) {
-        z.push_back((k + 0.5) / n);
-        u.push_back(static_cast<Real>(flow.velocity()[0][flow.grid().layout().at({n / 2, k})]));
-    }
-    z.push_back(1), u.push_back(1);
-    Run run{.cells = n * n, .steps = flow.steps()};
+    const auto timed =
+        water_flows::timed([&] { return water_flows::cavity<Scheme, State>(n, {.tolerance = tolerance}); });
+    const std::vector<Real>&z = timed.flow.at, &u = timed.flow.u;
+    Run run = cost_of(timed);
     Real& off_ghia = run.errors["largest_u_off_ghia"];
     for (const ReferenceRow& row : reference_table("flu01_ghia1982_u_vertical_centreline.csv"))
         off_ghia = std::max(off_ghia, std::abs(cubic(z, u, row.at("y")) - row.at("u_Re1000")));
@@ -87,32 +67,25 @@ Run cavity(int n, Real tolerance) {
     return run;
 }
 
-/// G. Taylor and A. Green's vortices in a periodic square of 2 pi, viscosity 0.01, after 10 s. Velocities
-/// count where they are kept: ours on faces, OpenFOAM's in cells.
+/// Velocities count where they are kept: ours on faces, OpenFOAM's in cells.
 template <AdvectionScheme Scheme, class State = Real>
 Run taylor_green(int n, Real tolerance) {
-    constexpr Real nu = 0.01, end = 10;
-    const auto exact = [](const Point<2>& x, Real t) {
-        return Point<2>(std::exp(-2 * nu * t) *
-                        Point<2>(std::sin(x[0]) * std::cos(x[1]), -std::cos(x[0]) * std::sin(x[1])));
-    };
-    GridFluid<2, FullBox, Scheme, State> flow(
-        {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(2 * pi / n)},
-         .sides = Sides<2>::all(Side::periodic),
-         .velocity = [&](const Point<2>& x) { return exact(x, 0); },
-         .density = 1,
-         .viscosity = nu,
-         .tolerance = tolerance});
-    flow.advance(end);
+    const auto timed = water_flows::timed(
+        [&] { return water_flows::taylor_green<Scheme, State>(n, {.tolerance = tolerance}); });
+    const Real h = 2 * pi / n;
     Real off = 0, all = 0;
-    flow.grid().for_each([&](const CellNumber<2>& cell, Offset c) {
-        for (int a = 0; a < 2; ++a) {
-            const Real wanted = exact(flow.grid().face_centre(a, cell), end)[a];
-            off += square(static_cast<Real>(flow.velocity()[a][c]) - wanted), all += square(wanted);
-        }
-    });
-    return {
-        .cells = n * n, .steps = flow.steps(), .errors = {{"velocity_rms_relative", std::sqrt(off / all)}}};
+    for (int c = 0; c < n * n; ++c) {
+        const Real x = c % n * h, y = c / n * h;
+        const auto at = [&](Real right, Real up) {
+            return water_flows::Vortices::exact({x + right, y + up}, water_flows::Vortices::end);
+        };
+        const Real u = at(0, 0.5 * h)[0], v = at(0.5 * h, 0)[1];
+        const auto k = static_cast<std::size_t>(c);
+        off += square(timed.flow.u[k] - u) + square(timed.flow.v[k] - v), all += square(u) + square(v);
+    }
+    Run run = cost_of(timed);
+    run.errors["velocity_rms_relative"] = std::sqrt(off / all);
+    return run;
 }
 
 struct Front {
@@ -130,30 +103,17 @@ Real at(const std::vector<Front>& path, Real Front::*from, Real Front::*wanted, 
     return std::numeric_limits<Real>::quiet_NaN();
 }
 
-/// The front of J. Martin and W. Moyce 1952 (doi 10.1098/rsta.1952.0006), a column twice as high as wide, to
-/// 0.24 s: where the lowest row is half full, every 0.01 s; aligned at Z = 1.44. `n`: cells across the
-/// column.
+/// The front of the column where the lowest row is half full, aligned with the measured ones at Z = 1.44.
+/// `n`: cells across the column.
 template <AdvectionScheme Scheme>
 Run dam_break(int n, Real tolerance, Side walls) {
-    constexpr Real width = 0.05715;
-    GridFluid<2, FreeSurface, Scheme> flow(
-        {.grid = {.cells = {8 * n, 3 * n}, .spacing = Point<2>::Constant(width / n)},
-         .sides = Sides<2>::all(walls),
-         .water = [](const Point<2>& x) { return std::min(width - x[0], 2 * width - x[1]); },
-         .gravity = {0, -9.81},
-         .viscosity = 1e-3,
-         .tolerance = tolerance});
+    const auto timed = water_flows::timed(
+        [&] { return water_flows::dam_break<Scheme>(n, {.tolerance = tolerance, .walls = walls}); });
     std::vector<Front> path;
-    for (int k = 0; k <= 24; ++k) {
-        flow.advance(0.01 * k);
-        const auto share = [&](int i) { return flow.liquid().fraction()[flow.grid().layout().at({i, 0})]; };
-        int wet = 0;
-        for (int i = 0; i + 1 < 8 * n; ++i)
-            if (share(i) > 0.5) wet = i;
-        const Real beyond = (share(wet) - 0.5) / (share(wet) - share(wet + 1));
-        path.push_back({0.01 * k * std::sqrt(2 * 9.81 / width), (wet + 0.5 + beyond) / n});
-    }
-    Run run{.cells = 24 * n * n, .steps = flow.steps()};
+    for (std::size_t k = 0; k < timed.flow.time.size(); ++k)
+        path.push_back(
+            {timed.flow.time[k] * std::sqrt(2 * 9.81 / water_flows::Collapse::width), timed.flow.front(k)});
+    Run run = cost_of(timed);
     for (const std::string series : {"1.125in", "2.25in"}) {
         std::vector<Front> measured;
         for (const ReferenceRow& row : reference_table("flu06_dambreak_front_martin_moyce.csv"))
@@ -217,7 +177,7 @@ void compare(const Flow& flow, const std::string& table, const fs::path& folder,
     add(flow.solver, of_openfoam(table, flow));
     for (const Variant& variant : flow.variants) {
         std::vector<Run> runs;
-        for (const int n : flow.cells) runs.push_back(timed([&] { return variant.run(n); }));
+        for (const int n : flow.cells) runs.push_back(variant.run(n));
         add(variant.name, runs);
     }
     draw(chart, folder / ("water_cost_" + flow.name.substr(0, flow.name.find("_2d")) + ".png"));

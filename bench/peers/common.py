@@ -156,8 +156,8 @@ def options_of_command_line(set_name, description, cases, peers):
     return options
 
 
-def run_set(set_name, description, unit, heading, cases, peers, make_scene, run_code):
-    """A whole comparison; `peers` are programs by Debian package. Returns the exit code."""
+def begin(set_name, description, cases, peers):
+    """Options of the command line and the peers that are installed; says what runs on what."""
     options = options_of_command_line(set_name, description, cases, peers)
     work.mkdir(parents=True, exist_ok=True)
     print(processor() + f", {options.threads} thread{'s' if options.threads > 1 else ''}, load "
@@ -173,8 +173,15 @@ def run_set(set_name, description, unit, heading, cases, peers, make_scene, run_
             log = logs / f"install_{peer}.log"
             reason = last_line(log.read_text(errors="replace")) if log.exists() else ""
             print(f"{peer}: not installed, left out. {reason}")
+    return options, usable
+
+
+def speeds(unit, heading, cases, peers, options, usable, make_scene, run_code):
+    """Compares the chosen cases and prints the table; rows by case and failures by case and code."""
     results, contacts, failures = {}, {}, {}
     for case in options.cases:
+        if case not in cases:
+            continue
         try:
             make_scene(cases[case]["scene"])
         except Failed as problem:
@@ -187,9 +194,21 @@ def run_set(set_name, description, unit, heading, cases, peers, make_scene, run_
         if about:
             closes = f", ledger residual {about['ledger_residual_relative']:.1e}" if "ledger_residual_relative" in about else ""
             print(f"  ours: {about['compiler']}, {about['instruction_set']}{closes}")
-    table(heading, peers, results, contacts, failures)
+    if results:
+        table(heading, peers, results, contacts, failures)
+    return results, failures
+
+
+def write(set_name, options, results):
     threads = "" if options.threads == 1 else f"_{options.threads}_threads"
     out = root / "out" / "bench" / f"peers_{set_name}{threads}.json"
     out.write_text(json.dumps(results, indent=2) + "\n")
     print(f"-> {out.relative_to(root)}")
+
+
+def run_set(set_name, description, unit, heading, cases, peers, make_scene, run_code):
+    """A whole comparison; `peers` are programs by Debian package. Returns the exit code."""
+    options, usable = begin(set_name, description, cases, peers)
+    results, failures = speeds(unit, heading, cases, peers, options, usable, make_scene, run_code)
+    write(set_name, options, results)
     return 1 if any("abrade" in f for f in failures.values()) else 0
