@@ -37,7 +37,8 @@ if __name__ == "__main__":
     with open(out, "w", newline="") as file:
         file.write(f"# OpenFOAM {version_of('openfoam', 'icoFoam')}, Debian's build, one core of {processor()}, "
                    f"{datetime.date.today()}: made by bench/peers/openfoam/limits.py.\n"
-                   "# dam_break: time [s], front Z [widths of the column]. bump: x, level [m]. cells: to a width, along.\n")
+                   "# dam_break: time [s], front Z [widths of the column]. bump: x, level [m]. cells: to a width, "
+                   "along.\n")
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("case", "cells", "cpu_s", "at", "value"))
         writer.writerows(rows)
