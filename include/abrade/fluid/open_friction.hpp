@@ -1,36 +1,53 @@
 #pragma once
 // How walls that cut cells change the friction between neighbouring water.
 
-#include <abrade/fluid/walls.hpp>
+#include <abrade/fluid/cut_faces.hpp>
 
-#include <algorithm>
+#include <cstdint>
 
 namespace abrade::detail {
 
 /// [a][b]: for the sides along b of the control volumes of velocity component a, the share that walls leave
-/// open over the distance between the middles of what they leave open of both volumes [1/cell].
+/// open over the distance between the places of both velocities [1/cell]. A closed face has none: its wall is
+/// its neighbours' (see WallFriction).
 template <int Dim>
 PerAxis<FaceField<Dim, float>, Dim> open_friction_of(const Walls<Dim>& walls, const Sides<Dim>& sides) {
     const Grid<Dim>& grid = walls.grid();
     const Layout<Dim>& layout = grid.layout();
-    // How far the middle of what is open of a cell lies from the cell's, in cells.
-    FaceField<Dim> middle = face_field<Dim>(layout);
-    for (const WallCell<Dim>& w : walls.wall_cells())
-        for (int b = 0; b < Dim; ++b)
-            middle[b][w.cell] = 0.5 * (1 - walls.open_volume()[w.cell]) * w.normal[b];
-    fill_periodic(middle, layout, sides);
+    Field<std::int32_t> wall_in(layout.total, -1);
+    const auto wall_cells = walls.wall_cells();
+    for (std::size_t n = 0; n < wall_cells.size(); ++n)
+        wall_in[wall_cells[n].cell] = static_cast<std::int32_t>(n);
+    fill_periodic(wall_in, layout, sides);
+    const auto wall_about = [&](Offset face, Offset back) {
+        Point<Dim> area = Point<Dim>::Zero();
+        for (const Offset c : {face, face - back})
+            if (const auto n = wall_in[c]; n >= 0) {
+                const auto& wall = wall_cells[static_cast<std::size_t>(n)];
+                area += wall.area * wall.normal;
+            }
+        return area;
+    };
     PerAxis<FaceField<Dim, float>, Dim> friction;
     for (int a = 0; a < Dim; ++a)
         for (int b = 0; b < Dim; ++b) {
             friction[a][b] = Field<float>(layout.total, 1);
-            const Field<Real>& area = walls.open_area()[b];
-            const Field<Real>& m = middle[b];
+            const Field<Real>&area = walls.open_area()[b], &face = walls.open_area()[a];
             const Offset back = layout.stride[a], across = layout.stride[b];
             const auto at_side = [&](const CellNumber<Dim>& cell, Offset c) {
                 if (std::ranges::any_of(cell, [](int i) { return i < 0; })) return;  // no side of the box
-                const Real gap = 1 + 0.5 * (m[c] + m[c - back] - m[c - across] - m[c - back - across]);
-                friction[a][b][c] =
-                    static_cast<float>(0.5 * (area[c] + area[c - back]) / std::max(gap, 0.25));
+                Real open = 0.5 * (area[c] + area[c - back]);
+                const std::array<Real, 2> faces{face[c - across], face[c]};
+                const int number = cell[b];
+                const bool inside = sides.periodic(b) || (number > (a == b) && number < grid.cells(b) + (a == b));
+                if (inside && (faces[0] == 0 || faces[1] == 0)) open = 0;
+                if (open > 0 && (faces[0] < 1 || faces[1] < 1)) {
+                    Point<Dim> size;
+                    for (int t = 0; t < Dim; ++t) size[t] = grid.size(t, cell[t]);
+                    open /= share_of_gap<Dim>(size, {a, b}, {wall_about(c - across, back), wall_about(c, back)},
+                                              faces);
+                }
+                friction[a][b][c] = static_cast<float>(open);
             };
             grid.for_each(at_side, 1);
         }

@@ -1,6 +1,7 @@
 #pragma once
 // What walls do to water that flows along them.
 
+#include <abrade/fluid/cut_faces.hpp>
 #include <abrade/fluid/row_starts.hpp>
 #include <abrade/fluid/sides.hpp>
 #include <abrade/fluid/walls.hpp>
@@ -89,26 +90,55 @@ public:
                                const WallCell<Dim>& wall, auto&& body) {
         const Layout<Dim>& layout = grid.layout();
         const CellNumber<Dim> cell = layout.number(wall.cell);
-        for (int a = 0; a < Dim; ++a) {
-            // A closed face leaves all to the other.
-            const auto& area = walls.open_area()[a];
-            const bool both = area[wall.cell] > 0 && area[wall.cell + layout.stride[a]] > 0;
-            const Real part = both ? 0.5 : 1;
-            for (const bool upper : {false, true}) {
-                CellNumber<Dim> of = cell;
-                if (upper) ++of[a];
-                const Offset face = layout.at(of), back = layout.stride[a];
+        Point<Dim> size;
+        for (int b = 0; b < Dim; ++b) size[b] = grid.size(b, cell[b]);
+        const auto inside = [&](int a, const CellNumber<Dim>& of) {
+            for (int b = 0; b < Dim; ++b) {
                 // A face at a side of the box is the side's.
-                const bool at_side = of[a] == 0 || of[a] == grid.cells(a);
-                if (walls.open_area()[a][face] == 0 || (at_side && !sides.periodic(a))) continue;
-                const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
-                Point<Dim> middle = grid.face_centre(a, of);  // of what is open
+                const bool beyond =
+                    b == a ? of[b] <= 0 || of[b] >= grid.cells(b) : of[b] < 0 || of[b] >= grid.cells(b);
+                if (beyond && !sides.periodic(b)) return false;
+            }
+            return true;
+        };
+        const auto hold = [&](int a, const CellNumber<Dim>& of, Real area) {
+            const Offset face = layout.at(of), back = layout.stride[a];
+            const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
+            const Point<Dim> middle =
+                grid.face_centre(a, of) +
+                detail::middle_of_face<Dim>(wall.normal, size, a, walls.open_area()[a][face])
+                    .cwiseProduct(size);
+            const Real distance = wall.normal.dot(middle - wall.point);
+            Offset inner = face;
+            for (int b = 0; b < Dim; ++b)
+                inner += (of[b] < 0 ? grid.cells(b) : of[b] >= grid.cells(b) ? -grid.cells(b) : 0) *
+                         layout.stride[b];
+            body(HeldFace{a, inner, std::max(distance, 0.05 * size[a]), area,
+                          std::max(open, 0.01) * grid.volume(cell)});
+        };
+        for (int a = 0; a < Dim; ++a) {
+            const auto& area = walls.open_area()[a];
+            for (const bool upper : {false, true}) {
+                CellNumber<Dim> of = cell, other = cell;
+                ++(upper ? of : other)[a];
+                if (!inside(a, of)) continue;
+                if (area[layout.at(of)] > 0) {
+                    hold(a, of, 0.5 * wall.area);
+                    continue;
+                }
+                const Real whole = grid.volume(cell);
+                if (const Real open = area[layout.at(other)]; open > 0 && inside(a, other))
+                    hold(a, other, 0.5 * open * std::abs(wall.normal[a]) * whole / size[a]);
                 for (int b = 0; b < Dim; ++b)
-                    middle[b] += 0.5 * (1 - open) * wall.normal[b] * grid.size(b, cell[b]);
-                const Real distance = wall.normal.dot(middle - wall.point);
-                const Offset around = of[a] == grid.cells(a) ? grid.cells(a) * back : 0;
-                body(HeldFace{a, face - around, std::max(distance, 0.05 * grid.size(a, cell[a])),
-                              part * wall.area, std::max(open, 0.01) * grid.volume(cell)});
+                    for (const bool end : {false, true}) {
+                        if (b == a) continue;
+                        CellNumber<Dim> side = cell, beside = of;
+                        side[b] += end, beside[b] += end ? 1 : -1;
+                        const Real open = walls.open_area()[b][layout.at(side)];
+                        const Real rises = end ? wall.normal[b] : -wall.normal[b];
+                        if (open > 0 && rises > 0 && inside(a, beside) && area[layout.at(beside)] > 0)
+                            hold(a, beside, 0.5 * open * rises * whole / size[b]);
+                    }
             }
         }
     }
