@@ -11,8 +11,8 @@
 
 namespace abrade::detail {
 
-/// The middle of what a plane leaves of a unit square or a unit line, from its centre [-]. The open part is on
-/// the side that the normal points to; any scale of the normal will do.
+/// The middle of what a plane leaves of a unit square or a unit line, from its centre [-]. The open part is
+/// on the side that the normal points to; any scale of the normal will do.
 template <int Size>
 std::array<Real, Size> open_middle(const std::array<Real, Size>& normal, Real open) noexcept {
     std::array<Real, Size> middle{};
@@ -74,8 +74,8 @@ template <int Dim>
 Real share_of_gap(const Point<Dim>& size, FacePair pair, const std::array<Point<Dim>, 2>& walls,
                   const std::array<Real, 2>& open) noexcept {
     const auto [a, b] = pair;
-    const Point<Dim> apart = middle_of_face<Dim>(walls[1], size, a, open[1]) -
-                             middle_of_face<Dim>(walls[0], size, a, open[0]);
+    const Point<Dim> apart =
+        middle_of_face<Dim>(walls[1], size, a, open[1]) - middle_of_face<Dim>(walls[0], size, a, open[0]);
     const Point<Dim> normal = walls[0] + walls[1];
     const Real straight = 1 + apart[b];
     Real skew = 0;  // they do not lie one straight behind the other

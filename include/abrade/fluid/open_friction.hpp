@@ -39,13 +39,13 @@ PerAxis<FaceField<Dim, float>, Dim> open_friction_of(const Walls<Dim>& walls, co
                 Real open = 0.5 * (area[c] + area[c - back]);
                 const std::array<Real, 2> faces{face[c - across], face[c]};
                 const int number = cell[b];
-                const bool inside = sides.periodic(b) || (number > (a == b) && number < grid.cells(b) + (a == b));
+                const bool inside = sides.periodic(b) || (number > (a == b) && number < grid.cells(b));
                 if (inside && (faces[0] == 0 || faces[1] == 0)) open = 0;
                 if (open > 0 && (faces[0] < 1 || faces[1] < 1)) {
                     Point<Dim> size;
                     for (int t = 0; t < Dim; ++t) size[t] = grid.size(t, cell[t]);
-                    open /= share_of_gap<Dim>(size, {a, b}, {wall_about(c - across, back), wall_about(c, back)},
-                                              faces);
+                    open /= share_of_gap<Dim>(size, {a, b},
+                                              {wall_about(c - across, back), wall_about(c, back)}, faces);
                 }
                 friction[a][b][c] = static_cast<float>(open);
             };

@@ -111,7 +111,9 @@ public:
             const Real distance = wall.normal.dot(middle - wall.point);
             Offset inner = face;
             for (int b = 0; b < Dim; ++b)
-                inner += (of[b] < 0 ? grid.cells(b) : of[b] >= grid.cells(b) ? -grid.cells(b) : 0) *
+                inner += (of[b] < 0                ? grid.cells(b)
+                          : of[b] >= grid.cells(b) ? -grid.cells(b)
+                                                   : 0) *
                          layout.stride[b];
             body(HeldFace{a, inner, std::max(distance, 0.05 * size[a]), area,
                           std::max(open, 0.01) * grid.volume(cell)});

@@ -1,6 +1,7 @@
 #pragma once
 // Shear of water on walls inside its box and on the box's sides.
 
+#include <abrade/fluid/cut_faces.hpp>
 #include <abrade/fluid/flow_pressure.hpp>
 
 #include <algorithm>
@@ -106,11 +107,16 @@ private:
                 sum += cells_.open_volume(*c) * (liquid ? cells_.liquid(*c) : 1);
         return 0.5 * sum;
     }
-    /// How far the middle of what is open of a cell lies from the cell's along an axis [cell].
-    Real shifted(const Cell& cell, int axis) const {
-        const auto c = cells_.offset(cell);
-        const auto walls = c ? cells_.walls()->wall_cells(*c, 1) : std::span<const WallCell<Dim>>();
-        return walls.empty() ? 0 : 0.5 * (1 - cells_.open_volume(*c)) * walls[0].normal[axis];
+    /// Area vector of the walls of both cells of a face [m2].
+    Point<Dim> wall_about(const Cell& face, int axis) const {
+        Cell below = face;
+        --below[axis];
+        Point<Dim> area = Point<Dim>::Zero();
+        for (const auto& cell : {below, face})
+            if (const auto c = cells_.offset(cell))
+                for (const WallCell<Dim>& wall : cells_.walls()->wall_cells(*c, 1))
+                    area += wall.area * wall.normal;
+        return area;
     }
     /// What friction with the water beside it, gravity and the pressure do to the control volume of a face
     /// along its axis [N]. Where walls leave less than half of it open the solver bounds what changes its
@@ -121,41 +127,47 @@ private:
         const auto back = cells_.offset(below);
         if (!back) return 0;
         const Real volume = grid_.volume(face);
+        Point<Dim> size;
+        for (int b = 0; b < Dim; ++b) size[b] = grid_.size(b, face[b]);
         Real force = 0;
         for (int b = 0; b < Dim; ++b)
             for (const int end : {0, 1}) {
-                if (b == axis) continue;
                 Cell beside = face, side = face;  // the side is the lower one of its cell
                 beside[b] += end == 0 ? -1 : 1, side[b] += end;
                 Cell side_below = side;
                 --side_below[axis];
                 const auto off = cells_.offset(beside), at = cells_.offset(side),
                            at_below = cells_.offset(side_below);
-                if (!off || !at || !at_below) continue;
+                if (!off || !at || !at_below || cells_.open_area(axis, *off) == 0) continue;
                 const Real open = 0.5 * (cells_.open_area(b, *at) + cells_.open_area(b, *at_below));
                 if (open == 0) continue;
-                Cell lower = side, lower_below = side_below;
-                --lower[b], --lower_below[b];
                 // As open_friction_of has it.
-                const Real gap = 1 + 0.5 * (shifted(side, b) + shifted(side_below, b) - shifted(lower, b) -
-                                            shifted(lower_below, b));
-                const Real area = open * volume / grid_.size(b, face[b]);
-                force += viscosity(*at, *at_below, b) * area *
+                const Cell& lower = end == 0 ? beside : face;
+                const Cell& upper = end == 0 ? face : beside;
+                const auto of = [&](const Cell& c) { return cells_.open_area(axis, *cells_.offset(c)); };
+                const Real gap =
+                    share_of_gap<Dim>(size, {axis, b}, {wall_about(lower, axis), wall_about(upper, axis)},
+                                      {of(lower), of(upper)});
+                force += viscosity(*at, *at_below, axis, b) * open * volume / size[b] *
                          (cells_.velocity(axis, *off) - cells_.velocity(axis, f)) /
-                         (std::max(gap, 0.25) * grid_.gap(b, side[b]));
+                         (gap * (b == axis ? grid_.size(b, side_below[b]) : grid_.gap(b, side[b])));
             }
         if (cells_.is_wet(f) && cells_.is_wet(*back))
             force += cells_.density() * about(face, axis, false) * volume *
                      (cells_.head(below, *back) - cells_.head(face, f)) / grid_.gap(axis, face[axis]);
         return force;
     }
-    /// At the edge between four cells: two above it along an axis, and those below them [Pa s].
-    Real viscosity([[maybe_unused]] Offset c, [[maybe_unused]] Offset d, [[maybe_unused]] int axis) const {
+    /// Of the friction along `axis` between two faces next to each other along b: at the edge between four
+    /// cells, c and d above it, or in the cell d between the faces [Pa s].
+    Real viscosity([[maybe_unused]] Offset c, [[maybe_unused]] Offset d, [[maybe_unused]] int axis,
+                   [[maybe_unused]] int b) const {
         Real sum = flow_.params().viscosity;
         if constexpr (requires { flow_.eddy_viscosity(); }) {
-            const Offset down = grid_.layout().stride[axis];
-            for (const Offset e : {c, d, c - down, d - down})
-                sum += 0.25 * cells_.density() * static_cast<Real>(flow_.eddy_viscosity()[e]);
+            const auto eddy = [&](Offset e) {
+                return cells_.density() * static_cast<Real>(flow_.eddy_viscosity()[e]);
+            };
+            const Offset down = grid_.layout().stride[b];
+            sum += b == axis ? eddy(d) : 0.25 * (eddy(c) + eddy(d) + eddy(c - down) + eddy(d - down));
         }
         return sum;
     }
