@@ -28,17 +28,24 @@ void draw_orders(const std::string& title, const std::vector<Case>& cases, const
         .x = {.label = "cells across", .min = 7.0, .max = 40.0, .logarithmic = true},
         .y = {.label = "relative error of the resistance", .min = 3e-4, .max = 1.0, .logarithmic = true},
         .curves = {}};
-    std::cout << "case, cells, error of velocity, largest, of resistance, orders of the first and the last\n";
+    std::cout << "case, cells, error of velocity, largest, in the middle of what is open (plates only), of "
+                 "resistance, orders "
+                 "of the first and the last\n";
     for (const Case& c : cases) {
         Curve curve{.title = c.name, .x = {}, .y = {}};
         viscous::Errors coarser;
         for (const int cells : {8, 16, 32}) {
             const viscous::Errors e = c.errors(cells);
-            std::cout << c.name << ", " << cells << ", " << e.profile << ", " << e.largest << ", "
-                      << e.resistance;
-            if (cells > 8)
-                std::cout << ", " << viscous::order(coarser.profile, e.profile) << ", "
-                          << viscous::order(coarser.resistance, e.resistance);
+            const auto print_order = [&](Real coarse, Real fine) {
+                if (fine > 0) std::cout << ", " << viscous::order(coarse, fine);
+            };
+            std::cout << c.name << ", " << cells << ", " << e.profile << ", " << e.largest << ", ";
+            if (e.middle > 0) std::cout << e.middle << ", ";
+            std::cout << e.resistance;
+            if (cells > 8) {
+                print_order(coarser.profile, e.profile), print_order(coarser.middle, e.middle);
+                print_order(std::abs(coarser.resistance), std::abs(e.resistance));
+            }
             std::cout << std::endl;
             curve.x.push_back(cells), curve.y.push_back(std::abs(e.resistance));
             coarser = e;

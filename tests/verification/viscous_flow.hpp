@@ -58,6 +58,7 @@ inline Errors between_sides(int cells) {
         discharge += h * flow.velocity()[0][flow.grid().layout().at({2, k})];
     }
     Errors e = off.errors();
+    e.middle = e.profile;
     e.resistance = 2.0 / 3 / discharge - 1;
     return e;
 }

@@ -69,9 +69,14 @@ Sides<Dim> gliding_sides(Sides<Dim> sides, const WallLaw& law) {
 /// Friction of walls inside cells, and at sides of the box where they are logarithmic: the velocity u at
 /// distance d from a wall of area A loses
 ///   du/dt = - C u A / V,   C = nu / d or (kappa / ln(1 + 30 d / k_s))^2 |u|,
-/// V the open volume about the face. Taken implicitly, so thin cells do not rule the step. A wall's area is
-/// shared out among the faces of its cell; what flows into the wall is 0 anyway, so each component is held
-/// alone.
+/// V the open volume about the face. Taken implicitly, so thin cells do not rule the step. What flows into
+/// the wall is 0 anyway, so each component is held alone.
+///
+/// d is the distance of the middle of the face's open part. A is what closes the control volume of the face:
+/// half of the wall in each of its cells, and of the sides towards closed faces what the wall's normal n sees
+/// of them, A_side |n_b|. Together those of all faces have the wall's area. Along a plane wall at any angle a
+/// uniform shear, u = s d, then stays as it is, face by face: the neighbours bring nu s A (open_friction_of),
+/// and the wall takes it.
 template <int Dim>
 class WallFriction {
 public:
@@ -81,8 +86,8 @@ public:
     struct HeldFace {
         int axis = 0;
         Offset face = 0;
-        Real distance = 0;  ///< of its centre from the wall [m]
-        Real area = 0;      ///< of that wall [m2]
+        Real distance = 0;  ///< of the middle of its open part from the wall [m]
+        Real area = 0;      ///< of that wall, what is the face's [m2]
         Real volume = 0;    ///< about the face, open [m3]
     };
     /// Calls body(HeldFace) for the faces among which the wall of a cell is shared out.
@@ -101,22 +106,24 @@ public:
             }
             return true;
         };
+        const Real whole = grid.volume(cell);
         const auto hold = [&](int a, const CellNumber<Dim>& of, Real area) {
-            const Offset face = layout.at(of), back = layout.stride[a];
-            const Real open = 0.5 * (walls.open_volume()[face] + walls.open_volume()[face - back]);
-            const Point<Dim> middle =
-                grid.face_centre(a, of) +
-                detail::middle_of_face<Dim>(wall.normal, size, a, walls.open_area()[a][face])
-                    .cwiseProduct(size);
+            const Offset face = layout.at(of);
+            CellNumber<Dim> below = of;
+            --below[a];
+            const Real open = 0.5 * (walls.open_volume()[face] * grid.volume(of) +
+                                     walls.open_volume()[layout.at(below)] * grid.volume(below));
+            const Point<Dim> from_centre =
+                detail::middle_of_face<Dim>(wall.normal, size, a, walls.open_area()[a][face]);
+            const Point<Dim> middle = grid.face_centre(a, of) + from_centre.cwiseProduct(size);
             const Real distance = wall.normal.dot(middle - wall.point);
-            Offset inner = face;
-            for (int b = 0; b < Dim; ++b)
-                inner += (of[b] < 0                ? grid.cells(b)
-                          : of[b] >= grid.cells(b) ? -grid.cells(b)
-                                                   : 0) *
-                         layout.stride[b];
-            body(HeldFace{a, inner, std::max(distance, 0.05 * size[a]), area,
-                          std::max(open, 0.01) * grid.volume(cell)});
+            Offset around = 0;
+            for (int b = 0; b < Dim; ++b) {
+                if (of[b] < 0) around += grid.cells(b) * layout.stride[b];
+                if (of[b] >= grid.cells(b)) around -= grid.cells(b) * layout.stride[b];
+            }
+            body(HeldFace{a, face + around, std::max(distance, 0.05 * size[a]), area,
+                          std::max(open, 0.01 * whole)});
         };
         for (int a = 0; a < Dim; ++a) {
             const auto& area = walls.open_area()[a];
@@ -128,7 +135,7 @@ public:
                     hold(a, of, 0.5 * wall.area);
                     continue;
                 }
-                const Real whole = grid.volume(cell);
+                // A closed face leaves it to those around.
                 if (const Real open = area[layout.at(other)]; open > 0 && inside(a, other))
                     hold(a, other, 0.5 * open * std::abs(wall.normal[a]) * whole / size[a]);
                 for (int b = 0; b < Dim; ++b)
@@ -200,7 +207,7 @@ public:
 private:
     struct Held {
         Offset face = 0;
-        Real distance = 0;    ///< of the face's centre from the wall [m]
+        Real distance = 0;    ///< as in HeldFace [m]
         Real per_volume = 0;  ///< wall area over open volume [1/m]
         Real per_speed = 0;   ///< C over viscosity [1/m], or over |u| [-]
     };
