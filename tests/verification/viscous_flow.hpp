@@ -127,8 +127,8 @@ struct Channel {
                right * ((1 - up) * p(i + 1, k) + up * p(i + 1, k + 1));
     }
 
-    /// Between x = 1 and 2. At an angle the outflow turns the flow, by half of its speed at 45 degrees;
-    /// within a way s that decays by exp(-4.2 s), and 2e-4 of it is left at x = 2. What comes in is exact.
+    /// Between x = 1 and 2. At an angle the outflow turns the flow, by half of its speed at 45 degrees:
+    /// that falls as exp(-4.2 s) over a way s, to 2e-4 at x = 2. What comes in is exact.
     Errors errors() const {
         GridFluid<2> water = flow();
         water.advance(end);
