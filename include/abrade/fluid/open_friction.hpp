@@ -36,8 +36,9 @@ PerAxis<FaceField<Dim, float>, Dim> open_friction_of(const Walls<Dim>& walls, co
             const Offset back = layout.stride[a], across = layout.stride[b];
             const auto at_side = [&](const CellNumber<Dim>& cell, Offset c) {
                 if (std::ranges::any_of(cell, [](int i) { return i < 0; })) return;  // no side of the box
-                Real open = 0.5 * (area[c] + area[c - back]);
                 const std::array<Real, 2> faces{face[c - across], face[c]};
+                Real open = 0.5 * (area[c] + area[c - back]);
+                if (open == 1 && faces[0] == 1 && faces[1] == 1) return;
                 const int number = cell[b];
                 const bool inside = sides.periodic(b) || (number > (a == b) && number < grid.cells(b));
                 if (inside && (faces[0] == 0 || faces[1] == 0)) open = 0;
