@@ -110,13 +110,15 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step_below_surface(Real
     if (energy_) energy_->liquid_moved(energy_view());
     // The velocity goes from half a step before the new surface to half a step behind it.
     const Point<Dim> falls = params_.acceleration(time_ + dt);
-    const auto stage = [&](const FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
+    const auto stage = [&](FaceField<Dim>& by, FaceField<Dim>& result, Real kept, Real push) {
+        water.fill_closed(by);
         Stage s{by, water.carrier(), velocity_, result, pressure_, dt, kept, push, nu(), falls};
         s.carried_in = dt, s.held_before = &water.held_before(), s.held = &water.held();
         s.open_area = water.open_area(), s.open_friction = water.open_friction();
         if constexpr (is_height) s.bounded_below = Liquid::bounded_below;
         s.surface_push = &water.surface_push(), s.wet = &water.wet();
         advance(water.faces(), s);
+        water.clear_closed(by);
         for (const WaterFace& f : water.still()) result[f.axis][f.face] = 0;
         sides_.leave(result, water.open_area());
     };

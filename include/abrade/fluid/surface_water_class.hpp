@@ -1,6 +1,7 @@
 #pragma once
 // Water below a free surface: where it is, what it touches, and what carries its momentum.
 
+#include <abrade/fluid/closed_faces.hpp>
 #include <abrade/fluid/grid_fluid_params.hpp>
 #include <abrade/fluid/height_of_fluid.hpp>
 #include <abrade/fluid/open_friction.hpp>
@@ -48,6 +49,7 @@ public:
             extension_.set_walls(*walls_);
             held_ = Field<Real>(layout().total);
             open_friction_ = open_friction_of(*walls_, sides_);
+            closed_faces_ = {*walls_, sides_};
         }
         give_water(params, walls_.get(), liquid_);
         if constexpr (is_height) liquid_.begin(params.water);
@@ -125,6 +127,10 @@ public:
         projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
         find_air();
     }
+
+    /// Around a stage of momentum: see ClosedFaces.
+    void fill_closed(FaceField<Dim>& u) const { closed_faces_.fill(u, wet_); }
+    void clear_closed(FaceField<Dim>& u) const { closed_faces_.clear(u); }
 
     /// Nothing falls through walls.
     void clear_walls(FaceField<Dim>& u) const {
@@ -374,6 +380,7 @@ private:
     WallFilms<Dim> films_;
     WallFriction<Dim> friction_;
     PerAxis<FaceField<Dim, float>, Dim> open_friction_;  ///< of sides of momentum's control volumes
+    ClosedFaces<Dim> closed_faces_;
     Field<Real> held_, before_;
     /// Of a face, within a step [m/s].
     FaceField<Dim> surface_push_;

@@ -1,0 +1,106 @@
+#pragma once
+// What stands on faces that walls close, for the water that flows past them.
+
+#include <abrade/fluid/walls.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace abrade::detail {
+
+/// A wall that is oblique to the grid closes faces of cells in which there is water. At rest on such a face,
+/// that water would take momentum from what flows into it and give none to what flows out: a stream along a
+/// frictionless bed lost a fifth of its head behind a bump. So while momentum is carried it moves along the
+/// wall, no faster than the cell's other faces:
+///   u_a = v_a - n_a (n . v), kept between 0 and v_a,
+/// v the mean of the cell's faces, each by the share that is open [m/s]; n the wall's normal. That is 0 where
+/// the wall is square to the axis. Only in cells with a pressure: what is thinner falls and flies alone.
+template <int Dim>
+class ClosedFaces {
+public:
+    ClosedFaces() = default;
+    ClosedFaces(const Walls<Dim>& walls, const Sides<Dim>& sides)
+        : layout_(walls.grid().layout()), sides_(sides) {
+        const auto& open = walls.open_area();
+        Field<std::int32_t> number(layout_.total, -1);
+        for (const WallCell<Dim>& wall : walls.wall_cells()) {
+            if (walls.open_volume()[wall.cell] == 0) continue;
+            Cell cell{.cell = wall.cell, .normal = wall.normal};
+            for (int a = 0; a < Dim; ++a) {
+                const Real low = open[a][wall.cell], high = open[a][wall.cell + layout_.stride[a]];
+                cell.upper[a] = low + high > 0 ? high / (low + high) : 0;
+                cell.lower[a] = low + high > 0 ? low / (low + high) : 0;
+            }
+            number[wall.cell] = static_cast<std::int32_t>(cells_.size());
+            cells_.push_back(cell);
+        }
+        fill_periodic(number, layout_, sides_);
+        walls.grid().for_each([&](const CellNumber<Dim>&, Offset c) {
+            for (int a = 0; a < Dim; ++a) {
+                const Face face{c, a, number[c - layout_.stride[a]], number[c]};
+                if (open[a][c] == 0 && (moves(face.below, a) || moves(face.above, a))) faces_.push_back(face);
+            }
+        });
+    }
+
+    /// `wet`: 1 where there is a pressure.
+    void fill(FaceField<Dim>& u, const Field<std::uint8_t>& wet) const {
+        set(u, [&](const Face& f) {
+            Real sum = 0;
+            int count = 0;
+            for (const std::int32_t n : {f.below, f.above}) {
+                if (!moves(n, f.axis)) continue;
+                ++count;
+                const Cell& cell = cells_[static_cast<std::size_t>(n)];
+                if (wet[cell.cell] != 0) sum += along_wall(cell, u, f.axis);
+            }
+            return sum / count;
+        });
+    }
+    void clear(FaceField<Dim>& u) const {
+        set(u, [](const Face&) { return Real(0); });
+    }
+
+private:
+    struct Cell {
+        Offset cell = 0;
+        Point<Dim> normal = Point<Dim>::Zero();
+        Point<Dim> lower = Point<Dim>::Zero(),
+                   upper = Point<Dim>::Zero();  ///< shares of v along each axis [-]
+    };
+    struct Face {
+        Offset face = 0;
+        int axis = 0;
+        std::int32_t below = -1, above = -1;  ///< cells, by number; -1: no wall is in it
+    };
+
+    /// Whether water of a cell moves along an axis at its wall.
+    bool moves(std::int32_t n, int axis) const noexcept {
+        constexpr Real square_to_it = 1 - 1e-9;
+        return n >= 0 && std::abs(cells_[static_cast<std::size_t>(n)].normal[axis]) < square_to_it;
+    }
+    Real along_wall(const Cell& cell, const FaceField<Dim>& u, int axis) const noexcept {
+        Point<Dim> v;
+        for (int a = 0; a < Dim; ++a)
+            v[a] = cell.lower[a] * u[a][cell.cell] + cell.upper[a] * u[a][cell.cell + layout_.stride[a]];
+        const auto [least, most] = std::minmax({v[axis], Real(0)});
+        return std::clamp(v[axis] - cell.normal[axis] * cell.normal.dot(v), least, most);
+    }
+    void set(FaceField<Dim>& u, auto&& of) const {
+        if (faces_.empty()) return;
+        parallel_for(static_cast<Index>(faces_.size()), [&](Index n) {
+            const Face& face = faces_[static_cast<std::size_t>(n)];
+            u[face.axis][face.face] = of(face);
+        });
+        for (auto& component : u) fill_periodic(component, layout_, sides_);
+    }
+
+    Layout<Dim> layout_;
+    Sides<Dim> sides_;
+    std::vector<Cell> cells_;
+    std::vector<Face> faces_;
+};
+
+}  // namespace abrade::detail
