@@ -4,7 +4,7 @@
 // machine in the same hour; bench/peers/openfoam_measured.csv unless told otherwise.
 
 #include "../../tests/verification/reference_table.hpp"
-#include "../water_flows.hpp"
+#include "../../tests/verification/water_flows.hpp"
 #include "panels.hpp"
 
 #include <fstream>

@@ -1,7 +1,7 @@
 // One flow of bench/peers, timed: bench_peers_water --case NAME. Prints JSON: a whole run with what its error
 // is computed from, or for the cases that count cells the cell-steps a second.
 
-#include "../water_flows.hpp"
+#include "../../tests/verification/water_flows.hpp"
 
 #include <abrade/core/simd.hpp>
 #include <abrade/fluid/grid_fluid.hpp>

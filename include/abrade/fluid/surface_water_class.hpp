@@ -30,7 +30,7 @@ class SurfaceWater {
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides, liquid_params(params)),
-          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get(), params.gravity.norm()),
+          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get()),
           friction_(grid, params.sides, params.wall_law, walls_.get()), before_(grid.layout().total),
           surface_push_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
           rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
