@@ -16,7 +16,7 @@ namespace abrade::detail {
 /// wall, no faster than the cell's other faces:
 ///   u_a = v_a - n_a (n . v), kept between 0 and v_a,
 /// v the mean of the cell's faces, each by the share that is open [m/s]; n the wall's normal. That is 0 where
-/// the wall is square to the axis. Only in cells with a pressure: what is thinner falls and flies alone.
+/// the wall is square to the axis. Only in cells that are full and were: thin water gained energy by it.
 template <int Dim>
 class ClosedFaces {
 public:
@@ -27,7 +27,7 @@ public:
         Field<std::int32_t> number(layout_.total, -1);
         for (const WallCell<Dim>& wall : walls.wall_cells()) {
             if (walls.open_volume()[wall.cell] == 0) continue;
-            Cell cell{.cell = wall.cell, .normal = wall.normal};
+            Cell cell{wall.cell, nearly * walls.open_volume()[wall.cell], wall.normal};
             for (int a = 0; a < Dim; ++a) {
                 const Real low = open[a][wall.cell], high = open[a][wall.cell + layout_.stride[a]];
                 cell.upper[a] = low + high > 0 ? high / (low + high) : 0;
@@ -39,14 +39,16 @@ public:
         fill_periodic(number, layout_, sides_);
         walls.grid().for_each([&](const CellNumber<Dim>&, Offset c) {
             for (int a = 0; a < Dim; ++a) {
-                const Face face{c, a, number[c - layout_.stride[a]], number[c]};
-                if (open[a][c] == 0 && (moves(face.below, a) || moves(face.above, a))) faces_.push_back(face);
+                Face face{c, a, number[c - layout_.stride[a]], number[c]};
+                if (open[a][c] != 0 || (!moves(face.below, a) && !moves(face.above, a))) continue;
+                faces_.push_back(face);
             }
         });
     }
 
-    /// `wet`: 1 where there is a pressure.
-    void fill(FaceField<Dim>& u, const Field<std::uint8_t>& wet) const {
+    /// `before`, `now`: liquid in a cell when the step began and at its end, as a share of the whole cell
+    /// [-].
+    void fill(FaceField<Dim>& u, const Field<Real>& before, const Field<Real>& now) const {
         set(u, [&](const Face& f) {
             Real sum = 0;
             int count = 0;
@@ -54,7 +56,8 @@ public:
                 if (!moves(n, f.axis)) continue;
                 ++count;
                 const Cell& cell = cells_[static_cast<std::size_t>(n)];
-                if (wet[cell.cell] != 0) sum += along_wall(cell, u, f.axis);
+                if (std::min(before[cell.cell], now[cell.cell]) > cell.full)
+                    sum += along_wall(cell, u, f.axis);
             }
             return sum / count;
         });
@@ -64,8 +67,10 @@ public:
     }
 
 private:
+    static constexpr Real nearly = 0.99;  ///< of what is open: the last step left a trace of air
     struct Cell {
         Offset cell = 0;
+        Real full = 0;  ///< liquid beyond which it counts as full [-]
         Point<Dim> normal = Point<Dim>::Zero();
         Point<Dim> lower = Point<Dim>::Zero(),
                    upper = Point<Dim>::Zero();  ///< shares of v along each axis [-]

@@ -30,7 +30,7 @@ class SurfaceWater {
 public:
     SurfaceWater(const Grid<Dim>& grid, const GridFluidParams<Dim>& params)
         : grid_(&grid), sides_(params.sides), liquid_(grid, params.sides, liquid_params(params)),
-          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get()),
+          walls_(walls_inside(grid, params)), films_(grid, params.sides, walls_.get(), params.gravity.norm()),
           friction_(grid, params.sides, params.wall_law, walls_.get()), before_(grid.layout().total),
           surface_push_(face_field<Dim>(grid.layout())), wet_(grid.layout().total),
           rows_(WetRows<Dim>::whole(grid.layout())), extension_(grid.layout(), sides_),
@@ -129,7 +129,7 @@ public:
     }
 
     /// Around a stage of momentum: see ClosedFaces.
-    void fill_closed(FaceField<Dim>& u) const { closed_faces_.fill(u, wet_); }
+    void fill_closed(FaceField<Dim>& u) const { closed_faces_.fill(u, held_before(), held()); }
     void clear_closed(FaceField<Dim>& u) const { closed_faces_.clear(u); }
 
     /// Nothing falls through walls.

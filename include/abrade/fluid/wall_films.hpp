@@ -22,8 +22,9 @@ template <int Dim>
 class WallFilms {
 public:
     WallFilms() = default;
-    /// `walls`: inside the box; may be none.
-    WallFilms(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>* walls) {
+    /// `walls`: inside the box; may be none. `gravity`: its amount [m/s2].
+    WallFilms(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>* walls, Real gravity)
+        : fastest_fall_(2 * gravity * grid.largest(Dim - 1)) {
         const Layout<Dim>& layout = grid.layout();
         grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
             if (walls && walls->open_volume()[c] == 0) return;
@@ -64,10 +65,13 @@ public:
     /// `wet`: 1 where there is a pressure; `held`: liquid of a cell, as a share of it [-]; `rows` hold it.
     void hold(FaceField<Dim>& u, const WetRows<Dim>& rows, const Field<std::uint8_t>& wet,
               const Field<Real>& held) {
-        // A face is a cell's where the cell gives liquid to it, or the next one has none to give.
-        const auto gives = [&](const Cell& film, int a, int end, Real speed) {
+        // A face is a cell's where the cell gives liquid to it, or the next one has none to give: or little,
+        // and its face is faster than the fall through a cell that brings that here.
+        constexpr Real little = 0.1;  // of what the cell holds
+        const auto gives = [&](const Cell& film, int a, int end, Real speed, Real push = 0) {
+            const Real none = square(speed) > fastest_fall_ ? little * held[film.cell] : liquid_of_a_face;
             return film.face[a][end] >= 0 && wet[film.beyond[a][end]] == 0 &&
-                   (held[film.beyond[a][end]] <= liquid_of_a_face || (end == 0 ? speed < 0 : speed > 0));
+                   (held[film.beyond[a][end]] <= none || (end == 0 ? speed + push < 0 : speed + push > 0));
         };
         starts_.for_each(&rows, [&](std::size_t k) {
             const Cell& film = cells_[k];
@@ -92,7 +96,7 @@ public:
                 if (push_[k].isZero(0)) return;
                 for (int a = 0; a < Dim; ++a) {
                     const Offset face = cells_[k].face[a][end];
-                    if (face >= 0 && gives(cells_[k], a, end, u[a][face] + push_[k][a]))
+                    if (face >= 0 && gives(cells_[k], a, end, u[a][face], push_[k][a]))
                         u[a][face] += push_[k][a];
                 }
             });
@@ -106,6 +110,7 @@ private:
         Point<Dim> normal = Point<Dim>::Zero();     ///< into the water
         bool corner = false;                        ///< of walls along the grid's planes alone
     };
+    Real fastest_fall_ = 0;         ///< through a cell, squared [m2/s2]
     std::vector<Cell> cells_;       ///< beside a wall or a closed side, in the order of memory
     std::vector<Point<Dim>> push_;  ///< [m/s], of each
     RowStarts<Dim> starts_;
