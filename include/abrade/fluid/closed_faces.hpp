@@ -13,10 +13,11 @@ namespace abrade::detail {
 /// A wall that is oblique to the grid closes faces of cells in which there is water. At rest on such a face,
 /// that water would take momentum from what flows into it and give none to what flows out: a stream along a
 /// frictionless bed lost a fifth of its head behind a bump. So while momentum is carried it moves along the
-/// wall, no faster than the cell's other faces:
-///   u_a = v_a - n_a (n . v), kept between 0 and v_a,
+/// wall, and no faster than any open face beside it, which would gain energy from it:
+///   u_a = v_a - n_a (n . v), kept between 0 and v_a, and between 0 and each u_a beside it,
 /// v the mean of the cell's faces, each by the share that is open [m/s]; n the wall's normal. That is 0 where
-/// the wall is square to the axis. Only in cells that are full and were: thin water gained energy by it.
+/// the wall is square to the axis. Only in cells that are full and were, and half of it between one that is
+/// and one that is not.
 template <int Dim>
 class ClosedFaces {
 public:
@@ -37,10 +38,14 @@ public:
             cells_.push_back(cell);
         }
         fill_periodic(number, layout_, sides_);
-        walls.grid().for_each([&](const CellNumber<Dim>&, Offset c) {
+        walls.grid().for_each([&](const CellNumber<Dim>& of, Offset c) {
             for (int a = 0; a < Dim; ++a) {
+                if (of[a] == 0 && !sides_.periodic(a)) continue;  // a side's own
                 Face face{c, a, number[c - layout_.stride[a]], number[c]};
                 if (open[a][c] != 0 || (!moves(face.below, a) && !moves(face.above, a))) continue;
+                for (int b = 0; b < Dim; ++b)
+                    face.open_beside |= unsigned{open[a][c - layout_.stride[b]] > 0} << 2 * b |
+                                        unsigned{open[a][c + layout_.stride[b]] > 0} << (2 * b + 1);
                 faces_.push_back(face);
             }
         });
@@ -59,7 +64,7 @@ public:
                 if (std::min(before[cell.cell], now[cell.cell]) > cell.full)
                     sum += along_wall(cell, u, f.axis);
             }
-            return sum / count;
+            return no_faster(sum / count, f, u[f.axis]);
         });
     }
     void clear(FaceField<Dim>& u) const {
@@ -79,6 +84,8 @@ private:
         Offset face = 0;
         int axis = 0;
         std::int32_t below = -1, above = -1;  ///< cells, by number; -1: no wall is in it
+        unsigned open_beside =
+            0;  ///< bit 2 b: the lower neighbour along b is open, bit 2 b + 1: the upper one
     };
 
     /// Whether water of a cell moves along an axis at its wall.
@@ -92,6 +99,17 @@ private:
             v[a] = cell.lower[a] * u[a][cell.cell] + cell.upper[a] * u[a][cell.cell + layout_.stride[a]];
         const auto [least, most] = std::minmax({v[axis], Real(0)});
         return std::clamp(v[axis] - cell.normal[axis] * cell.normal.dot(v), least, most);
+    }
+    Real no_faster(Real speed, const Face& face, const Field<Real>& u) const noexcept {
+        Real least = std::min(speed, Real(0)), most = std::max(speed, Real(0));
+        for (int b = 0; b < Dim; ++b)
+            for (const int end : {0, 1}) {
+                if ((face.open_beside >> (2 * b + end) & 1) == 0) continue;
+                const Real beside = u[face.face + (end == 0 ? -1 : 1) * layout_.stride[b]];
+                most = std::min(most, std::max(beside, Real(0)));
+                least = std::max(least, std::min(beside, Real(0)));
+            }
+        return std::clamp(speed, least, most);
     }
     void set(FaceField<Dim>& u, auto&& of) const {
         if (faces_.empty()) return;
