@@ -29,8 +29,7 @@ std::array<Real, Size> open_middle(const std::array<Real, Size>& normal, Real op
             const Real reach = std::sqrt(2 * least * most * part);
             along = reach / (3 * least), across = reach / (3 * most);
         } else {
-            const Real mean = part, slope = least / most, first = mean + 0.5 * slope,
-                       last = mean - 0.5 * slope;
+            const Real slope = least / most, first = part + 0.5 * slope, last = part - 0.5 * slope;
             along = (first + 2 * last) / (6 * part);
             across = (first * first + first * last + last * last) / (6 * part);
         }
