@@ -7,7 +7,6 @@ One core. Writes out/bench/openfoam_accuracy.csv; bench/peers/openfoam_measured.
 """
 
 import csv
-import datetime
 import math
 import os
 import sys
@@ -17,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import logs  # noqa: E402
 import runs  # noqa: E402
 import water_errors  # noqa: E402
-from common import processor, root, version_of, work  # noqa: E402
+from common import root, work  # noqa: E402
 
 data = root / "tests" / "verification" / "data"
 
@@ -100,12 +99,4 @@ if __name__ == "__main__":
         sys.exit(f"there is no such case; there are {', '.join(known)}")
     work.mkdir(parents=True, exist_ok=True)
     rows = [line for name in chosen for line in known[name]()]
-    out = root / "out" / "bench" / "openfoam_accuracy.csv"
-    out.parent.mkdir(parents=True, exist_ok=True)
-    with open(out, "w", newline="") as file:
-        file.write(f"# OpenFOAM {version_of('openfoam', 'icoFoam')}, Debian's build, one core of {processor()}, "
-                   f"{datetime.date.today()}, load {os.getloadavg()[0]:.1f}\n")
-        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    print(f"-> {out.relative_to(root)}")
+    runs.save(root / "out" / "bench" / "openfoam_accuracy.csv", rows, f", load {os.getloadavg()[0]:.1f}")

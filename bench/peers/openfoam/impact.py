@@ -11,19 +11,16 @@ table, kept.
 """
 
 import argparse
-import csv
-import datetime
 import math
-import shutil
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import cases  # noqa: E402
 import logs  # noqa: E402
-from common import Failed, call, processor, root, version_of, work  # noqa: E402
+import runs  # noqa: E402
+from common import Failed, root, work  # noqa: E402
 
-environment = {"WM_PROJECT_DIR": "/usr/share/openfoam"}
 height, length, roof, gravity = 0.6, 5.366 * 0.6, 4, 9.81  # H [m], the tank [m], its height [H], [m/s2]
 sensor, last = 0.2, 7.0  # [H], T = t sqrt(g/H)
 fluids = {  # density of the air [kg/m3], what walls do
@@ -96,7 +93,7 @@ def measures(points):
     """As tests/verification/long_dam_impact.cpp takes them."""
     first, end = peak(points, 2, 3.5, 0.05), points[-1][0]
     second = peak(points, 5, last, 0.1) if end > 0.99 * last else ("", "")
-    return {"arrival": next(t for t, p, *_ in points if p >= 0.3), "first_peak": first[0],
+    return {"arrival": next((t for t, p, *_ in points if p >= 0.3), ""), "first_peak": first[0],
             "plateau": mean(points, 3.5, 5) if end > 5 else "", "second_peak": second[0], "second_peak_at": second[1],
             "run_up": max(p[2] for p in points) if len(points[0]) > 2 and end > 5 else ""}
 
@@ -112,13 +109,8 @@ def read(path):
 
 
 def run(n, name, until, kept):
-    label = f"impact_{n}_{name}"
-    folder = work / "openfoam" / label
-    shutil.rmtree(folder, ignore_errors=True)
-    cases.write(folder, files(n, until, *fluids[name]))
-    for program in ("blockMesh", "setFields"):
-        call([program, "-case", folder], f"openfoam_{label}_{program}", environment)
-    steps = logs.steps(call(["nice", "-n", "5", "interFoam", "-case", folder], f"openfoam_{label}", environment))
+    folder, log, _ = runs.solve(f"impact_{n}_{name}", files(n, until, *fluids[name]), "interFoam", ["setFields"])
+    steps = logs.steps(log)
     (kept / f"{name}-{n}.csv").write_text(f"# {len(steps)} {steps[-1]['seconds']:.0f}\nT,P,run_up\n" +
                                           "".join("%.5f,%.5f,%.4f\n" % p for p in series(folder, n)))
 
@@ -152,11 +144,4 @@ if __name__ == "__main__":
     rows = table(kept)
     for row in rows:
         print(*row.values())
-    with open(kept.with_suffix(".csv"), "w", newline="") as file:
-        file.write("# bench/peers/openfoam/impact.py: OpenFOAM "
-                   f"{version_of('openfoam', 'interFoam')}, Debian's build, one core of {processor()}, "
-                   f"{datetime.date.today()}\n")
-        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    print(f"-> {kept.with_suffix('.csv').relative_to(root)}")
+    runs.save(kept.with_suffix(".csv"), rows, ": made by bench/peers/openfoam/impact.py")

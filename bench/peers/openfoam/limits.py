@@ -7,15 +7,13 @@ collapses on 64 cells a width, the level over the bump on 240 cells along.
 One core. Writes out/bench/openfoam_limits.csv; bench/peers/openfoam_limits.csv is such a file, kept.
 """
 
-import csv
-import datetime
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import runs  # noqa: E402
 import water_errors  # noqa: E402
-from common import processor, root, version_of, work  # noqa: E402
+from common import root, work  # noqa: E402
 
 finest = {"dam_break": 64, "bump": 240}
 
@@ -23,8 +21,8 @@ finest = {"dam_break": 64, "bump": 240}
 def rows_of(case):
     run = runs.by_name[case](finest[case])
     print(f"{case}: {run.cells} cells, {len(run.steps)} steps, {run.seconds:.0f} s", flush=True)
-    return [(case, finest[case], f"{run.seconds:.0f}", f"{at:.6g}", f"{value:.8g}")
-            for at, value in water_errors.limit_of(case, run.data)]
+    return [{"case": case, "cells": finest[case], "cpu_s": f"{run.seconds:.0f}", "at": f"{at:.6g}",
+             "value": f"{value:.8g}"} for at, value in water_errors.limit_of(case, run.data)]
 
 
 if __name__ == "__main__":
@@ -33,13 +31,5 @@ if __name__ == "__main__":
         sys.exit(f"there is no such case; there are {', '.join(finest)}")
     work.mkdir(parents=True, exist_ok=True)
     rows = [row for case in chosen for row in rows_of(case)]
-    out = root / "out" / "bench" / "openfoam_limits.csv"
-    with open(out, "w", newline="") as file:
-        file.write(f"# OpenFOAM {version_of('openfoam', 'icoFoam')}, Debian's build, one core of {processor()}, "
-                   f"{datetime.date.today()}: made by bench/peers/openfoam/limits.py.\n"
-                   "# dam_break: time [s], front Z [widths of the column]. bump: x, level [m]. cells: to a width, "
-                   "along.\n")
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(("case", "cells", "cpu_s", "at", "value"))
-        writer.writerows(rows)
-    print(f"-> {out.relative_to(root)}")
+    runs.save(root / "out" / "bench" / "openfoam_limits.csv", rows, ": made by bench/peers/openfoam/limits.py.\n"
+              "# dam_break: time [s], front Z [widths of the column]. bump: x, level [m]. cells: to a width, along.")

@@ -3,6 +3,8 @@
 Each function takes a number of cells and gives a Run, whose data bench/peers/water_errors.py knows.
 """
 
+import csv
+import datetime
 import shutil
 import time
 from dataclasses import dataclass
@@ -10,7 +12,7 @@ from dataclasses import dataclass
 import bump as channel
 import cases
 import logs
-from common import call, pinned, work
+from common import call, pinned, processor, root, version_of, work
 
 environment = {"WM_PROJECT_DIR": "/usr/share/openfoam"}
 width = 0.05715  # of the column that collapses [m]
@@ -42,6 +44,18 @@ def solve(name, files, solver, before=()):
     start = time.monotonic()
     log = call(["nice", "-n", "5", *pinned(1), solver, "-case", folder], f"openfoam_{name}", environment)
     return folder, log, time.monotonic() - start
+
+
+def save(out, rows, about=""):
+    """A table, below a line that says where its numbers come from; `rows`: dictionaries."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with open(out, "w", newline="") as file:
+        file.write(f"# OpenFOAM {version_of('openfoam', 'icoFoam')}, Debian's build, one core of {processor()}, "
+                   f"{datetime.date.today()}{about}\n")
+        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    print(f"-> {out.relative_to(root)}")
 
 
 def times(folder):
