@@ -36,7 +36,7 @@ void draw_impact(const ImpactChart& what, const fs::path& folder) {
     add("walls without friction", dam_impact::run(what.tank, smooth, dam_impact::last_time),
         CurveStyle::line);
     for (const Real roughness : {2e-5, 2e-4}) {
-        auto rough = dam_impact::dam_between_rough_walls(what.tank, cells, roughness);
+        auto rough = dam_impact::dam_between_holding_walls(what.tank, cells, roughness);
         add(roughness < 1e-4 ? "0.02 mm rough" : "0.2 mm rough",
             dam_impact::run(what.tank, rough, dam_impact::last_time), CurveStyle::line);
     }

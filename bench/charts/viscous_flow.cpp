@@ -28,9 +28,8 @@ void draw_orders(const std::string& title, const std::vector<Case>& cases, const
         .x = {.label = "cells across", .min = 7.0, .max = 40.0, .logarithmic = true},
         .y = {.label = "relative error of the resistance", .min = 3e-4, .max = 1.0, .logarithmic = true},
         .curves = {}};
-    std::cout << "case, cells, error of velocity, largest, in the middle of what is open (plates only), of "
-                 "resistance, orders "
-                 "of the first and the last\n";
+    std::cout << "case, cells, error of velocity, largest, at centroids of open parts (plates only), of "
+                 "resistance; orders of velocity, at centroids (plates only), of resistance\n";
     for (const Case& c : cases) {
         Curve curve{.title = c.name, .x = {}, .y = {}};
         viscous::Errors coarser;

@@ -36,7 +36,6 @@ struct Shear {
         FaceField<Dim> taken = face_field<Dim>(layout);
         for (const WallCell<Dim>& wall : walls.wall_cells())
             WallFriction<Dim>::each_held_face(grid, sides, walls, wall, [&](const auto& f) {
-                // It is held at 0.05 cells or further.
                 taken[f.axis][f.face] += f.area / f.distance;
             });
         const Point<Dim> size = Point<Dim>::Constant(h);
@@ -48,11 +47,12 @@ struct Shear {
             for (int a = 0; a < Dim; ++a) {
                 const Field<Real>& area = walls.open_area()[a];
                 const auto speed = [&](Offset face) {
-                    const Point<Dim> middle = detail::middle_of_face<Dim>(normal, size, a, area[face]);
-                    return distance(grid.face_centre(a, layout.number(face)) + h * middle);
+                    const Point<Dim> centroid = detail::centroid_of_face<Dim>(normal, size, a, area[face]);
+                    return distance(grid.face_centre(a, layout.number(face)) + h * centroid);
                 };
                 const Real here = speed(c);
-                if (area[c] == 0 || here < 0.05 * h) continue;
+                if (area[c] == 0 || here < WallFriction<Dim>::least_distance * h)
+                    continue;  // held as if further
                 Real brought = 0;
                 for (int b = 0; b < Dim; ++b) {
                     const Offset up = layout.stride[b];
@@ -73,7 +73,7 @@ struct Shear {
 }  // namespace
 
 TEST_CASE("a uniform shear along a plane wall stays as it is") {
-    constexpr Real float_round_off = 1e-5;  // shares of gaps are kept so
+    constexpr Real float_round_off = 1e-5;  // they are kept as float
     for (const Real degrees : {0.5, 10.0, 30.0, 45.0, 77.0, 135.0, 200.0, 290.0})
         for (const Real offset : {-0.03, 0.0, 0.017}) {
             const Real angle = degrees * pi / 180;
@@ -90,7 +90,7 @@ TEST_CASE("a uniform shear along a plane wall stays as it is") {
         }
 }
 
-TEST_CASE("the middle of what a plane leaves of a face") {
+TEST_CASE("the centroid of what a plane leaves open of a face") {
     constexpr int parts = 400;
     for (const auto& normal : {std::array<Real, 2>{1, 0}, std::array<Real, 2>{0.2, -1},
                                std::array<Real, 2>{-1, 1}, std::array<Real, 2>{-3, -0.7}})
@@ -105,11 +105,11 @@ TEST_CASE("the middle of what a plane leaves of a face") {
                     sum[0] += x, sum[1] += y, ++count;
                 }
             if (count == 0) continue;
-            const auto middle = detail::open_middle<2>(normal, Real(count) / (parts * parts));
+            const auto centroid = detail::open_centroid<2>(normal, Real(count) / (parts * parts));
             CAPTURE(normal[0]);
             CAPTURE(reach);
-            for (std::size_t a = 0; a < 2; ++a) CHECK(std::abs(middle[a] - sum[a] / count) < 2.0 / parts);
+            for (std::size_t a = 0; a < 2; ++a) CHECK(std::abs(centroid[a] - sum[a] / count) < 2.0 / parts);
         }
-    CHECK(detail::open_middle<1>({2}, 0.5)[0] == doctest::Approx(0.25));
-    CHECK(detail::open_middle<1>({-2}, 0.25)[0] == doctest::Approx(-0.375));
+    CHECK(detail::open_centroid<1>({2}, 0.5)[0] == doctest::Approx(0.25));
+    CHECK(detail::open_centroid<1>({-2}, 0.25)[0] == doctest::Approx(-0.375));
 }

@@ -23,8 +23,9 @@ void check(const std::vector<Scene<Dim>>& scenes) {
         // At most 4e-3 was measured; 1e-3 was wanted.
         CHECK(seen.gained < 0.01);
         CHECK(seen.lost < 1e-12);  // round-off
-        // Ten times what makes no surface may stay, and what the last projection has left comes to it.
-        CHECK(seen.overfull < 1e-4);  // 1.0, 1.6, 2.8 and 4.1e-5 by four roundings
+        // Ten times what makes no surface may stay by design, 1e-5, and what the last projection has left comes
+        // to it: 1.0 to 4.1e-5 in builds that round differently. Twice the worst.
+        CHECK(seen.overfull < 1e-4);
         // A cell is wet from half full on: round-off of the pressure decides when.
         CHECK(seen.asymmetry < 0.1);
     }

@@ -28,7 +28,7 @@ struct Tank {
     Real arrived = 0;       ///< pressure at which the water has arrived at the sensor [rho g H]
     Real viscosity = 0;     ///< of the water, dynamic [Pa s]
 
-    Real unit() const { return std::sqrt(gravity / height); }  ///< of time: T = t sqrt(g / H) [1/s]
+    Real times_per_second() const { return std::sqrt(gravity / height); }  ///< T = t sqrt(g / H) [1/s]
 };
 
 /// L. Lobovsky et al. 2014, doi 10.1016/j.jfluidstructs.2014.03.009; water at 25 degrees C.
@@ -81,7 +81,7 @@ GridFluid<Dim> dam(const Tank& tank, int n) {
 }
 
 /// The same between walls that hold the water: no slip at roughness 0, else a rough wall's logarithmic law.
-inline GridFluid<2> dam_between_rough_walls(const Tank& tank, int n, Real roughness) {
+inline GridFluid<2> dam_between_holding_walls(const Tank& tank, int n, Real roughness) {
     auto params = dam<2>(tank, n).params();
     params.sides = Sides<2>::all(Side::wall);
     if (roughness > 0) params.wall_law = {WallLaw::Kind::logarithmic, roughness};
@@ -108,7 +108,7 @@ std::vector<Sample> run(const Tank& tank, GridFluid<Dim>& flow, Real end) {
     const Real share = place - below;
     const int beside = std::max(static_cast<int>(std::lround(tank.height / h)) / 20, 1);
     std::vector<Sample> seen;
-    while (flow.time() * tank.unit() < end) {
+    while (flow.time() * tank.times_per_second() < end) {
         flow.step(flow.stable_step().seconds);
         const auto& p = flow.pressure();
         const auto& f = flow.liquid().fraction();
@@ -121,7 +121,7 @@ std::vector<Sample> run(const Tank& tank, GridFluid<Dim>& flow, Real end) {
         while (wet < up && is_wet(wet)) ++wet;
         while (front > 0 && f[at(front - 1, 0)] < 0.5) --front;
         const Real felt = (1 - share) * p[at(across - 1, below)] + share * p[at(across - 1, below + 1)];
-        seen.push_back({flow.time() * tank.unit(), felt / (gravity * tank.height), wet * h / tank.height,
+        seen.push_back({flow.time() * tank.times_per_second(), felt / (gravity * tank.height), wet * h / tank.height,
                         front * grid.size(0, 0) / tank.height});
     }
     return seen;
@@ -183,7 +183,7 @@ inline Impact impact(const Tank& tank, const std::vector<Sample>& series) {
             .second = peak(series, 5, end, 0.1)};
 }
 
-/// The front's over the last half H before the wall [sqrt(g H)].
+/// Mean speed of the front from 0.6 to 0.1 H before the wall [sqrt(g H)].
 inline Real front_speed(const Tank& tank, const std::vector<Sample>& series) {
     const Real wall = tank.length / tank.height;
     Real from = 0, to = 0;

@@ -111,7 +111,6 @@ struct Collapse {
     Cost cost{};
     std::vector<Real> time{};                ///< [s]
     std::vector<std::vector<Real>> floor{};  ///< [time][column] liquid fraction of the lowest cell
-    std::vector<std::vector<Real>> depth{};  ///< [time][column] water above the floor [a]
 
     /// Where the lowest row is half full, Z [a].
     Real front(std::size_t k) const {
@@ -140,16 +139,8 @@ Collapse dam_break(int n, const Choice& choice) {
         flow.advance(0.01 * k);
         found.time.push_back(0.01 * k);
         auto& floor = found.floor.emplace_back();
-        auto& depth = found.depth.emplace_back();
-        for (int i = 0; i < 8 * n; ++i) {
-            const auto share = [&](int j) {
-                return flow.liquid().fraction()[flow.grid().layout().at({i, j})];
-            };
-            floor.push_back(share(0));
-            Real sum = 0;
-            for (int j = 0; j < 3 * n; ++j) sum += share(j) / n;
-            depth.push_back(sum);
-        }
+        for (int i = 0; i < 8 * n; ++i)
+            floor.push_back(flow.liquid().fraction()[flow.grid().layout().at({i, 0})]);
     }
     found.cost = {24 * n * n, flow.steps()};
     return found;

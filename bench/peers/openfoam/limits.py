@@ -2,7 +2,7 @@
 """What OpenFOAM comes to on fine grids, off which bench/peers/run water takes its errors: the front of the column that
 collapses on 64 cells a width, the level over the bump on 240 cells along.
 
-    bench/peers/openfoam/limits.py [CASE...]      # of dam_break, bump; 20 min or more
+    bench/peers/openfoam/limits.py [CASE...]      # of dam_break, bump; 10 min
 
 One core. Writes out/bench/openfoam_limits.csv; bench/peers/openfoam_limits.csv is such a file, kept.
 """

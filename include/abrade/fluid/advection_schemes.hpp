@@ -43,7 +43,8 @@ struct Limited {
     template <class Number>
     static Number at_face(Number far, Number upstream, Number downstream) noexcept {
         const Number d1 = upstream - far, d2 = downstream - upstream;
-        // No branch computes anything, or g++ makes no packs of it where there is no AVX-512.
+        // Branches choose between values and compute none: without AVX-512 g++ makes no packs of a loop in
+        // which a branch might trap.
         const Number middle = std::abs((d1 + Number(2) * d2) * Number(1.0 / 3));
         const Number one = std::abs(d1), two = std::abs(d2), ends = Number(2) * (one < two ? one : two);
         const Number alike = d1 * d2 > 0 ? Number(0.5) : Number(0);

@@ -1,5 +1,5 @@
 #pragma once
-// What stands on faces that walls close, for the water that flows past them.
+// Velocities of faces that walls close, for the water that flows past them.
 
 #include <abrade/fluid/walls.hpp>
 
@@ -10,14 +10,17 @@
 
 namespace abrade::detail {
 
-/// A wall that is oblique to the grid closes faces of cells in which there is water. At rest on such a face,
-/// that water would take momentum from what flows into it and give none to what flows out: a stream along a
-/// frictionless bed lost a fifth of its head behind a bump. So while momentum is carried it moves along the
-/// wall, and no faster than any open face beside it, which would gain energy from it:
-///   u_a = v_a - n_a (n . v), kept between 0 and v_a, and between 0 and each u_a beside it,
-/// v the mean of the cell's faces, each by the share that is open [m/s]; n the wall's normal. That is 0 where
-/// the wall is square to the axis. Only in cells that are full and were, and half of it between one that is
-/// and one that is not.
+/// A wall that is oblique to the grid closes faces of cells in which there is water. The control volume of
+/// such a face, at rest, would take momentum from the inflow and give none to the outflow: a stream along a
+/// frictionless bed lost a fifth of its head behind a bump. So while momentum is advected a closed face of a
+/// full cell moves along the wall:
+///   u_a = v_a - n_a (n . v), kept between 0 and v_a, and between 0 and each w,
+///   v  mean velocity of the cell's open faces, weighted by what is open of them [m/s]
+///   n  unit normal of the wall, into the water
+///   w  velocity of an open face beside the closed one along the same axis [m/s]
+/// A closed face that moved faster than w would drive the flow, which then gains energy. Where the wall is
+/// square to the axis u_a is 0. Between two cells with oblique walls it is the mean of both, 0 from a cell
+/// that is not full at the beginning and at the end of the step.
 template <int Dim>
 class ClosedFaces {
 public:
@@ -94,9 +97,11 @@ private:
         return n >= 0 && std::abs(cells_[static_cast<std::size_t>(n)].normal[axis]) < square_to_it;
     }
     Real along_wall(const Cell& cell, const FaceField<Dim>& u, int axis) const noexcept {
-        Point<Dim> v;
-        for (int a = 0; a < Dim; ++a)
-            v[a] = cell.lower[a] * u[a][cell.cell] + cell.upper[a] * u[a][cell.cell + layout_.stride[a]];
+        Point<Dim> v = Point<Dim>::Zero();
+        for (int a = 0; a < Dim; ++a) {  // open faces only: other threads write the closed ones
+            if (cell.lower[a] > 0) v[a] += cell.lower[a] * u[a][cell.cell];
+            if (cell.upper[a] > 0) v[a] += cell.upper[a] * u[a][cell.cell + layout_.stride[a]];
+        }
         const auto [least, most] = std::minmax({v[axis], Real(0)});
         return std::clamp(v[axis] - cell.normal[axis] * cell.normal.dot(v), least, most);
     }

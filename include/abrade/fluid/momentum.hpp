@@ -40,7 +40,7 @@ struct MomentumStage {
     const Field<State>* held = nullptr;  ///< at its end; none: all cells are full
     const FaceField<Dim>* open_area = nullptr;  ///< share of each face that walls leave open [-]; none: all
     /// [a][b] of the sides along b of component a's control volumes: the share that walls leave open over the
-    /// distance between the middles of what they leave open of both volumes [1/cell]; with open_area.
+    /// distance between the centroids of what they leave open of both faces [1/cell]; with open_area.
     const PerAxis<FaceField<Dim, float>, Dim>* open_friction = nullptr;
     const Field<State>* eddy_viscosity = nullptr;  ///< nu_t of cells, ghosts filled [m2/s]; where Eddies
     /// What the pressure of the step before pushes more than over the distance of the centres, in dt [m/s]; 0

@@ -3,13 +3,15 @@
 
 #include <abrade/fluid/cut_faces.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace abrade::detail {
 
-/// [a][b]: for the sides along b of the control volumes of velocity component a, the share that walls leave
-/// open over the distance between the places of both velocities [1/cell]. A closed face has none: its wall is
-/// its neighbours' (see WallFriction).
+/// [a][b]: for the sides along b of the control volumes of velocity component a, what walls leave open of
+/// them over the distance of the centroids of both faces (open_over_distance) [1/cell]. 0 beside a closed
+/// face: WallFriction gives its wall to the faces around.
 template <int Dim>
 PerAxis<FaceField<Dim, float>, Dim> open_friction_of(const Walls<Dim>& walls, const Sides<Dim>& sides) {
     const Grid<Dim>& grid = walls.grid();
@@ -39,14 +41,14 @@ PerAxis<FaceField<Dim, float>, Dim> open_friction_of(const Walls<Dim>& walls, co
                 const std::array<Real, 2> faces{face[c - across], face[c]};
                 Real open = 0.5 * (area[c] + area[c - back]);
                 if (open == 1 && faces[0] == 1 && faces[1] == 1) return;
-                const int number = cell[b];
-                const bool inside = sides.periodic(b) || (number > (a == b) && number < grid.cells(b));
+                const int first = a == b ? 2 : 1;
+                const bool inside = sides.periodic(b) || (cell[b] >= first && cell[b] < grid.cells(b));
                 if (inside && (faces[0] == 0 || faces[1] == 0)) open = 0;
                 if (open > 0 && (faces[0] < 1 || faces[1] < 1)) {
                     Point<Dim> size;
                     for (int t = 0; t < Dim; ++t) size[t] = grid.size(t, cell[t]);
-                    open /= share_of_gap<Dim>(size, {a, b},
-                                              {wall_about(c - across, back), wall_about(c, back)}, faces);
+                    open = open_over_distance<Dim>(
+                        size, {a, b}, {wall_about(c - across, back), wall_about(c, back)}, faces, open);
                 }
                 friction[a][b][c] = static_cast<float>(open);
             };

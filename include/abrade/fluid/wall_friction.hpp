@@ -72,25 +72,27 @@ Sides<Dim> gliding_sides(Sides<Dim> sides, const WallLaw& law) {
 /// V the open volume about the face. Taken implicitly, so thin cells do not rule the step. What flows into
 /// the wall is 0 anyway, so each component is held alone.
 ///
-/// d is the distance of the middle of the face's open part. A is what closes the control volume of the face:
-/// half of the wall in each of its cells, and of the sides towards closed faces what the wall's normal n sees
-/// of them, A_side |n_b|. Together those of all faces have the wall's area. Along a plane wall at any angle a
-/// uniform shear, u = s d, then stays as it is, face by face: the neighbours bring nu s A (open_friction_of),
-/// and the wall takes it.
+/// d is the distance of the centroid of the face's open part. A closes the control volume of the face: half
+/// of the wall in each of its two cells, and A_side |n_b| for each side of the volume towards a closed face,
+/// n the wall's normal. Away from the sides of the box the areas of a component add up to that of a plane
+/// wall. Along a plane wall at any angle a uniform shear, u = s d, then stays as it is, face by face: the
+/// neighbours bring nu s A (open_friction_of), and the wall takes it.
 template <int Dim>
 class WallFriction {
 public:
     static constexpr Real karman = WallLaw::karman;
+    static constexpr Real least_distance = 0.05;  ///< of a face from a wall [cell]
+    static constexpr Real least_volume = 0.01;    ///< about a face [cell]
 
     /// A face that the wall of one of its cells holds.
     struct HeldFace {
         int axis = 0;
         Offset face = 0;
-        Real distance = 0;  ///< of the middle of its open part from the wall [m]
-        Real area = 0;      ///< of that wall, what is the face's [m2]
+        Real distance = 0;  ///< of the centroid of its open part from the wall [m]
+        Real area = 0;      ///< part of the wall's area that acts on this face [m2]
         Real volume = 0;    ///< about the face, open [m3]
     };
-    /// Calls body(HeldFace) for the faces among which the wall of a cell is shared out.
+    /// Calls body(HeldFace) for each part of the area of a cell's wall; a face may come more than once.
     static void each_held_face(const Grid<Dim>& grid, const Sides<Dim>& sides, const Walls<Dim>& walls,
                                const WallCell<Dim>& wall, auto&& body) {
         const Layout<Dim>& layout = grid.layout();
@@ -114,16 +116,16 @@ public:
             const Real open = 0.5 * (walls.open_volume()[face] * grid.volume(of) +
                                      walls.open_volume()[layout.at(below)] * grid.volume(below));
             const Point<Dim> from_centre =
-                detail::middle_of_face<Dim>(wall.normal, size, a, walls.open_area()[a][face]);
-            const Point<Dim> middle = grid.face_centre(a, of) + from_centre.cwiseProduct(size);
-            const Real distance = wall.normal.dot(middle - wall.point);
+                detail::centroid_of_face<Dim>(wall.normal, size, a, walls.open_area()[a][face]);
+            const Point<Dim> centroid = grid.face_centre(a, of) + from_centre.cwiseProduct(size);
+            const Real distance = wall.normal.dot(centroid - wall.point);
             Offset around = 0;
             for (int b = 0; b < Dim; ++b) {
                 if (of[b] < 0) around += grid.cells(b) * layout.stride[b];
                 if (of[b] >= grid.cells(b)) around -= grid.cells(b) * layout.stride[b];
             }
-            body(HeldFace{a, face + around, std::max(distance, 0.05 * size[a]), area,
-                          std::max(open, 0.01 * whole)});
+            body(HeldFace{a, face + around, std::max(distance, least_distance * size[a]), area,
+                          std::max(open, least_volume * whole)});
         };
         for (int a = 0; a < Dim; ++a) {
             const auto& area = walls.open_area()[a];

@@ -141,16 +141,15 @@ private:
                 if (!off || !at || !at_below || cells_.open_area(axis, *off) == 0) continue;
                 const Real open = 0.5 * (cells_.open_area(b, *at) + cells_.open_area(b, *at_below));
                 if (open == 0) continue;
-                // As open_friction_of has it.
                 const Cell& lower = end == 0 ? beside : face;
                 const Cell& upper = end == 0 ? face : beside;
                 const auto of = [&](const Cell& c) { return cells_.open_area(axis, *cells_.offset(c)); };
-                const Real gap =
-                    share_of_gap<Dim>(size, {axis, b}, {wall_about(lower, axis), wall_about(upper, axis)},
-                                      {of(lower), of(upper)});
-                force += viscosity(*at, *at_below, axis, b) * open * volume / size[b] *
+                const Real per_gap = open_over_distance<Dim>(
+                    size, {axis, b}, {wall_about(lower, axis), wall_about(upper, axis)},
+                    {of(lower), of(upper)}, open);
+                force += viscosity(*at, *at_below, axis, b) * per_gap * volume / size[b] *
                          (cells_.velocity(axis, *off) - cells_.velocity(axis, f)) /
-                         (gap * (b == axis ? grid_.size(b, side_below[b]) : grid_.gap(b, side[b])));
+                         (b == axis ? grid_.size(b, side_below[b]) : grid_.gap(b, side[b]));
             }
         if (cells_.is_wet(f) && cells_.is_wet(*back))
             force += cells_.density() * about(face, axis, false) * volume *
