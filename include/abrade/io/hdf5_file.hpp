@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -132,6 +133,46 @@ public:
             throw FileError(hdf5::message("read", path_, path, hdf5::reason()));
         if (H5Aexists(set.get(), "unit") > 0) column.unit = text_attribute(path, "unit");
         return column;
+    }
+
+    /// Writes numbers as they are, row after row of `components`, as dataset `group/name`; so that a whole
+    /// number stays one, and a float single.
+    template <class Number>
+    void write_numbers(std::string_view group, std::string_view name, std::string_view unit, int components,
+                       std::span<const Number> values) {
+        make_group(group);
+        const hdf5::Quiet quiet;
+        const std::string whole = join(group, name);
+        const auto wide = static_cast<hsize_t>(components);
+        const std::array<hsize_t, 2> shape{values.size() / wide, wide};
+        const hdf5::Handle space{H5Screate_simple(2, shape.data(), nullptr)};
+        const hid_t type = hdf5::type_of<Number>();
+        const hdf5::Handle set{
+            H5Dcreate2(file_.get(), whole.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
+        if (!set ||
+            (!values.empty() && H5Dwrite(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0))
+            throw_write(whole);
+        write_attribute(whole, "unit", std::string{unit});
+    }
+    /// Rows of a dataset that `write_numbers` wrote; InputError where there is none of these numbers.
+    template <class Number>
+    std::size_t rows(std::string_view name, int components) const {
+        const hdf5::Quiet quiet;
+        return static_cast<std::size_t>(open_numbers<Number>(name, components).second);
+    }
+    /// Reads it, as many values as `out` holds.
+    template <class Number>
+    void read_numbers(std::string_view name, int components, std::span<Number> out) const {
+        const hdf5::Quiet quiet;
+        const auto [set, count] = open_numbers<Number>(name, components);
+        if (count * static_cast<hsize_t>(components) != out.size())
+            throw_missing(std::to_string(count) + " rows and not the " +
+                              std::to_string(out.size() / static_cast<std::size_t>(components)) +
+                              " that are asked for",
+                          name);
+        if (!out.empty() &&
+            H5Dread(set.get(), hdf5::type_of<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
+            throw FileError(hdf5::message("read", path_, name, hdf5::reason()));
     }
 
     /// Whether there is a group or dataset of that name.
@@ -275,6 +316,23 @@ private:
                 {label, "whole rows of " + std::to_string(field.components) + " components", "values",
                  "check its components and its values"},
                 static_cast<Real>(field.values.size()));
+    }
+
+    template <class Number>
+    std::pair<hdf5::Handle, hsize_t> open_numbers(std::string_view name, int components) const {
+        hdf5::Handle set{H5Dopen2(file_.get(), std::string{name}.c_str(), H5P_DEFAULT)};
+        if (!set) throw_missing("no such dataset", name);
+        const hdf5::Handle type{H5Dget_type(set.get())}, space{H5Dget_space(set.get())};
+        std::array<hsize_t, 2> shape{0, 0};
+        if (H5Sget_simple_extent_ndims(space.get()) != 2 ||
+            H5Tequal(type.get(), hdf5::type_of<Number>()) <= 0)
+            throw_missing("numbers of another kind", name);
+        H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+        if (shape[1] != static_cast<hsize_t>(components))
+            throw_missing(
+                "rows of " + std::to_string(shape[1]) + " numbers and not of " + std::to_string(components),
+                name);
+        return {std::move(set), shape[0]};
     }
 
     hdf5::Handle open_object(std::string_view name) const {

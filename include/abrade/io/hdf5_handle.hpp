@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace abrade {
@@ -55,6 +56,25 @@ public:
 private:
     hid_t id_ = H5I_INVALID_HID;
 };
+
+/// HDF5's name for a number of C++.
+template <class Number>
+hid_t type_of() noexcept {
+    static_assert(std::is_arithmetic_v<Number> && sizeof(Number) <= 8);
+    if constexpr (std::is_floating_point_v<Number>) {
+        return sizeof(Number) == 8 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+    } else if constexpr (std::is_signed_v<Number>) {
+        return sizeof(Number) == 8   ? H5T_NATIVE_INT64
+               : sizeof(Number) == 4 ? H5T_NATIVE_INT32
+               : sizeof(Number) == 2 ? H5T_NATIVE_INT16
+                                     : H5T_NATIVE_INT8;
+    } else {
+        return sizeof(Number) == 8   ? H5T_NATIVE_UINT64
+               : sizeof(Number) == 4 ? H5T_NATIVE_UINT32
+               : sizeof(Number) == 2 ? H5T_NATIVE_UINT16
+                                     : H5T_NATIVE_UINT8;
+    }
+}
 
 /// What HDF5 says went wrong in the last failed call of this thread: the innermost message of its stack.
 inline std::string reason() {
