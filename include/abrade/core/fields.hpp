@@ -24,8 +24,8 @@ struct FieldView {
 
 /// How a member lies in a file.
 enum class FieldForm : std::uint8_t {
-    numbers,  ///< as what it is made of
-    bytes,    ///< as it lies in memory: packs, and what laws remember
+    numbers,  ///< as the numbers that it is made of
+    bytes,    ///< what is no such number in it as it lies in memory: packs, and what laws remember
 };
 
 /// One member of a class that lasts from step to step.

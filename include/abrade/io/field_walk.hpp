@@ -75,10 +75,7 @@ public:
     template <FieldForm Form = FieldForm::numbers, class T>
     void go(const std::string& path, std::string_view unit, const std::vector<T*>& all) {
         using Plain = std::remove_const_t<T>;
-        if constexpr (Form == FieldForm::bytes) {
-            if constexpr (!std::is_empty_v<Plain>)
-                port_.template rows<std::uint8_t>(path, unit, static_cast<int>(sizeof(Plain)), all);
-        } else if constexpr (IsRow<Plain>) {
+        if constexpr (IsRow<Plain>) {
             port_.template rows<typename RowOf<Plain>::Number>(path, unit, RowOf<Plain>::numbers, all);
         } else if constexpr (ListsFields<Plain>) {
             for_each_field<Plain>([&](const auto& field) {
@@ -89,27 +86,31 @@ public:
             if constexpr (!std::is_const_v<T> && IsToldOfRestart<Plain>)
                 for (T* one : all) one->restored();
         } else if constexpr (IsResizable<Plain>) {
-            using Element = typename Plain::value_type;
             port_.resize(path, all);
-            if constexpr (IsRow<Element>)
+            if constexpr (IsRow<typename Plain::value_type>)
                 blocks(path, unit, all);
             else
-                go(path + "/each", unit, elements(all));
+                go<Form>(path + "/each", unit, elements(all));
         } else if constexpr (IsBlock<Plain>) {
             blocks(path, unit, all);
-        } else if constexpr (IsPerAxis<Plain>) {
-            if (all.size() != 1) return go(path, unit, elements(all));
-            int axis = 0;  // each for itself: the largest columns there are need no copy
-            for (auto& one : *all.front()) go(path + "/" + std::to_string(axis++), unit, std::vector{&one});
         } else if constexpr (IsOptional<Plain>) {
             port_.emplace(path, all);
             std::vector<decltype(&**all.front())> there;
             for (T* one : all)
                 if (*one) there.push_back(&**one);
-            go(path + "/each", unit, there);
-        } else {
-            static_assert(IsEngine<Plain>, "a field that cannot be saved: let its class list its fields");
+            go<Form>(path + "/each", unit, there);
+        } else if constexpr (IsEngine<Plain>) {
             for (T* one : all) port_.engine(path, *one);
+        } else if constexpr (IsPerAxis<Plain>) {
+            if (all.size() != 1) return go<Form>(path, unit, elements(all));
+            int axis = 0;  // each for itself: the largest columns there are need no copy
+            for (auto& one : *all.front())
+                go<Form>(path + "/" + std::to_string(axis++), unit, std::vector{&one});
+        } else {
+            static_assert(Form == FieldForm::bytes,
+                          "a field that cannot be saved: let its class list its fields");
+            if constexpr (!std::is_empty_v<Plain>)
+                port_.template rows<std::uint8_t>(path, unit, static_cast<int>(sizeof(Plain)), all);
         }
     }
 
