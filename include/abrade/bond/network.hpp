@@ -227,6 +227,14 @@ public:
     const Bond& bond(Index number) const noexcept { return bonds_[at(number)]; }
     const Ties& ties() const noexcept { return ties_; }
 
+    static auto fields() {
+        return std::tuple(bytes_field("bonds", &Network::bonds_), field("active", &Network::active_),
+                          field("ties", &Network::ties_), field("breaks", &Network::breaks_),
+                          bytes_field("packs", &Network::packs_), field("first_pack", &Network::first_pack_),
+                          bytes_field("looked_after", &Network::looked_after_),
+                          field("first_bond", &Network::first_bond_), field("changed", &Network::changed_));
+    }
+
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
     /// What woke late may have the smaller member's number behind the larger one's.

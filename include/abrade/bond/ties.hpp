@@ -1,6 +1,7 @@
 #pragma once
 // Who holds whom: the graph of sound bonds, and what is no longer tied to the ground once some are cut.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
@@ -109,6 +110,12 @@ public:
             all.push_back(std::move(part));
         }
         return all;
+    }
+
+    static auto fields() {
+        return std::tuple(field("cut", &Ties::cut_), field("loose", &Ties::loose_),
+                          field("mark", &Ties::mark_), field("round", &Ties::round_),
+                          field("doubtful", &Ties::doubtful_));
     }
 
 private:

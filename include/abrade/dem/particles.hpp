@@ -1,6 +1,7 @@
 #pragma once
 // The columns of rigid bodies and of the spheres that they are made of.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/geometry/sphere_union.hpp>
 
 #include <vector>
@@ -139,6 +140,22 @@ struct Particles {
         for_each_body_column([&](auto& column) { column.resize(to); });
         for_each_sphere_column([&](auto& column) { column.resize(sphere_to); });
         return moved;
+    }
+
+    static auto fields() {
+        return std::tuple(
+            field("position", "m", &Particles::position), field("velocity", "m/s", &Particles::velocity),
+            field("orientation", &Particles::orientation),
+            field("angular_momentum", "kg m2/s", &Particles::angular_momentum),
+            field("force", "N", &Particles::force), field("torque", "N m", &Particles::torque),
+            field("mass", "kg", &Particles::mass), field("inverse_mass", "1/kg", &Particles::inverse_mass),
+            field("inverse_inertia", "1/(kg m2)", &Particles::inverse_inertia),
+            field("volume", "m3", &Particles::volume), field("kind", &Particles::kind),
+            field("id", &Particles::id), field("site", &Particles::site),
+            field("material", &Particles::material), field("first_sphere", &Particles::first_sphere),
+            field("sphere_count", &Particles::sphere_count), field("body", &Particles::body),
+            field("offset", "m", &Particles::offset), field("radius", "m", &Particles::radius),
+            field("centre", "m", &Particles::centre), field("next_id", &Particles::next_id));
     }
 
 private:

@@ -2,6 +2,7 @@
 // Space cut into slabs along one axis: what lies in one slab stays in cache while it is worked on, and
 // chunks of slabs are what threads share out.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
@@ -75,6 +76,13 @@ public:
     Index chunks() const noexcept { return chunks_(); }
     Index first_slab(Index chunk) const noexcept { return first_slab_[static_cast<std::size_t>(chunk)]; }
     Index chunk_of(Index slab) const noexcept { return chunk_of_[static_cast<std::size_t>(slab)]; }
+
+    static auto fields() {
+        return std::tuple(field("axis", &Slabs::axis_), field("low", "m", &Slabs::low_),
+                          field("extent", "m", &Slabs::extent_), field("thickness", "m", &Slabs::thickness_),
+                          field("count", &Slabs::count_), field("spheres", &Slabs::spheres_),
+                          field("first_slab", &Slabs::first_slab_), field("chunk_of", &Slabs::chunk_of_));
+    }
 
 private:
     Index chunks_() const noexcept { return static_cast<Index>(first_slab_.size()) - 1; }

@@ -2,6 +2,7 @@
 // What a step reads and writes of each sphere, in whole cache lines: a contact touches one line of place, one
 // of motion and one of load on either side, and packs of contacts load them whole.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/simd.hpp>
 
 #include <cstddef>
@@ -13,6 +14,10 @@ namespace abrade {
 struct alignas(32) SpherePlace {
     Vec3 centre = Vec3::Zero();  ///< [m]
     Real radius = 0;             ///< [m]
+    static auto fields() {
+        return std::tuple(field("centre", "m", &SpherePlace::centre),
+                          field("radius", "m", &SpherePlace::radius));
+    }
 };
 
 /// How it moves, halfway through the step that led to its place.
@@ -21,6 +26,12 @@ struct alignas(64) SphereMotion {
     Real inverse_mass = 0;         ///< of its body, 0 where that is fixed [1/kg]
     Vec3 rim = Vec3::Zero();       ///< radius times angular velocity [m/s]
     Real curvature = 0;            ///< 1/radius [1/m]
+    static auto fields() {
+        return std::tuple(field("velocity", "m/s", &SphereMotion::velocity),
+                          field("inverse_mass", "1/kg", &SphereMotion::inverse_mass),
+                          field("rim", "m/s", &SphereMotion::rim),
+                          field("curvature", "1/m", &SphereMotion::curvature));
+    }
 };
 
 /// What acts on it. Contact points lie at arms that share the distance of the centres in proportion to the
@@ -31,6 +42,10 @@ struct alignas(64) SphereLoad {
     /// Sum of lambda f x n, and of couples over the radius; times that: the torque about the centre [N].
     Vec3 lever = Vec3::Zero();
     Real mass = 0;  ///< of its body: no load, but its place is free [kg]
+    static auto fields() {
+        return std::tuple(field("force", "N", &SphereLoad::force), field("worn", "m3", &SphereLoad::worn),
+                          field("lever", "N", &SphereLoad::lever), field("mass", "kg", &SphereLoad::mass));
+    }
 };
 
 /// The lines of all spheres, in slots: first every sphere, then images of some of them (of periodic
@@ -40,6 +55,11 @@ struct SphereLines {
     std::vector<SpherePlace> place;
     std::vector<SphereMotion> motion;
     std::vector<SphereLoad> load;
+
+    static auto fields() {
+        return std::tuple(field("place", &SphereLines::place), field("motion", &SphereLines::motion),
+                          field("load", &SphereLines::load));
+    }
 
     void resize(std::size_t slots) { place.resize(slots), motion.resize(slots), load.resize(slots); }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The energy ledger: where every joule came from and where it went.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
@@ -37,6 +38,30 @@ struct Ledger {
 
     // losses of contacts with concrete, once for each side that is concrete
     Real concrete_lost_normal = 0, concrete_lost_sliding = 0;
+
+    static auto fields() {
+        return std::tuple(
+            field("kinetic", "J", &Ledger::kinetic), field("potential", "J", &Ledger::potential),
+            field("stored_contacts", "J", &Ledger::stored_contacts),
+            field("stored_bonds", "J", &Ledger::stored_bonds),
+            field("kinetic_start", "J", &Ledger::kinetic_start),
+            field("potential_start", "J", &Ledger::potential_start),
+            field("stored_start", "J", &Ledger::stored_start),
+            field("lost_normal", "J", &Ledger::lost_normal),
+            field("lost_sliding", "J", &Ledger::lost_sliding),
+            field("lost_rolling", "J", &Ledger::lost_rolling), field("lost_bond", "J", &Ledger::lost_bond),
+            field("lost_asleep", "J", &Ledger::lost_asleep), field("drag_input", "J", &Ledger::drag_input),
+            field("drag_work", "J", &Ledger::drag_work), field("buoyancy_work", "J", &Ledger::buoyancy_work),
+            field("gravity_work", "J", &Ledger::gravity_work),
+            field("interaction_work", "J", &Ledger::interaction_work),
+            field("fed_kinetic", "J", &Ledger::fed_kinetic),
+            field("fed_potential", "J", &Ledger::fed_potential),
+            field("left_kinetic", "J", &Ledger::left_kinetic),
+            field("left_potential", "J", &Ledger::left_potential),
+            field("left_stored", "J", &Ledger::left_stored),
+            field("concrete_lost_normal", "J", &Ledger::concrete_lost_normal),
+            field("concrete_lost_sliding", "J", &Ledger::concrete_lost_sliding));
+    }
 
     /// Drag force times (fluid - body velocity): turned into heat and turbulence.
     Real lost_drag() const noexcept { return drag_input - drag_work; }

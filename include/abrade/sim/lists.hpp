@@ -5,6 +5,7 @@
 #include <abrade/sim/period.hpp>
 #include <abrade/sim/sleep.hpp>
 #include <abrade/sim/standing_concrete.hpp>
+#include <abrade/sim/wrap.hpp>
 
 #include <chrono>
 #include <numeric>
@@ -98,6 +99,15 @@ public:
     Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
     /// Whether bodies are too fast for any skin that the period of space has room for.
     bool outrun() const noexcept { return outrun_; }
+
+    static auto fields() {
+        return std::tuple(field("skin", "m", &Lists::skin_), field("list_skin", "m", &Lists::list_skin_),
+                          field("inner_skin", "m", &Lists::inner_skin_), field("moved", "m", &Lists::moved_),
+                          field("seconds", "s", &Lists::seconds_), field("inner_life", &Lists::inner_life_),
+                          field("outrun", &Lists::outrun_), field("dt", "s", &Lists::dt_),
+                          field("age", &Lists::age_), bytes_field("near_sites", &Lists::near_sites_),
+                          field("built_at", "m", &Lists::built_at_), field("passive", &Lists::passive_));
+    }
 
 private:
     /// Steps that lists last at least.
@@ -202,36 +212,6 @@ private:
         const Real best = std::sqrt(inner_life_ * look / (idle + 8 * kept + 1));
         inner_life_ =
             std::clamp(best, std::max(shortest_life, 0.5 * inner_life_), std::min(256.0, 2 * inner_life_));
-    }
-
-    /// Brings bodies that crossed a periodic edge back in; what that does to their potential energy is booked
-    /// as if they had been fed there.
-    static void wrap(State<P>& state) {
-        const Periodic space = state.scene.periodic();
-        if (space.period.isZero()) return;
-        SphereStore& store = state.store;
-        const auto back = [&](Vec3& x, Index body) {
-            const Vec3 shift = space.way_back(x);
-            if (shift.isZero(0)) return shift;
-            state.accounts.fed_potential -= state.potential_energy(body, x);
-            x += shift;
-            state.accounts.fed_potential += state.potential_energy(body, x);
-            return shift;
-        };
-        std::vector<char> outside(at(store.spheres()));
-        parallel_for(store.spheres(), [&](Index slot) {
-            outside[at(slot)] = !space.way_back(store.lines.place[at(slot)].centre).isZero(0);
-        });
-        for (Index slot = 0; slot < store.spheres(); ++slot) {
-            if (!outside[at(slot)]) continue;
-            const Index body = state.particles.body[at(store.sphere_of(slot))];
-            if (store.clump_of(body) < 0) back(store.lines.place[at(slot)].centre, body);
-        }
-        for (MovingClump& clump : store.clumps) {
-            const Vec3 shift = back(clump.position, clump.body);
-            for (Index m = 0; m < clump.count; ++m)
-                store.lines.place[at(clump.first_slot + m)].centre += shift;
-        }
     }
 
     Departure departing(State<P>& state, Real dt, const detail::SiteMarks& near) const {

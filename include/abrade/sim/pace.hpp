@@ -1,6 +1,7 @@
 #pragma once
 // Which steps bodies take: all of them, many as one in free flight, none asleep.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
@@ -28,6 +29,17 @@ struct FreeFlight {
     Real horizon = std::numeric_limits<Real>::infinity();  ///< drag is slow over so long a flight [s]
     Index held = 0;                                        ///< spheres that fly but for their candidates
     bool sound = true;                                     ///< all that landed is where numbers are finite
+
+    static auto fields() {
+        return std::tuple(field("allowed", &FreeFlight::allowed), field("kicks", "s", &FreeFlight::kicks),
+                          field("drifts", "s", &FreeFlight::drifts), field("area", "s2", &FreeFlight::area),
+                          field("last", "s", &FreeFlight::last), field("start", "s", &FreeFlight::start),
+                          field("now", "s", &FreeFlight::now), field("fastest", "m/s", &FreeFlight::fastest),
+                          field("hardest", "m/s2", &FreeFlight::hardest),
+                          field("margin", "m", &FreeFlight::margin),
+                          field("horizon", "s", &FreeFlight::horizon), field("held", &FreeFlight::held),
+                          field("sound", &FreeFlight::sound));
+    }
 
     void note(Real kick, Real drift, Real time) noexcept {
         if (kicks == 0) start = time;
@@ -75,6 +87,13 @@ struct Sleep {
         Real slowest2 = 0;            ///< square of the lowest speed in that time [m2/s2]
         Vec3 support = Vec3::Zero();  ///< of contacts and fluid, as it fell asleep [N]
         Real strongest = 0;           ///< of those forces and its weight [N]
+        static auto fields() {
+            return std::tuple(field("asleep", &Body::asleep), field("rouse", &Body::rouse),
+                              field("watched", &Body::watched), field("slow_for", "s", &Body::slow_for),
+                              field("slowest2", "m2/s2", &Body::slowest2),
+                              field("support", "N", &Body::support),
+                              field("strongest", "N", &Body::strongest));
+        }
     };
 
     Real speed = 0;            ///< below which a body is slow, its centre and its rim; 0: nobody sleeps [m/s]
@@ -86,6 +105,14 @@ struct Sleep {
     bool stirred = false;      ///< somebody may have to wake
     bool watch_all = false;    ///< bodies left: anybody may have lost support
     bool changed = false;      ///< who sleeps, since `stored_at_rest` was asked for
+
+    static auto fields() {
+        return std::tuple(field("speed", "m/s", &Sleep::speed), field("after", "s", &Sleep::after),
+                          field("toppling", "s/m^(1/2)", &Sleep::toppling), field("bodies", &Sleep::bodies),
+                          field("rests", &Sleep::rests), field("count", &Sleep::count),
+                          field("stirred", &Sleep::stirred), field("watch_all", &Sleep::watch_all),
+                          field("changed", &Sleep::changed));
+    }
 
     bool asleep(Index body) const noexcept {
         const auto b = static_cast<std::size_t>(body);

@@ -21,6 +21,14 @@ struct Policies {
     [[no_unique_address]] W wear;
     [[no_unique_address]] F fluid;
     [[no_unique_address]] D drag;
+
+    /// Laws are what they are; a fluid that goes on may have much to list.
+    static auto fields() {
+        if constexpr (ListsFields<F>)
+            return std::tuple(field("fluid", &Policies::fluid));
+        else
+            return std::tuple();
+    }
 };
 
 }  // namespace abrade

@@ -1,6 +1,7 @@
 #pragma once
 // How a run is asked for, and what it throws when it goes wrong.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/require.hpp>
 
 #include <cmath>
@@ -29,8 +30,8 @@ struct RunOptions {
     Real safety = 0.5;       ///< share of the stable step that is taken [-]
     Real observe_every = 0;  ///< [s]; 0: at the start and at the end only
     Real skin = 0;           ///< of the neighbour list [m]; 0: a quarter of the smallest radius
-    /// Whether bodies that nothing can touch soon take their steps as one: faster where most fly. The same but
-    /// for round-off for spheres under their weight; to second order for clumps and in a fluid.
+    /// Whether bodies that nothing can touch soon take their steps as one: faster where most fly. The same
+    /// but for round-off for spheres under their weight; to second order for clumps and in a fluid.
     bool free_flight = true;
     /// Bodies slower than this, centre and rim, that touch something are put to sleep: they take no steps
     /// until something stirs them [m/s]. 0: never. What they still move with is the ledger's `lost_asleep`.
@@ -38,8 +39,39 @@ struct RunOptions {
     /// How long they must have been that slow [s]. 0: until a hundredth of gravity would have made them
     /// faster, 200 sleep_speed / g, and twice as long as their diameter d takes to topple, 2 sqrt(d/g).
     Real sleep_after = 0;
-    /// Asked now and then, while a fluid settles too; true ends the run cleanly.
+    /// Asked now and then between steps, while a fluid settles too; true ends the run cleanly. The place to
+    /// save the simulation from (io/restart.hpp).
     std::function<bool()> stop{};
+
+    static auto fields() {
+        return std::tuple(
+            field("end_time", "s", &RunOptions::end_time), field("time_step", "s", &RunOptions::time_step),
+            field("safety", &RunOptions::safety), field("observe_every", "s", &RunOptions::observe_every),
+            field("skin", "m", &RunOptions::skin), field("free_flight", &RunOptions::free_flight),
+            field("sleep_speed", "m/s", &RunOptions::sleep_speed),
+            field("sleep_after", "s", &RunOptions::sleep_after));
+    }
+    bool asks_the_same_as(const RunOptions& o) const noexcept {
+        return end_time == o.end_time && time_step == o.time_step && safety == o.safety &&
+               observe_every == o.observe_every && skin == o.skin && free_flight == o.free_flight &&
+               sleep_speed == o.sleep_speed && sleep_after == o.sleep_after;
+    }
+};
+
+/// A run at work: how it was asked for, and how far it is.
+struct RunAtWork {
+    RunOptions options{};
+    Real begun = 0;             ///< when its steps were counted last [s]
+    Real next_observation = 0;  ///< [s]
+    Index steps = 0, done = 0;  ///< from then on
+    bool under_way = false;
+
+    static auto fields() {
+        return std::tuple(field("options", &RunAtWork::options), field("begun", "s", &RunAtWork::begun),
+                          field("next_observation", "s", &RunAtWork::next_observation),
+                          field("steps", &RunAtWork::steps), field("done", &RunAtWork::done),
+                          field("under_way", &RunAtWork::under_way));
+    }
 };
 
 /// Throws InputError for what cannot be asked for `now` [s].

@@ -3,29 +3,14 @@
 
 #include <abrade/dem/linear_spring.hpp>
 #include <abrade/sim/run_options.hpp>
+#include <abrade/sim/scene_limits.hpp>
+#include <abrade/sim/slots.hpp>
 #include <abrade/sim/snapshot.hpp>
-#include <abrade/sim/trouble_text.hpp>
 
 #include <chrono>
 #include <iosfwd>
 
 namespace abrade {
-
-/// Stands in the contact slot until `.contact(law)` fills it.
-struct ContactLawIsMissing {};
-
-namespace detail {
-
-/// What a slot gives back when its law cannot be used: takes any further call, so that one error is printed.
-struct AfterRejectedLaw {
-    AfterRejectedLaw contact(auto&&...) { return {}; }
-    AfterRejectedLaw bond(auto&&...) { return {}; }
-    AfterRejectedLaw wear(auto&&...) { return {}; }
-    AfterRejectedLaw fluid(auto&&...) { return {}; }
-    void run(const RunOptions&, auto&&...) {}
-};
-
-}  // namespace detail
 
 /// Made by `simulate(scene)`, completed by `.contact()`, `.bond()`, `.wear()` and `.fluid()`, then run. The
 /// four policies are part of the type; an absent one costs nothing.
@@ -100,12 +85,33 @@ public:
         run(options, [](const Simulation&) {});
     }
 
+    // --- saving and going on later ---------------------------------------------------------------
+
+    /// Makes of the scene what a run would begin with, without running: what a restart reads into
+    /// (io/restart.hpp). Throws InputError as `run` does.
+    void build() {
+        static_assert(!std::same_as<C, ContactLawIsMissing>, "a simulation needs a contact law");
+        if (!world_) build_world();
+    }
+    /// All of it that lasts. Between steps, as in `RunOptions::stop`, and between runs.
+    static auto fields() {
+        return std::tuple(
+            field("world", &Simulation::world_), field("ledger", &Simulation::ledger_),
+            field("last_good", &Simulation::last_good_), field("time", "s", &Simulation::time_),
+            field("time_step", "s", &Simulation::time_step_), field("step", &Simulation::step_),
+            field("remembered", &Simulation::remembered_), field("shortened", &Simulation::shortened_),
+            field("opened", &Simulation::opened_), field("has_grains", &Simulation::has_grains_),
+            field("wall_seconds", "s", &Simulation::wall_seconds_), field("run", &Simulation::run_));
+    }
+    /// The same run goes on where it was; another one begins from there.
+    void restored() noexcept { resumes_ = run_.under_way; }
+
     // --- what came of it -----------------------------------------------------------------------
 
     Real time() const noexcept { return time_; }  ///< [s]
     Index steps() const noexcept { return step_; }
-    Real time_step() const noexcept { return time_step_; }                   ///< [s]
-    const StableStep& stable_time_step() const noexcept { return stable_; }  ///< of dense surroundings
+    Real time_step() const noexcept { return time_step_; }                  ///< [s]
+    const StableStep& stable_time_step() const { return limits().stable; }  ///< of dense surroundings
     /// What contacts and bonds allow as they stand, and a first touch of each body.
     StableStep stable_step_now() const { return stable_now(std::numeric_limits<Real>::infinity()); }
     Index times_shortened() const noexcept { return shortened_; }  ///< the step, for contacts as they stood
@@ -163,42 +169,62 @@ private:
         return std::chrono::duration<Real>(Clock::now() - start).count();
     }
 
+    const SceneLimits& limits() const {
+        if (!limits_) throw std::logic_error("Simulation: run it before asking for its stable step");
+        return *limits_;
+    }
     void check_not_run() const {
         if (world_) throw std::logic_error("Simulation: fill the slots before the first run");
     }
 
     void advance(const RunOptions& options, auto&& observer) {
-        prepare(options);
+        const bool resumes = std::exchange(resumes_, false) && run_.options.asks_the_same_as(options);
+        if (resumes)
+            stopped_ = false;
+        else
+            prepare(options);
         const auto clock_start = Clock::now();
-        const Real wall_before = wall_seconds_, start = time_;
+        const Real wall_before = wall_seconds_;
         const auto show = [&] {
             wall_seconds_ = wall_before + seconds_since(clock_start);
             balance();
             observer(std::as_const(*this));
         };
-        Real begun = 0, next_observation = start + options.observe_every;
-        Index steps = 0, n = 0;
         const auto plan = [&] {
-            begun = time_, n = 0, steps = steps_to(options.end_time);
-            if (steps > 0) time_step_ = (options.end_time - begun) / steps;  // so that the last ends on time
+            run_.begun = time_, run_.done = 0,
+            run_.steps = limits().steps(options.end_time - time_, time_step_, step_);
+            if (run_.steps > 0)
+                time_step_ = (options.end_time - run_.begun) / run_.steps;  // so that the last ends on time
         };
-        plan();
-        show();
-        while (n < steps && !stopped_ && !concrete().worn_through()) {
-            do_step(begun + n * time_step_);
-            const bool last = ++n == steps;
+        if (!resumes) {
+            run_ = {.options = options, .next_observation = time_ + options.observe_every};
+            run_.options.stop = {};
+            plan();
+            show();
+        }
+        run_.under_way = true;
+        while (run_.done < run_.steps && !stopped_ && !concrete().worn_through()) {
+            do_step(run_.begun + run_.done * time_step_);
+            const bool last = ++run_.done == run_.steps;
             if (last) time_ = options.end_time;
-            if (step_ % steps_between_checks == 0 && options.stop && options.stop()) stopped_ = true;
-            if (last || stopped_ || concrete().worn_through() ||
-                (options.observe_every > 0 && time_ >= next_observation - 0.5 * time_step_)) {
-                next_observation += options.observe_every;
+            const bool seen =
+                last || concrete().worn_through() ||
+                (options.observe_every > 0 && time_ >= run_.next_observation - 0.5 * time_step_);
+            if (seen) {
+                run_.next_observation += options.observe_every;
                 show();
             }
             const bool look = step_ % steps_between_snapshots == 0 && !last;
             const bool grains = !last && (look || world_->state().let_go_count > 0);
             const bool follows = grains && follow_grains(options, look);
             if ((look && shorten(options)) || follows) plan();
+            // Last: what is saved here goes on as if nobody had asked.
+            if (step_ % steps_between_checks == 0 && options.stop && options.stop()) {
+                stopped_ = true;
+                if (!seen) show();
+            }
         }
+        run_.under_way = false;
         wall_seconds_ = wall_before + seconds_since(clock_start);
     }
 
@@ -221,35 +247,21 @@ private:
         time_step_ = usual_step(options);
         return true;
     }
-    Real usual_step(const RunOptions& options) const noexcept {
-        return options.safety * (has_grains_ ? std::min(stable_.seconds, stable_loose_) : stable_.seconds);
+    Real usual_step(const RunOptions& options) const {
+        return options.safety * limits().stable_seconds(has_grains_);
     }
 
     StableStep stable_now(Real most) const {
         StableStep step = StableStepNow(world().state()).of_all(most);
         if (world().state().nobody_moves())
-            step.lower(stable_.seconds, stable_.limit);  // of what is to be fed
+            step.lower(limits().stable.seconds, limits().stable.limit);  // of what is to be fed
         return step;
-    }
-
-    Index steps_to(Real end_time) const {
-        constexpr Real most = std::numeric_limits<Index>::max();
-        const Real steps =
-            end_time > time_ ? std::max(std::ceil((end_time - time_) / time_step_ - 1e-9), 1.0) : 0;
-        require(static_cast<Real>(step_) + steps < most,
-                {"RunOptions.end_time over the time step: steps", "fewer than " + to_text(most), "",
-                 "run for a shorter time, or with a larger step than " + short_text(time_step_) +
-                     " s; stable: " + short_text(stable_.seconds) + " s, set by " + who_limits_},
-                steps);
-        return static_cast<Index>(steps);
     }
 
     void prepare(const RunOptions& options) {
         validate(options, time_, scene_.gravity.isZero());
         if (!world_) build_world();
-        const Real skin = options.skin > 0 ? options.skin : 0.25 * smallest_radius_;
-        period_need_->check(world_->scene(), skin);
-        world_->set_skin(skin);
+        world_->set_skin(limits().skin(options.skin, world_->scene()));
         world_->set_free_flight(options.free_flight);
         world_->set_sleep(options.sleep_speed, options.sleep_after);
         stopped_ = false;
@@ -280,18 +292,7 @@ private:
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
         world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_}));
-        const Particles& all = world_->particles();
-        stable_ = stable_step(contact_, bond_, all, world_->network(), world_->scene().feed);
-        who_limits_ = stable_.limit;
-        if (stable_.body >= 0) who_limits_ += ", " + TroubleText(*world_, 0).name_of(stable_.body);
-        const Real standing = world_->state().sites.stand ? world_->concrete().lattice().radius : 0;
-        period_need_.emplace(all, world_->scene().feed, standing);
-        smallest_radius_ =
-            all.radius.empty() ? 0.01 : *std::min_element(all.radius.begin(), all.radius.end());
-        if (standing == 0) return;
-        smallest_radius_ = std::min(smallest_radius_, standing);
-        stable_loose_ =
-            contact_.stable_dt(scene_.concrete->density * 4.0 / 3 * pi * cube(standing), standing);
+        limits_.emplace(*world_);
     }
 
     /// One that begins earlier than the solids comes up to them, unless it is stopped on its way.
@@ -380,16 +381,14 @@ private:
     [[no_unique_address]] D drag_;
     std::optional<World> world_;
     Ledger ledger_;
-    StableStep stable_;                                          ///< of the scene as it began
-    Real stable_loose_ = std::numeric_limits<Real>::infinity();  ///< of a grain that was let go [s]
-    std::string who_limits_;
-    std::optional<PeriodNeed> period_need_;
-    Real smallest_radius_ = 0;  ///< of a sphere of the scene [m]
+    std::optional<SceneLimits> limits_;
     Snapshot last_good_;
     Real time_ = 0, time_step_ = 0;
     Index step_ = 0, remembered_ = 0, shortened_ = 0;
     bool opened_ = false, stopped_ = false, has_grains_ = false;
     Real wall_seconds_ = 0;
+    RunAtWork run_;
+    bool resumes_ = false;  ///< that run is to go on
 };
 
 /// Starts a simulation; fill the slots, then run.

@@ -1,6 +1,7 @@
 #pragma once
 // Where wear goes that its site no longer has: the options, and the order in which they take from a lattice.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/require.hpp>
 #include <abrade/geometry/lattice.hpp>
 #include <abrade/geometry/point_grid.hpp>
@@ -156,6 +157,8 @@ public:
         while (top < end && !has(sites_[top])) ++top;
         return top < end ? sites_[top] : -1;
     }
+
+    static auto fields() { return std::tuple(field("top", &SitesByColumn::top_)); }
 
 private:
     std::vector<Index> sites_;            ///< column by column, in each from the top down

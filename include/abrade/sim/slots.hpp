@@ -1,0 +1,24 @@
+#pragma once
+// What stands in the slots of a simulation while they are empty, or filled by what cannot be used.
+
+#include <abrade/sim/run_options.hpp>
+
+namespace abrade {
+
+/// Stands in the contact slot until `.contact(law)` fills it.
+struct ContactLawIsMissing {};
+
+namespace detail {
+
+/// What a slot gives back when its law cannot be used: takes any further call, so that one error is printed.
+struct AfterRejectedLaw {
+    AfterRejectedLaw contact(auto&&...) { return {}; }
+    AfterRejectedLaw bond(auto&&...) { return {}; }
+    AfterRejectedLaw wear(auto&&...) { return {}; }
+    AfterRejectedLaw fluid(auto&&...) { return {}; }
+    void run(const RunOptions&, auto&&...) {}
+};
+
+}  // namespace detail
+
+}  // namespace abrade
