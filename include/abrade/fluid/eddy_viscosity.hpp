@@ -99,6 +99,11 @@ public:
     const Field<State>& field() const noexcept { return field_; }
     Real largest() const noexcept { return largest_; }  ///< [m2/s]
 
+    static auto fields() {
+        return std::tuple(abrade::field("field", "m2/s", &EddyViscosity::field_),
+                          abrade::field("largest", "m2/s", &EddyViscosity::largest_));
+    }
+
 private:
     /// Liquid that fills less of a cell has no layers for eddies to mix; beside it velocities are the air's.
     static constexpr Real least_held = 0.01;

@@ -78,6 +78,12 @@ public:
         energy_.reshaped += energy_.total() - before;
     }
 
+    static auto fields() {
+        return std::tuple(field("mid", "m/s", &EnergyAccount::mid_),
+                          bytes_field("openings", &EnergyAccount::openings_),
+                          field("energy", &EnergyAccount::energy_));
+    }
+
 private:
     /// A face through which water may flow in or out of the box.
     struct Opening {

@@ -210,6 +210,33 @@ public:
         return energy_->energy();
     }
 
+    static auto fields() {
+        const auto all = std::tuple(
+            field("sides", &GridFluid::sides_), field("velocity", "m/s", &GridFluid::velocity_),
+            field("stage", "m/s", &GridFluid::stage_), field("pressure", "m2/s2", &GridFluid::pressure_),
+            field("energy", &GridFluid::energy_), bytes_field("report", &GridFluid::report_),
+            field("time", "s", &GridFluid::time_), field("fastest", "1/s", &GridFluid::fastest_),
+            field("enters", "1/s", &GridFluid::enters_), field("first_step", "s", &GridFluid::first_step_),
+            field("late", &GridFluid::late_), field("steps", &GridFluid::steps_));
+        const auto eddies = [] {
+            if constexpr (Turbulence::has_eddies)
+                return std::tuple(field("eddies", &GridFluid::eddies_));
+            else
+                return std::tuple();
+        }();
+        if constexpr (has_surface)
+            return std::tuple_cat(
+                all, eddies,
+                std::tuple(field("record", &GridFluid::record_), field("water", &GridFluid::water_),
+                           field("heights", &GridFluid::heights_), field("outflows", &GridFluid::outflows_)));
+        else
+            return std::tuple_cat(all, eddies,
+                                  std::tuple(field("saved_velocity", "m/s", &GridFluid::saved_velocity_)));
+    }
+    void restored() {
+        if constexpr (has_surface) water_->show(projection_);
+    }
+
 private:
     static constexpr std::string_view step_cause = is_height ? "height of fluid" : "volume of fluid";
     using Stage = MomentumStage<Dim, State>;
@@ -252,41 +279,7 @@ private:
         return step;
     }
 
-    typename EnergyAccount::View energy_view() const {
-        const Field<State>* eddies = nullptr;
-        if constexpr (Turbulence::has_eddies) eddies = &eddies_->field();
-        if constexpr (has_surface) {
-            const auto& water = *water_;
-            return {.grid = *grid_,
-                    .params = params_,
-                    .friction = water.friction(),
-                    .faces = water.faces(),
-                    .before = record_.velocity(),
-                    .stage = stage_,
-                    .velocity = velocity_,
-                    .pressure = pressure_,
-                    .time = time_,
-                    .eddies = eddies,
-                    .liquid = &water.liquid(),
-                    .walls = water.walls(),
-                    .rows = &water.rows(),
-                    .held_before = &water.held_before(),
-                    .held = &water.held(),
-                    .wet = &water.wet(),
-                    .open_friction = water.open_friction()};
-        } else {
-            return {.grid = *grid_,
-                    .params = params_,
-                    .friction = side_friction_,
-                    .faces = projection_.faces(),
-                    .before = saved_velocity_,
-                    .stage = stage_,
-                    .velocity = velocity_,
-                    .pressure = pressure_,
-                    .time = time_,
-                    .eddies = eddies};
-        }
-    }
+    typename EnergyAccount::View energy_view() const;
 
     /// What walls decide once, beside the water.
     void look_at_walls() {

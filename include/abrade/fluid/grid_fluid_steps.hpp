@@ -195,6 +195,44 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::check(Real dt) {
     throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);
 }
 
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
+typename GridFluid<Dim, Surface, Scheme, State, Turbulence>::EnergyAccount::View
+GridFluid<Dim, Surface, Scheme, State, Turbulence>::energy_view() const {
+    const Field<State>* eddies = nullptr;
+    if constexpr (Turbulence::has_eddies) eddies = &eddies_->field();
+    if constexpr (has_surface) {
+        const auto& water = *water_;
+        return {.grid = *grid_,
+                .params = params_,
+                .friction = water.friction(),
+                .faces = water.faces(),
+                .before = record_.velocity(),
+                .stage = stage_,
+                .velocity = velocity_,
+                .pressure = pressure_,
+                .time = time_,
+                .eddies = eddies,
+                .liquid = &water.liquid(),
+                .walls = water.walls(),
+                .rows = &water.rows(),
+                .held_before = &water.held_before(),
+                .held = &water.held(),
+                .wet = &water.wet(),
+                .open_friction = water.open_friction()};
+    } else {
+        return {.grid = *grid_,
+                .params = params_,
+                .friction = side_friction_,
+                .faces = projection_.faces(),
+                .before = saved_velocity_,
+                .stage = stage_,
+                .velocity = velocity_,
+                .pressure = pressure_,
+                .time = time_,
+                .eddies = eddies};
+    }
+}
+
 static_assert(AdvancingFluid<GridFluid<2>> && AdvancingFluid<GridFluid<3>>);
 static_assert(AccountsForEnergy<GridFluid<2>> && AccountsForEnergy<GridFluid<3, FullBox>>);
 static_assert(AdvancingFluid<GridFluid<2, HeightSurface>> && AdvancingFluid<GridFluid<3, HeightSurface>>);

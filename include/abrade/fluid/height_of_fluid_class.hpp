@@ -60,6 +60,10 @@ public:
         Real most = 0;   ///< largest of all steps [-]
         Real lost =
             0;  ///< potential energy over density, summed over steps [m5/s2]; in two dimensions [m4/s2]
+        static auto fields() {
+            return std::tuple(field("share", &Overturning::share), field("most", &Overturning::most),
+                              field("lost", "m5/s2", &Overturning::lost));
+        }
     };
 
     HeightOfFluid(const Grid<Dim>& grid, const Sides<Dim>& sides, const Params& params)
@@ -241,6 +245,18 @@ public:
         });
     }
 
+    static auto fields() {
+        return std::tuple(
+            field("fluxes", &HeightOfFluid::fluxes_), field("fraction", &HeightOfFluid::fraction_),
+            field("surplus", &HeightOfFluid::surplus_), field("moved", "m3", &HeightOfFluid::moved_),
+            field("wet", &HeightOfFluid::wet_), field("active", &HeightOfFluid::active_),
+            field("touched", &HeightOfFluid::touched_), field("volume", "m3", &HeightOfFluid::volume_),
+            field("next", "m3", &HeightOfFluid::next_), field("height", "m", &HeightOfFluid::height_),
+            field("top", &HeightOfFluid::top_), field("rises", "m3", &HeightOfFluid::rises_),
+            field("overturning", &HeightOfFluid::overturning_), field("steps", &HeightOfFluid::steps_),
+            field("brim", &HeightOfFluid::brim_), field("rose_far", &HeightOfFluid::rose_far_));
+    }
+
 private:
     static std::size_t at(auto i) noexcept { return static_cast<std::size_t>(i); }
     Real film_volume() const noexcept { return still_film * columns_.volume(0); }
@@ -256,30 +272,7 @@ private:
             for (int j = 0; j < columns_.across(); ++j) body(plane, j, columns_.column(plane, j));
     }
 
-    void begin_columns() {
-        const std::size_t count = columns_.count();
-        volume_.assign(count, 0), next_.assign(count, 0), height_.assign(count, 0), top_.assign(count, 0);
-        rises_.assign(count, 0);
-        near_solid_.assign(count, 0);
-        // Solids that pierce the surface, closed sides of the box among them: within two cells of them it is
-        // no error that water wants to overturn.
-        const auto beside_side = [&](int axis, int i) {
-            return (i < 2 && is_closed(sides_[axis][0])) ||
-                   (i >= grid_.cells(axis) - 2 && is_closed(sides_[axis][1]));
-        };
-        for_each_column([&](int plane, int j, Index n) {
-            near_solid_[at(n)] = beside_side(0, plane) || (Dim == 3 && beside_side(1, j));
-            for (int dp = -2; dp <= 2; ++dp)
-                for (int dj = Dim == 3 ? -2 : 0; dj <= (Dim == 3 ? 2 : 0); ++dj) {
-                    const int p = plane + dp, q = j + dj;
-                    if (p < 0 || q < 0 || p >= grid_.cells(0) || q >= columns_.across()) continue;
-                    const Index other = columns_.column(p, q);
-                    if (columns_.closed(other) || columns_.whole_from(other) == columns_.levels())
-                        near_solid_[at(columns_.column(plane, j))] = 1;
-                }
-        });
-    }
-
+    void begin_columns();
     /// Of a column from empty cells.
     void set_fractions(int plane, int j, Index n, Real liquid) {
         const auto surface = columns_.surface(plane, j, liquid, 0);

@@ -214,4 +214,29 @@ Real HeightOfFluid<Dim>::outflow_rate(const FaceField<Dim>& u) const {
     return largest;
 }
 
+template <int Dim>
+void HeightOfFluid<Dim>::begin_columns() {
+    const std::size_t count = columns_.count();
+    volume_.assign(count, 0), next_.assign(count, 0), height_.assign(count, 0), top_.assign(count, 0);
+    rises_.assign(count, 0);
+    near_solid_.assign(count, 0);
+    // Solids that pierce the surface, closed sides of the box among them: within two cells of them it is
+    // no error that water wants to overturn.
+    const auto beside_side = [&](int axis, int i) {
+        return (i < 2 && is_closed(sides_[axis][0])) ||
+               (i >= grid_.cells(axis) - 2 && is_closed(sides_[axis][1]));
+    };
+    for_each_column([&](int plane, int j, Index n) {
+        near_solid_[at(n)] = beside_side(0, plane) || (Dim == 3 && beside_side(1, j));
+        for (int dp = -2; dp <= 2; ++dp)
+            for (int dj = Dim == 3 ? -2 : 0; dj <= (Dim == 3 ? 2 : 0); ++dj) {
+                const int p = plane + dp, q = j + dj;
+                if (p < 0 || q < 0 || p >= grid_.cells(0) || q >= columns_.across()) continue;
+                const Index other = columns_.column(p, q);
+                if (columns_.closed(other) || columns_.whole_from(other) == columns_.levels())
+                    near_solid_[at(columns_.column(plane, j))] = 1;
+            }
+    });
+}
+
 }  // namespace abrade

@@ -64,6 +64,8 @@ public:
         for (OutflowSide& side : sides_) side.mean_speed = side.next_mean;
     }
 
+    static auto fields() { return std::tuple(field("sides", &Outflows::sides_)); }
+
 private:
     struct Face {
         Offset cell, face, inside,
@@ -80,6 +82,10 @@ private:
         std::vector<Face> faces;
         std::optional<Real> mean_speed, next_mean;  ///< U_T before the step, behind it [m/s]
         std::vector<std::uint8_t> wet;              ///< columns
+        static auto fields() {
+            return std::tuple(field("mean_speed", "m/s", &OutflowSide::mean_speed),
+                              field("next_mean", "m/s", &OutflowSide::next_mean));
+        }
     };
 
     void add_side(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, int axis, bool high) {

@@ -124,6 +124,10 @@ public:
         return all;
     }
 
+    static auto fields() {
+        return std::tuple(field("solver", &ShallowWater::solver_), field("time", "s", &ShallowWater::time_));
+    }
+
 private:
     /// Water over one place of the plane.
     struct Column {

@@ -2,6 +2,7 @@
 // Depth-averaged water, where its numbers stand: a grid of cells with ghosts around it, the bed in them and
 // at their faces, and tiles of it.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/require.hpp>
 #include <abrade/fluid/shallow_water_kernel.hpp>
 
@@ -114,6 +115,11 @@ struct ShallowState {
     CellColumn depth;                   ///< [m]
     std::array<CellColumn, Dim> speed;  ///< along x, y [m/s]
 
+    static auto fields() {
+        return std::tuple(field("depth", "m", &ShallowState::depth),
+                          field("speed", "m/s", &ShallowState::speed));
+    }
+
     ShallowState() = default;
     explicit ShallowState(std::size_t size) : depth(size, 0.0) {
         for (auto& column : speed) column.assign(size, 0.0);
@@ -208,6 +214,10 @@ public:
             tile.reached = tile.reached.with(more);
             round(tile);
         }
+    }
+
+    static auto fields() {
+        return std::tuple(bytes_field("list", &ShallowTiles::list), field("due", &ShallowTiles::due));
     }
 
     std::vector<ShallowTile> list;

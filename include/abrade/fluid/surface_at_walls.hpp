@@ -88,6 +88,8 @@ public:
             follow_fractions(planes, first, fraction, marks);
     }
 
+    static auto fields() { return std::tuple(field("known", &SurfaceAtWalls::known_)); }
+
 private:
     static constexpr int vertical = Grid<Dim>::vertical;
     static constexpr Real trace = 1e-3;          ///< [-], as SurfaceNormals ends a column

@@ -82,6 +82,13 @@ public:
     /// Whether air is in the cell.
     bool airy(Offset cell) const noexcept { return air_[cell] != 0; }
 
+    static auto fields() {
+        return std::tuple(field("air", &SurfaceBand::air_), field("edge", &SurfaceBand::edge_),
+                          field("near", &SurfaceBand::near_), field("band", &SurfaceBand::band_),
+                          field("searched", &SurfaceBand::searched_), field("cell", &SurfaceBand::cell_),
+                          field("level", &SurfaceBand::level_));
+    }
+
 private:
     void for_each_inflow_cell(const Sides<Dim>& sides, auto&& body) const {
         for (int a = 0; a < Dim; ++a)

@@ -1,6 +1,7 @@
 #pragma once
 // How high the water stands: the floor and what stands on it, column by column.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/fluid/grid_place.hpp>
 #include <abrade/fluid/walls.hpp>
 #include <abrade/fluid/wet_rows.hpp>
@@ -57,6 +58,8 @@ public:
         if constexpr (Dim == 2) return along(0);
         return (1 - weight[1]) * along(low[1]) + weight[1] * along(high[1]);
     }
+
+    static auto fields() { return std::tuple(field("heights", "m", &SurfaceHeights::heights_)); }
 
 private:
     std::size_t column(int plane, int across) const noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 // The planes that stand for the liquid's surface, and what cells they may be told from.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/simd.hpp>
 #include <abrade/fluid/cut_cell.hpp>
 #include <abrade/fluid/grid.hpp>
@@ -34,6 +35,14 @@ struct SurfacePlanes {
     std::vector<std::uint8_t> has_normal{};       ///< whether the normal stands already
     /// Whether, in a cell that a wall cuts, the position tells where the liquid is, not its fraction.
     std::vector<std::uint8_t> told{};
+
+    static auto fields() {
+        return std::tuple(
+            field("cell", &SurfacePlanes::cell), field("level", &SurfacePlanes::level),
+            field("normal", &SurfacePlanes::normal), field("distance", &SurfacePlanes::distance),
+            field("position", &SurfacePlanes::position), field("has_normal", &SurfacePlanes::has_normal),
+            field("told", &SurfacePlanes::told));
+    }
 
     Index count() const noexcept { return static_cast<Index>(cell.size()); }
     void resize(std::size_t planes) {

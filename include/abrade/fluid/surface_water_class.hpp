@@ -233,6 +233,22 @@ public:
         if constexpr (is_height) liquid_.gather(), find_rows(), find_held();
     }
 
+    static auto fields() {
+        return std::tuple(
+            field("liquid", &SurfaceWater::liquid_), field("held", &SurfaceWater::held_),
+            field("before", &SurfaceWater::before_), field("wet", &SurfaceWater::wet_),
+            field("rows", &SurfaceWater::rows_), field("rows_before", &SurfaceWater::rows_before_),
+            field("faces", &SurfaceWater::faces_), field("extension", &SurfaceWater::extension_),
+            bytes_field("open", &SurfaceWater::open_), bytes_field("still", &SurfaceWater::still_));
+    }
+    /// The pressure's operator, of what has been found; nothing stays of what it was before.
+    void show(Projection<Dim, Real>& projection) const {
+        WetRows<Dim> rows = rows_;
+        rows.include(rows_before_);
+        for (const WetRows<Dim>& all : {WetRows<Dim>::whole(layout()), rows})
+            projection.set({wet_, all, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
+    }
+
 private:
     static typename Liquid::Params liquid_params(const GridFluidParams<Dim>& params) {
         if constexpr (is_height) {
@@ -272,31 +288,7 @@ private:
     }
 
     /// Rows that hold water and what is near, and faces that carry momentum.
-    void find_rows() {
-        const WetRows<Dim>& wet = liquid_.wet();
-        rows_ = wet.dilated(VelocityExtension<Dim>::layers, sides_.periodic_axes());
-        for (int a = 0; a < Dim; ++a) {
-            const int first = sides_.periodic(a) ? 0 : 1;  // a face at a side is the side's
-            faces_[a].for_each_plane([&](int plane) {
-                for (int row = 0; row < layout().rows_per_plane(); ++row) {
-                    RowRange r = wet.row(plane, row);
-                    const int number = a == outer ? plane : row;
-                    if (a == inner) {
-                        const int n = layout().row_length();
-                        const bool around = first == 0 && r.end == n;  // its upper face is the row's first
-                        if (!r.empty()) r = {around ? 0 : std::max(first, r.begin), std::min(n, r.end + 1)};
-                    } else if (number < first) {
-                        r = {};
-                    } else {
-                        const int below = number > 0 ? number - 1 : layout().cells[a] - 1;
-                        r = hull(r, a == outer ? wet.row(below, row) : wet.row(plane, below));
-                    }
-                    faces_[a].row(plane, row) = r;
-                }
-            });
-            faces_[a].share_out();
-        }
-    }
+    void find_rows();
 
     /// Between wet cells and dry ones, and where water leaves the box.
     void find_open_faces(const Projection<Dim, Real>& projection) {

@@ -75,4 +75,31 @@ Real SurfaceWater<Dim, Liquid>::liquid_of(int a, Offset face) const noexcept {
     return 0.5 * (above + held()[face - layout().stride[a]] * grid_->volume(cell));
 }
 
+template <int Dim, class Liquid>
+void SurfaceWater<Dim, Liquid>::find_rows() {
+    const WetRows<Dim>& wet = liquid_.wet();
+    rows_ = wet.dilated(VelocityExtension<Dim>::layers, sides_.periodic_axes());
+    for (int a = 0; a < Dim; ++a) {
+        const int first = sides_.periodic(a) ? 0 : 1;  // a face at a side is the side's
+        faces_[a].for_each_plane([&](int plane) {
+            for (int row = 0; row < layout().rows_per_plane(); ++row) {
+                RowRange r = wet.row(plane, row);
+                const int number = a == outer ? plane : row;
+                if (a == inner) {
+                    const int n = layout().row_length();
+                    const bool around = first == 0 && r.end == n;  // its upper face is the row's first
+                    if (!r.empty()) r = {around ? 0 : std::max(first, r.begin), std::min(n, r.end + 1)};
+                } else if (number < first) {
+                    r = {};
+                } else {
+                    const int below = number > 0 ? number - 1 : layout().cells[a] - 1;
+                    r = hull(r, a == outer ? wet.row(below, row) : wet.row(plane, below));
+                }
+                faces_[a].row(plane, row) = r;
+            }
+        });
+        faces_[a].share_out();
+    }
+}
+
 }  // namespace abrade::detail

@@ -156,6 +156,14 @@ public:
     /// Those of a carrier one after the other.
     const std::vector<Rider>& riders(int a) const noexcept { return riders_[a]; }
 
+    static auto fields() {
+        return std::tuple(field("state", &VelocityExtension::state_),
+                          field("rows", &VelocityExtension::rows_),
+                          bytes_field("means", &VelocityExtension::means_),
+                          bytes_field("riders", &VelocityExtension::riders_),
+                          bytes_field("films", &VelocityExtension::films_));
+    }
+
 private:
     static constexpr std::uint8_t unknown = 0, known = 1;
     static constexpr std::uint8_t fixed = 2;   ///< a side's own: of no use to others

@@ -220,6 +220,13 @@ public:
         }
     }
 
+    static auto fields() {
+        return std::tuple(
+            field("tables", "m/s", &VelocitySides::tables_), field("kept", "m/s", &VelocitySides::kept_),
+            field("leaving", "m/s", &VelocitySides::leaving_),
+            field("inflow_scale", &VelocitySides::inflow_scale_), field("changed", &VelocitySides::changed_));
+    }
+
 private:
     void for_upper_outflows(auto&& body) const {
         for_sides(Side::outflow, [&](int a, bool high) {

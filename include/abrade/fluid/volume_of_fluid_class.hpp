@@ -254,6 +254,17 @@ public:
         return std::clamp(share, least, Real(1));
     }
 
+    static auto fields() {
+        return std::tuple(
+            field("fraction", &VolumeOfFluid::fraction_), field("surplus", &VolumeOfFluid::surplus_),
+            field("moved", "m3", &VolumeOfFluid::moved_), field("plane_of", &VolumeOfFluid::plane_of_),
+            field("planes", &VolumeOfFluid::planes_), field("planes_before", &VolumeOfFluid::planes_before_),
+            field("band", &VolumeOfFluid::band_), field("at_walls", &VolumeOfFluid::at_walls_),
+            field("wet", &VolumeOfFluid::wet_), field("active", &VolumeOfFluid::active_),
+            field("touched", &VolumeOfFluid::touched_), field("filled", &VolumeOfFluid::filled_),
+            field("settled", &VolumeOfFluid::settled_), field("steps", &VolumeOfFluid::steps_));
+    }
+
 private:
     static constexpr Real little = 1e-5;  ///< less liquid of a cell than this has no momentum to speak of [-]
     /// Without a pressure of its own a cell that holds more than this takes in more than it has room for [-].
@@ -344,19 +355,7 @@ private:
               "give the share of the cell's open volume that is liquid"},
              to_text(f));
     }
-    [[noreturn]] void fail_courant(const FaceField<Dim>& velocity, Real dt) const {
-        Index worst = 0;
-        Real most = -1;  // or not a number, which counts as the most
-        const auto count = static_cast<Index>(band_.cells().size());
-        for (Index i = 0; i < count && !std::isnan(most); ++i)
-            if (const Real rate = rate_of(velocity, i); !(rate <= most)) worst = i, most = rate;
-        fail({"VolumeOfFluid.advance: dt",
-              "small enough that no more than all of a cell at the surface leaves it, " +
-                  short_text(dt * most) + " times cell " +
-                  text(layout_.number(band_.cells()[static_cast<std::size_t>(worst)])) + " would",
-              "s", "take at most stable_step()"},
-             short_text(dt));
-    }
+    [[noreturn]] void fail_courant(const FaceField<Dim>& velocity, Real dt) const;
     static std::string text(const CellNumber<Dim>& cell) {
         std::string result = "[";
         for (std::size_t a = 0; a < Dim; ++a) result += (a ? ", " : "") + std::to_string(cell[a]);

@@ -243,4 +243,19 @@ void VolumeOfFluid<Dim>::locate() {
     reconstruct(false);
 }
 
+template <int Dim>
+void VolumeOfFluid<Dim>::fail_courant(const FaceField<Dim>& velocity, Real dt) const {
+    Index worst = 0;
+    Real most = -1;  // or not a number, which counts as the most
+    const auto count = static_cast<Index>(band_.cells().size());
+    for (Index i = 0; i < count && !std::isnan(most); ++i)
+        if (const Real rate = rate_of(velocity, i); !(rate <= most)) worst = i, most = rate;
+    fail(
+        {"VolumeOfFluid.advance: dt",
+         "small enough that no more than all of a cell at the surface leaves it, " + short_text(dt * most) +
+             " times cell " + text(layout_.number(band_.cells()[static_cast<std::size_t>(worst)])) + " would",
+         "s", "take at most stable_step()"},
+        short_text(dt));
+}
+
 }  // namespace abrade

@@ -1,6 +1,7 @@
 #pragma once
 // The energy account of a water: what it holds, what came in and left, and what was lost to what.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
@@ -36,6 +37,20 @@ struct WaterEnergy {
     Real numerical = 0;      ///< the remainder
 
     Real advection = 0;  ///< part of `numerical`, measured: loss by the advection scheme; full boxes only
+
+    static auto fields() {
+        return std::tuple(
+            field("kinetic", "J", &WaterEnergy::kinetic), field("potential", "J", &WaterEnergy::potential),
+            field("kinetic_start", "J", &WaterEnergy::kinetic_start),
+            field("potential_start", "J", &WaterEnergy::potential_start),
+            field("inflow", "J", &WaterEnergy::inflow), field("outflow", "J", &WaterEnergy::outflow),
+            field("sides", "J", &WaterEnergy::sides), field("body_force", "J", &WaterEnergy::body_force),
+            field("reshaped", "J", &WaterEnergy::reshaped), field("viscous", "J", &WaterEnergy::viscous),
+            field("turbulent", "J", &WaterEnergy::turbulent),
+            field("wall_friction", "J", &WaterEnergy::wall_friction),
+            field("numerical", "J", &WaterEnergy::numerical),
+            field("advection", "J", &WaterEnergy::advection));
+    }
 
     Real total() const noexcept { return kinetic + potential; }
     Real gained() const noexcept { return total() - kinetic_start - potential_start; }

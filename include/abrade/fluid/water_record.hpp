@@ -14,6 +14,9 @@ namespace abrade::detail {
 struct LateSteps {
     Real last = 0, longest = 0;
 
+    static auto fields() {
+        return std::tuple(field("last", "s", &LateSteps::last), field("longest", "s", &LateSteps::longest));
+    }
     /// Before the first: what it may be; infinite where nothing moves.
     void expect(Real dt) noexcept { longest = std::isfinite(dt) ? dt : 0; }
     void took(Real dt) noexcept { last = dt, longest = std::max(dt, longest - dt); }
@@ -134,6 +137,18 @@ public:
         rows_.copy(pressure_, pressure);
         water.restore(fraction_, surplus_, rows_, steps_);
         restored_ = true;
+    }
+
+    static auto fields() {
+        return std::tuple(
+            field("rows", &WaterRecord::rows_), field("velocity", "m/s", &WaterRecord::velocity_),
+            field("change", "m/s2", &WaterRecord::change_),
+            field("pressure", "m2/s2", &WaterRecord::pressure_), field("wet", &WaterRecord::wet_),
+            field("fraction", &WaterRecord::fraction_), field("surplus", &WaterRecord::surplus_),
+            field("steps", &WaterRecord::steps_), field("ahead", "s", &WaterRecord::ahead_),
+            field("lead", "s", &WaterRecord::lead_), field("far", &WaterRecord::far_),
+            field("brief", &WaterRecord::brief_), field("was_brief", &WaterRecord::was_brief_),
+            field("known", &WaterRecord::known_), field("restored", &WaterRecord::restored_));
     }
 
 private:

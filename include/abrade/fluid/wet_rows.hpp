@@ -1,6 +1,7 @@
 #pragma once
 // Which part of each row of a grid is wet: what keeps dry cells from costing anything.
 
+#include <abrade/core/fields.hpp>
 #include <abrade/fluid/plane_runs.hpp>
 
 #include <algorithm>
@@ -138,6 +139,9 @@ public:
         runs_ = detail::plane_runs(layout_, 2, [&](int plane, int r) { return row(plane, r); });
     }
     const detail::PlaneRuns& runs() const noexcept { return runs_; }
+
+    static auto fields() { return std::tuple(bytes_field("rows", &WetRows::rows_)); }
+    void restored() { share_out(); }
 
 private:
     std::size_t index(int plane, int row) const noexcept {

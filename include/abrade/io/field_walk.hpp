@@ -107,7 +107,7 @@ public:
             for (auto& one : *all.front())
                 go<Form>(path + "/" + std::to_string(axis++), unit, std::vector{&one});
         } else {
-            static_assert(Form == FieldForm::bytes,
+            static_assert(Form == FieldForm::bytes && std::is_trivially_destructible_v<Plain>,
                           "a field that cannot be saved: let its class list its fields");
             if constexpr (!std::is_empty_v<Plain>)
                 port_.template rows<std::uint8_t>(path, unit, static_cast<int>(sizeof(Plain)), all);
