@@ -13,7 +13,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
-#include <unordered_map>
+#include <vector>
 
 namespace abrade::examples {
 
@@ -27,23 +27,23 @@ public:
         ++round_;
         for (std::size_t b = 0; b < p.position.size(); ++b) {
             if (p.kind[b] != Kind::stone) continue;
-            Stone& stone = stones_[p.id[b]];
+            Stone& stone = with_id(p.id[b]);
             stone.volume = p.volume[b], stone.farthest = std::max(stone.farthest, p.position[b].x());
             stone.seen = round_;
         }
-        for (auto& [id, stone] : stones_)
+        for (Stone& stone : stones_)
             if (stone.seen != round_) stone.farthest = std::max(stone.farthest, length_);
     }
     Real past(Real x) const noexcept {  ///< [m3]
         Real volume = 0;
-        for (const auto& [id, stone] : stones_)
+        for (const Stone& stone : stones_)
             if (stone.farthest >= x) volume += stone.volume;
         return volume;
     }
     /// At each of the given places, which ascend.
     std::vector<Real> past(std::span<const Real> x) const {
         std::vector<std::pair<Real, Real>> all;
-        for (const auto& [id, stone] : stones_) all.emplace_back(stone.farthest, stone.volume);
+        for (const Stone& stone : stones_) all.emplace_back(stone.farthest, stone.volume);
         std::sort(all.begin(), all.end());
         std::vector<Real> volume(x.size(), 0);
         Real sum = 0;
@@ -54,13 +54,29 @@ public:
         return volume;
     }
 
+    static auto fields() {
+        return std::tuple(field("stones", &PassedVolume::stones_), field("round", &PassedVolume::round_));
+    }
+
 private:
     struct Stone {
-        Real volume = 0, farthest = -std::numeric_limits<Real>::infinity();
+        Index id = 0;
+        Real volume = 0, farthest = -std::numeric_limits<Real>::infinity();  ///< [m3], [m]
         Index seen = 0;
+
+        static auto fields() {
+            return std::tuple(field("id", &Stone::id), field("volume", "m3", &Stone::volume),
+                              field("farthest", "m", &Stone::farthest), field("seen", &Stone::seen));
+        }
     };
+    /// Stones are numbered as they are fed: a new one comes last.
+    Stone& with_id(Index id) {
+        const auto place = std::ranges::lower_bound(stones_, id, {}, &Stone::id);
+        return place != stones_.end() && place->id == id ? *place : *stones_.insert(place, {.id = id});
+    }
+
     Real length_;
-    std::unordered_map<Index, Stone> stones_;  ///< by id
+    std::vector<Stone> stones_;  ///< by id
     Index round_ = 0;
 };
 
@@ -160,10 +176,23 @@ public:
         r.impacts_across = share_of(impacts_, losses), r.sliding_across = share_of(sliding_, losses);
     }
 
+    static auto fields() {
+        return std::tuple(field("passed", &BedRecord::passed_), field("history", &BedRecord::history_),
+                          field("next_note", "s", &BedRecord::next_note_),
+                          field("across", &BedRecord::across_), field("stones", &BedRecord::stones_),
+                          field("impacts", &BedRecord::impacts_), field("sliding", &BedRecord::sliding_),
+                          field("wanted", &BedRecord::wanted_), field("milestones", &BedRecord::milestones_));
+    }
+
 private:
     struct Wanted {
-        Real converted, past;
+        Real converted = 0, past = 0;
         bool reached = false;
+
+        static auto fields() {
+            return std::tuple(field("converted", "m3", &Wanted::converted), field("past", "m", &Wanted::past),
+                              field("reached", &Wanted::reached));
+        }
     };
 
     static Real sum(const std::vector<Real>& values) {

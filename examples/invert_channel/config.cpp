@@ -488,6 +488,10 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
     c.end_time = in.number("run.end_time", {.unit = "s", .help = "simulated", .bound = Bound::positive});
     c.output_every = in.number("run.output_every",
                                {.unit = "s", .help = "between saved states", .bound = Bound::positive});
+    c.checkpoint_every = in.number("run.checkpoint_every", {.unit = "min",
+                                                            .fallback = 10,
+                                                            .help = "of wall time between checkpoints",
+                                                            .bound = Bound::positive});
     c.time_step = in.number("run.time_step", {.unit = "s",
                                               .fallback = 0,
                                               .help = "0: run.safety times the stable step",

@@ -56,6 +56,7 @@ struct ChannelConfig {
     FeedParams feed;
     Comparison comparison;
     Real end_time = 0, output_every = 0, time_step = 0, safety = 0, skin = 0;
+    Real checkpoint_every = 0;          ///< of wall time [min]
     std::vector<Parameter> parameters;  ///< all that was read, for the report
 };
 

@@ -4,8 +4,8 @@
 
 namespace abrade::examples {
 
-ChannelRun run_in_grid_water(const ChannelConfig& config, const std::filesystem::path& stem) {
-    return run_below<FreeSurface>(config, stem);
+ChannelRun run_in_grid_water(const ChannelConfig& config, const ChannelFiles& files) {
+    return run_below<FreeSurface>(config, files);
 }
 
 }  // namespace abrade::examples

@@ -127,12 +127,12 @@ inline void look_at_the_end(const auto& flow, ChannelWater& water) {
 }
 
 template <class Surface>
-ChannelRun run_below(const ChannelConfig& config, const std::filesystem::path& stem) {
+ChannelRun run_below(const ChannelConfig& config, const ChannelFiles& files) {
     const UniformFlow uniform{config.water};
     ChannelWater water;
     water.manning_depth_m = uniform.depth(), water.manning_speed_m_per_s = uniform.mean_velocity();
     ChannelRun run = run_channel<LinearHysteretic>(
-        config, stem, grid_channel<ChannelFlow<Surface>>(config), [&](const auto& flow, bool first) {
+        config, files, grid_channel<ChannelFlow<Surface>>(config), water, [&](const auto& flow, bool first) {
             first ? measure(config, flow, water) : look_at_the_end(flow, water);
         });
     run.results.water = std::move(water);

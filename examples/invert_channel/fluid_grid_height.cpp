@@ -4,8 +4,8 @@
 
 namespace abrade::examples {
 
-ChannelRun run_in_grid_water_below_height(const ChannelConfig& config, const std::filesystem::path& stem) {
-    return run_below<HeightSurface>(config, stem);
+ChannelRun run_in_grid_water_below_height(const ChannelConfig& config, const ChannelFiles& files) {
+    return run_below<HeightSurface>(config, files);
 }
 
 }  // namespace abrade::examples

@@ -4,8 +4,9 @@
 
 namespace abrade::examples {
 
-ChannelRun run_without_fluid(const ChannelConfig& config, const std::filesystem::path& stem) {
-    return run_channel<LinearHysteretic>(config, stem, NoFluid{}, [](const NoFluid&, bool) {});
+ChannelRun run_without_fluid(const ChannelConfig& config, const ChannelFiles& files) {
+    ChannelWater none;
+    return run_channel<LinearHysteretic>(config, files, NoFluid{}, none, [](const NoFluid&, bool) {});
 }
 
 }  // namespace abrade::examples

@@ -70,12 +70,12 @@ void look_at_the_end(const ShallowWater<2>& flow, ChannelWater& water) {
 
 }  // namespace
 
-ChannelRun run_in_shallow_water(const ChannelConfig& config, const std::filesystem::path& stem) {
+ChannelRun run_in_shallow_water(const ChannelConfig& config, const ChannelFiles& files) {
     const UniformFlow uniform{config.water};
     ChannelWater water;
     water.manning_depth_m = uniform.depth(), water.manning_speed_m_per_s = uniform.mean_velocity();
     ChannelRun run = run_channel<LinearHysteretic>(
-        config, stem, shallow_channel(config), [&](const ShallowWater<2>& flow, bool first) {
+        config, files, shallow_channel(config), water, [&](const ShallowWater<2>& flow, bool first) {
             first ? measure(config, flow, water) : look_at_the_end(flow, water);
         });
     run.results.water = std::move(water);

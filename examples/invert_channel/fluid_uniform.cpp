@@ -4,8 +4,8 @@
 
 namespace abrade::examples {
 
-ChannelRun run_in_uniform_flow(const ChannelConfig& config, const std::filesystem::path& stem) {
-    return run_uniform<LinearHysteretic>(config, stem);
+ChannelRun run_in_uniform_flow(const ChannelConfig& config, const ChannelFiles& files) {
+    return run_uniform<LinearHysteretic>(config, files);
 }
 
 }  // namespace abrade::examples

@@ -4,9 +4,8 @@
 
 namespace abrade::examples {
 
-ChannelRun run_in_uniform_flow_elastic_plastic(const ChannelConfig& config,
-                                               const std::filesystem::path& stem) {
-    return run_uniform<ElasticPlasticHertz>(config, stem);
+ChannelRun run_in_uniform_flow_elastic_plastic(const ChannelConfig& config, const ChannelFiles& files) {
+    return run_uniform<ElasticPlasticHertz>(config, files);
 }
 
 }  // namespace abrade::examples

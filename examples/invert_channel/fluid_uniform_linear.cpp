@@ -4,8 +4,8 @@
 
 namespace abrade::examples {
 
-ChannelRun run_in_uniform_flow_linear(const ChannelConfig& config, const std::filesystem::path& stem) {
-    return run_uniform<LinearSpring>(config, stem);
+ChannelRun run_in_uniform_flow_linear(const ChannelConfig& config, const ChannelFiles& files) {
+    return run_uniform<LinearSpring>(config, files);
 }
 
 }  // namespace abrade::examples

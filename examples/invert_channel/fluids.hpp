@@ -3,6 +3,7 @@
 // a line here.
 
 #include "config.hpp"
+#include "interruption.hpp"
 #include "results.hpp"
 
 #include <abrade/sim/snapshot.hpp>
@@ -28,19 +29,18 @@ struct ChannelRun {
     Real last_water_time = 0;  ///< [s]
 };
 
-/// Runs to the end, or until a user stops it; writes series at `stem`.
-ChannelRun run_without_fluid(const ChannelConfig& config, const std::filesystem::path& stem);
-ChannelRun run_in_uniform_flow(const ChannelConfig& config, const std::filesystem::path& stem);
-ChannelRun run_in_uniform_flow_linear(const ChannelConfig& config, const std::filesystem::path& stem);
-ChannelRun run_in_uniform_flow_elastic_plastic(const ChannelConfig& config,
-                                               const std::filesystem::path& stem);
-ChannelRun run_in_shallow_water(const ChannelConfig& config, const std::filesystem::path& stem);
-ChannelRun run_in_grid_water(const ChannelConfig& config, const std::filesystem::path& stem);
-ChannelRun run_in_grid_water_below_height(const ChannelConfig& config, const std::filesystem::path& stem);
+/// Runs to the end, or until a user stops it.
+ChannelRun run_without_fluid(const ChannelConfig& config, const ChannelFiles& files);
+ChannelRun run_in_uniform_flow(const ChannelConfig& config, const ChannelFiles& files);
+ChannelRun run_in_uniform_flow_linear(const ChannelConfig& config, const ChannelFiles& files);
+ChannelRun run_in_uniform_flow_elastic_plastic(const ChannelConfig& config, const ChannelFiles& files);
+ChannelRun run_in_shallow_water(const ChannelConfig& config, const ChannelFiles& files);
+ChannelRun run_in_grid_water(const ChannelConfig& config, const ChannelFiles& files);
+ChannelRun run_in_grid_water_below_height(const ChannelConfig& config, const ChannelFiles& files);
 
 struct ChannelEngine {
     std::string_view fluid, contact;  ///< in the TOML file
-    ChannelRun (*run)(const ChannelConfig&, const std::filesystem::path&);
+    ChannelRun (*run)(const ChannelConfig&, const ChannelFiles&);
     std::string_view surface = "";  ///< of a grid's water
 };
 inline constexpr std::array<ChannelEngine, 7> channel_engines{

@@ -1,7 +1,7 @@
 // The main job: gravel and water down a concrete channel, and what they wear off it.
 //
 //   examples/run invert_channel [FILE.toml] [--fluid NAME] [--set section.key=value]... [--out FOLDER]
-//   [--threads N] [--check]
+//   [--threads N] [--check] [--resume]
 //
 // config       what the TOML file says, checked
 // fluids       which engines there are, by fluid and contact law; fluid_NAME.cpp: one of them
@@ -9,6 +9,7 @@
 // channel      from the configuration to a simulation, and from a simulation to results
 // bed          what has passed along the channel, and the bed when enough had
 // recorder     what is written while it runs
+// interruption checkpoints, and how a run goes on from one
 // pictures     what is drawn when it is done
 // profiles     the worn bed along the centre and across, for examples/ensemble
 
@@ -43,7 +44,7 @@ struct Options {
     std::string fluid;
     std::filesystem::path out = "out/invert_channel";
     int threads = 0;
-    bool check = false;
+    bool check = false, resume = false;
 };
 
 void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::filesystem::path& path) {
@@ -160,7 +161,16 @@ int run(const Options& options) {
                   << " was left by a run that was killed; delete it if you do not need it\n";
 
     const ChannelEngine& engine = find_engine(config.fluid.model, config.contact_law, config.fluid.surface);
-    const ChannelRun run = engine.run(config, folder.path("series"));
+    ChannelFiles files{folder.path("series"), folder.final_path(), folder.final_path(), options.resume};
+    files.checkpoint += ".checkpoint.h5";
+    const bool interrupted = std::filesystem::exists(files.checkpoint);
+    if (options.resume && !interrupted)
+        fail({"--resume", "used where a run was interrupted", {}, "leave it out to begin anew"},
+             "no checkpoint '" + files.checkpoint.string() + "'");
+    if (!options.resume && interrupted)
+        std::cerr << "note: '" << files.checkpoint.string()
+                  << "' is of a run that was interrupted; --resume would have gone on with it\n";
+    const ChannelRun run = engine.run(config, files);
     if (run.code != 0) {
         std::cerr << "error: " << run.went_wrong << "\n";
         keep_failed_run(run, folder);
@@ -177,11 +187,12 @@ int run(const Options& options) {
         unfinished = error.what();
     }
     const std::filesystem::path place = folder.publish();
+    if (!results.stopped) std::filesystem::remove(files.checkpoint);
 
     std::cout << run.printed;
     if (results.stopped)
         std::cout << "stopped early, at " << short_text(results.simulated_s) << " s of "
-                  << short_text(config.end_time) << " s\n";
+                  << short_text(config.end_time) << " s; the same command with --resume goes on\n";
     if (results.worn_through)
         std::cout << "the concrete is worn through, at " << short_text(results.simulated_s) << " s of "
                   << short_text(config.end_time) << " s: give it more concrete.layers\n";
@@ -228,6 +239,8 @@ int main(int argc, char** argv) {
     app.add_flag("--check", options.check,
                  "reads and checks the file and runs nothing; what only the whole scene tells, as the stable "
                  "step, is checked as a run begins");
+    app.add_flag("--resume", options.resume,
+                 "goes on with the run of the same file and options that was interrupted: to the same bits");
     H5dont_atexit();  // files are closed here; after a full disk HDF5's own clean-up at exit would crash
     try {
         app.parse(argc, argv);

@@ -12,8 +12,9 @@ namespace abrade::examples {
 
 class Recorder {
 public:
-    /// Writes the bodies at most every `every` [s].
-    Recorder(const std::filesystem::path& stem, Real every) : series_(stem), every_(every) {}
+    /// Writes the bodies at most every `every` [s]; `resumes`: its fields are read next.
+    Recorder(const std::filesystem::path& stem, Real every, bool resumes)
+        : series_(resumes ? SeriesWriter(stem, SeriesWriter::goes_on) : SeriesWriter(stem)), every_(every) {}
 
     template <class Sim>
     void operator()(const Sim& sim) {
@@ -26,6 +27,13 @@ public:
     }
 
     LedgerHistory take_history() { return std::move(history_); }
+
+    /// Before its fields are saved.
+    void close_file() { series_.begin_file(); }
+    static auto fields() {
+        return std::tuple(field("series", &Recorder::series_), field("next", "s", &Recorder::next_),
+                          field("history", &Recorder::history_));
+    }
 
 private:
     void record_ledger(const Ledger& ledger, Real time) {

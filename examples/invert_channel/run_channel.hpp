@@ -30,17 +30,27 @@ inline Index cells_along(const ChannelConfig& c, Real length) {
 /// Between two looks at what has passed and at what contacts take up, at most [s].
 constexpr Real look_every = 0.02;
 
-/// `look_at(fluid, first)` sees the water as the stones begin, and at the end.
+/// `look_at(fluid, first)` sees the water as the stones begin, and at the end; what it saw first is in
+/// `water`.
 template <ContactLaw Contact, FluidModel Fluid, class LookAt>
-ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path& stem, Fluid fluid,
-                       LookAt&& look_at) {
+ChannelRun run_channel(const ChannelConfig& config, const ChannelFiles& files, Fluid fluid,
+                       ChannelWater& water, LookAt&& look_at) {
     ChannelRun run;
     auto sim = make_simulation<Contact>(config, std::move(fluid));
     const Interrupt interrupt;
     LedgerHistory history;
     BedRecord bed(config);
+    Interruption interruption(config, files);
     {
-        Recorder recorder(stem, config.output_every);
+        Recorder recorder(files.series, config.output_every, files.resume);
+        const auto with_parts = [&](auto&& body) {
+            body(StatePart{"simulation", sim}, StatePart{"bed", bed}, StatePart{"recorder", recorder},
+                 StatePart{"water", water});
+        };
+        if (files.resume) {
+            sim.build();
+            with_parts([&](auto... parts) { interruption.restore(parts...); });
+        }
         Progress progress("invert channel", config.end_time);
         const auto stop = [&] {
             std::string note = std::to_string(sim.feed()->supplied_stones()) + " stones fed";
@@ -48,6 +58,10 @@ ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path&
                 if (sim.fluid_model().time() < 0)
                     note = "water settles for " + short_text(-sim.fluid_model().time()) + " s";
             progress.update(sim.time(), note);
+            if (interrupt.requested() || interruption.due()) {
+                recorder.close_file();
+                with_parts([&](auto... parts) { interruption.save(parts...); });
+            }
             return interrupt.requested() || bed.done();
         };
         const auto watch = [&](const auto& now) {
@@ -76,13 +90,13 @@ ChannelRun run_channel(const ChannelConfig& config, const std::filesystem::path&
     }
     if (run.code != 0) {
         run.last_good = sim.last_good();
-        const auto& water = sim.fluid_model();
-        if constexpr (requires { water.columns().fields(), water.time(); }) {
-            const auto columns = water.columns();
+        const auto& flow = sim.fluid_model();
+        if constexpr (requires { flow.columns().fields(), flow.time(); }) {
+            const auto columns = flow.columns();
             for (const FieldView& one : columns.fields())
                 run.last_water.push_back(
                     {std::string(one.name), std::string(one.unit), {one.values.begin(), one.values.end()}});
-            run.last_water_time = water.time();
+            run.last_water_time = flow.time();
         }
         return run;
     }

@@ -7,10 +7,10 @@
 namespace abrade::examples {
 
 template <class Contact>
-ChannelRun run_uniform(const ChannelConfig& config, const std::filesystem::path& stem) {
+ChannelRun run_uniform(const ChannelConfig& config, const ChannelFiles& files) {
     ChannelWater water;
-    ChannelRun run =
-        run_channel<Contact>(config, stem, UniformFlow{config.water}, [&](const UniformFlow& flow, bool) {
+    ChannelRun run = run_channel<Contact>(
+        config, files, UniformFlow{config.water}, water, [&](const UniformFlow& flow, bool) {
             water.depth_m = water.manning_depth_m = flow.depth();
             water.speed_m_per_s = water.manning_speed_m_per_s = flow.mean_velocity();
             water.froude = flow.froude(), water.bed_shear_Pa = flow.bed_shear();

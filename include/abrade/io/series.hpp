@@ -11,11 +11,13 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <map>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 namespace abrade {
@@ -25,13 +27,63 @@ namespace abrade {
 /// In ParaView choose "Xdmf3 Reader T": the older "XDMF Reader" reads the same file, but complains of times
 /// without points. The number of points may change from one time to the next. After every write both files
 /// are complete on disk: a run that is killed leaves a series that opens and ends at the last write.
+///
+/// A series goes on in a later run: `begin_file` before its fields are saved, and a writer made with
+/// `goes_on` that reads them, at a stem to which the files have been copied. What was written in between is
+/// dropped.
 class SeriesWriter {
 public:
+    struct GoesOn {};
+    static constexpr GoesOn goes_on{};
+
     explicit SeriesWriter(const std::filesystem::path& stem,
                           Hdf5Storage storage = {.number = StoredNumber::real32, .gzip = 1})
-        : stem_{stem}, storage_{storage}, data_{Hdf5File::create(with_suffix(".h5"))} {
+        : SeriesWriter(stem, goes_on, storage) {
+        data_ = Hdf5File::create(file_path(files_ = 1));
+    }
+    SeriesWriter(const std::filesystem::path& stem, GoesOn,
+                 Hdf5Storage storage = {.number = StoredNumber::real32, .gzip = 1})
+        : stem_{stem}, storage_{storage} {
         if (storage.number == StoredNumber::int32)
             fail({"SeriesWriter storage", "real32 or real64", {}, "positions are no whole numbers"}, "int32");
+    }
+
+    /// Closes the data file, if there is anything in it, and goes on in another.
+    void begin_file() {
+        if (!std::exchange(written_, false)) return;
+        data_->close();
+        data_ = Hdf5File::create(file_path(++files_));
+    }
+    static auto fields() {
+        return std::tuple(field("clouds", &SeriesWriter::clouds_), field("files", &SeriesWriter::files_));
+    }
+    /// Clouds whose files are gone begin anew.
+    void restored() {
+        for (Cloud& cloud : clouds_) {
+            std::error_code error;
+            std::filesystem::resize_file(xdmf_path(cloud.name), static_cast<std::uintmax_t>(cloud.end),
+                                         error);
+            if (error) {
+                begin(cloud);
+            } else {
+                cloud.xdmf.open(xdmf_path(cloud.name), std::ios::in | std::ios::out | std::ios::binary);
+                append(cloud, {});
+            }
+        }
+        data_ = Hdf5File::create(file_path(files_));
+    }
+    /// All that there is of a series at a stem.
+    static std::vector<std::filesystem::path> files_at(const std::filesystem::path& stem) {
+        std::vector<std::filesystem::path> found;
+        std::error_code ignored;
+        const std::string start = stem.filename().string();
+        for (const auto& entry : std::filesystem::directory_iterator{stem.parent_path(), ignored}) {
+            const std::string extension = entry.path().extension().string();
+            if (entry.path().filename().string().starts_with(start) &&
+                (extension == ".h5" || extension == ".xdmf"))
+                found.push_back(entry.path());
+        }
+        return found;
     }
 
     /// Stores, once, what does not change: positions [m] (3 components) and fields of a cloud. Every later
@@ -78,7 +130,7 @@ public:
     }
 
     /// Closes the data file. What was written stays readable in any case.
-    void close() { data_.close(); }
+    void close() { data_->close(); }
 
 private:
     struct Cloud {
@@ -91,6 +143,14 @@ private:
         std::string constant_fields;    ///< XDMF text
         std::fstream xdmf;
         std::streamoff end = 0;  ///< where the closing tags begin
+
+        static auto fields() {
+            return std::tuple(field("name", &Cloud::name), field("points", &Cloud::points),
+                              field("constants", &Cloud::constants), field("times", &Cloud::times),
+                              field("last_time", "s", &Cloud::last_time),
+                              field("constant_geometry", &Cloud::constant_geometry),
+                              field("constant_fields", &Cloud::constant_fields), field("end", &Cloud::end));
+        }
     };
     struct Item {
         const FieldView* field;
@@ -99,24 +159,32 @@ private:
 
     static constexpr std::string_view closing_tags_ = "    </Grid>\n  </Domain>\n</Xdmf>\n";
 
+    std::filesystem::path file_path(int number) const {
+        return with_suffix(number == 1 ? ".h5" : "-" + std::to_string(number) + ".h5");
+    }
     std::filesystem::path with_suffix(const std::string& suffix) const {
         std::filesystem::path path = stem_;
         return path += suffix;
     }
 
     Cloud& find_or_begin(std::string_view name) {
-        if (const auto found = clouds_.find(name); found != clouds_.end()) return found->second;
+        for (Cloud& cloud : clouds_)
+            if (cloud.name == name) return cloud;
         if (name.empty() || name.find_first_of("/<>&\"' ") != name.npos)
             fail({"SeriesWriter cloud", "a name without spaces, '/' or signs of XML", {}, "join words by _"},
                  "'" + std::string{name} + "'");
-        Cloud& c = clouds_[std::string{name}];
+        Cloud& c = clouds_.emplace_back();
         c.name = name;
-        c.xdmf.open(xdmf_path(name), std::ios::in | std::ios::out | std::ios::trunc | std::ios::binary);
+        begin(c);
+        return c;
+    }
+    void begin(Cloud& c) {
+        c.end = 0;
+        c.xdmf.open(xdmf_path(c.name), std::ios::in | std::ios::out | std::ios::trunc | std::ios::binary);
         const std::string head =
             "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"" + c.name +
             "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
         append(c, head);
-        return c;
     }
 
     /// Overwrites the closing tags by `text` and the closing tags, in one go: the file is whole before and
@@ -140,7 +208,8 @@ private:
     }
 
     Item store(const std::string& group, const FieldView& field) {
-        data_.write(group, field, storage_);
+        data_->write(group, field, storage_);
+        written_ = true;
         return {&field, group + "/" + std::string{field.name}};
     }
 
@@ -168,7 +237,7 @@ private:
         text += positions == nullptr ? c.constant_geometry : geometry(store(group, *positions));
         for (const FieldView& field : fields) text += attribute(store_checked(c, group, field, points));
         text += c.constant_fields + "      </Grid>\n";
-        data_.flush();  // the data first: the XDMF never names what is not on disk
+        data_->flush();  // the data first: the XDMF never names what is not on disk
         append(c, text);
         c.last_time = time;
         ++c.times;
@@ -179,15 +248,15 @@ private:
     std::string topology(std::size_t points) {
         const std::string count = std::to_string(points);
         const std::string list = "vertices/of_" + count;
-        if (!data_.contains(list)) {
+        if (!data_->contains(list)) {
             std::vector<Real> numbers(points);
             std::iota(numbers.begin(), numbers.end(), Real{0});
-            data_.write("vertices", {"of_" + count, "-", 1, numbers}, {StoredNumber::int32, storage_.gzip});
+            data_->write("vertices", {"of_" + count, "-", 1, numbers}, {StoredNumber::int32, storage_.gzip});
         }
         return "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + count +
                "\" NodesPerElement=\"1\"><DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" "
                "Dimensions=\"" +
-               count + "\">" + escape(data_.path().filename().string()) + ":/" + list +
+               count + "\">" + escape(data_->path().filename().string()) + ":/" + list +
                "</DataItem></Topology>\n";
     }
 
@@ -212,7 +281,7 @@ private:
         if (item.field->components > 1) shape += " " + std::to_string(item.field->components);
         return "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"" +
                std::string{storage_.number == StoredNumber::real32 ? "4" : "8"} + "\" Dimensions=\"" + shape +
-               "\">" + escape(data_.path().filename().string()) + ":/" + escape(item.path) + "</DataItem>";
+               "\">" + escape(data_->path().filename().string()) + ":/" + escape(item.path) + "</DataItem>";
     }
 
     static std::string escape(std::string_view text) {
@@ -240,8 +309,10 @@ private:
 
     std::filesystem::path stem_;
     Hdf5Storage storage_;
-    Hdf5File data_;
-    std::map<std::string, Cloud, std::less<>> clouds_;
+    std::optional<Hdf5File> data_;
+    int files_ = 0;         ///< the number of `data_`
+    bool written_ = false;  ///< to it
+    std::vector<Cloud> clouds_;
 };
 
 }  // namespace abrade

@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# A run of the invert channel that is killed again and again, and goes on each time, comes to the same as one that was
+# left alone: to the last bit, with any number of threads. What cannot be gone on with is refused.
+set -euo pipefail
+program="$1"
+kills=50
+failures=0
+
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+# What two runs of the same may differ in: wall times, and how many threads there were.
+same_results() { # same_results WHAT FOLDER FOLDER
+    for folder in "$2" "$3"; do grep -vE '"(threads|.*wall_s|contacts_and_wear|bonds|motion_and_fluid|lists|changing_fluid)":' "$folder/summary.json" > "$folder.summary"; done
+    cmp -s "$2.summary" "$3.summary" || fail "$1: $(diff "$2.summary" "$3.summary" | head -5)"
+    cmp -s "$2/profiles.json" "$3/profiles.json" || fail "$1: other profiles"
+    for cloud in stones concrete; do
+        [ "$(grep -c '<Time' "$2/series_$cloud.xdmf")" = "$(grep -c '<Time' "$3/series_$cloud.xdmf")" ] ||
+            fail "$1: another number of times in series_$cloud.xdmf"
+    done
+    # Every file that the series names is there.
+    for named in $(grep -ohE 'series[-0-9]*\.h5' "$3"/series_*.xdmf | sort -u); do [ -s "$3/$named" ] || fail "$1: $named is missing"; done
+}
+
+# Some 5 s of wall time of one core.
+base=(--set channel.length=6 --set run.end_time=2.5 --set contact.stiffness=2e7 --set compare.gauge=3 --set compare.from=1 --set compare.to=5)
+every=0.003  # min: 0.18 s
+"$program" "${base[@]}" --threads 1 --out whole > whole.log || fail "the run that is left alone: $(cat whole.log)"
+
+# --- kill -9 at random moments
+resume=()
+for ((kill = 0; kill < kills; ++kill)); do
+    "$program" "${base[@]}" --threads $((1 + kill % 2)) --set run.checkpoint_every=$every --out killed "${resume[@]}" > killed.log 2>&1 &
+    pid=$!
+    sleep "0.$((RANDOM % 4 + 1))$((RANDOM % 10))"
+    kill -9 $pid 2> /dev/null || break  # it has come to its end
+    wait $pid 2> /dev/null || true
+    if [ -e killed.checkpoint.h5 ]; then resume=(--resume); fi
+done
+[ ${#resume[@]} -gt 0 ] || fail "no checkpoint after $kill kills"
+echo "$kill kills"
+if [ -e killed.checkpoint.h5 ]; then
+    "$program" "${base[@]}" --threads 2 --set run.checkpoint_every=$every --out killed --resume > killed.log 2>&1 || fail "the run that goes on fails: $(cat killed.log)"
+fi
+same_results "after $kill kills" whole killed
+[ ! -e killed.checkpoint.h5 ] || fail "a run that came to its end leaves its checkpoint"
+
+# --- what is lost is what came after the last checkpoint: no more than that time, and what a save takes
+"$program" "${base[@]}" --set run.checkpoint_every=$every --out young > young.log 2>&1 &
+pid=$!
+sleep 2.5
+kill -9 $pid || fail "the run is too short for this test"
+wait $pid 2> /dev/null || true
+age=$(($(date +%s%N) / 1000000 - $(date -r young.checkpoint.h5 +%s%N) / 1000000))
+[ $age -lt 1000 ] || fail "the last checkpoint is $age ms old, $every min are allowed"
+
+# --- SIGTERM: results so far, a checkpoint, and on from there
+"$program" "${base[@]}" --out ended > ended.log 2>&1 &
+pid=$!
+sleep 1
+kill -TERM $pid
+wait $pid || fail "SIGTERM: exit code $?"
+grep -q -- '--resume goes on' ended.log || fail "SIGTERM: no word of how to go on: $(cat ended.log)"
+grep -q '"stopped_early": true' ended/summary.json || fail "SIGTERM: the results do not say so"
+cp ended.checkpoint.h5 kept.h5
+"$program" "${base[@]}" --out ended --resume > ended.log 2>&1 || fail "after SIGTERM it does not go on: $(cat ended.log)"
+same_results "after SIGTERM" whole ended
+
+# --- what is refused: exit 2, one message, nothing written, the checkpoint left alone
+refused() { # refused WHAT REGEX OPTION...
+    local what="$1" regex="$2" code=0
+    shift 2
+    "$program" --out refused --resume "$@" > refused.log 2>&1 || code=$?
+    [ $code -eq 2 ] || fail "$what: exit code $code: $(cat refused.log)"
+    grep -qE "$regex" refused.log || fail "$what: message is '$(cat refused.log)'"
+    [ ! -e refused ] || fail "$what: left results behind"
+}
+refused "no checkpoint" "no checkpoint .*refused.checkpoint.h5" "${base[@]}"
+cp kept.h5 refused.checkpoint.h5
+refused "another run" "sediment.rate" "${base[@]}" --set sediment.rate=0.001
+head -c 100000 kept.h5 > refused.checkpoint.h5
+refused "truncated" "cannot (open|read) .*refused.checkpoint.h5.*truncated" "${base[@]}"
+echo "no HDF5" > refused.checkpoint.h5
+refused "foreign" "cannot (open|read) .*refused.checkpoint.h5" "${base[@]}"
+cp whole/series.h5 refused.checkpoint.h5
+refused "another HDF5 file" "not what save_state\(\) wrote" "${base[@]}"
+
+# --- a full disk ends the run, and the last checkpoint is whole
+mkdir -p small
+if mount -t tmpfs -o size=24m none small 2> /dev/null; then
+    code=0
+    (cd small && "$program" "${base[@]}" --set run.output_every=0.001 --set run.checkpoint_every=$every --out full > ../full.log 2>&1) || code=$?
+    [ $code -eq 1 ] || fail "a full disk: exit code $code: $(cat full.log)"
+    grep -qiE 'no space|disk' full.log || fail "a full disk is not named: $(cat full.log)"
+    if [ -e small/full.checkpoint.h5 ]; then
+        cp small/full.checkpoint.h5 refused.checkpoint.h5
+        "$program" "${base[@]}" --set run.output_every=0.001 --out refused --resume > refused.log 2>&1 || fail "the checkpoint of a full disk: $(cat refused.log)"
+    else
+        fail "a full disk: no checkpoint is left"
+    fi
+    umount small
+else
+    echo "no right to mount a small disk: that a full one leaves the last checkpoint whole is not tried"
+fi
+
+[ $failures -eq 0 ] || exit 1
