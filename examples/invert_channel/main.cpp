@@ -22,7 +22,7 @@
 #include "../common/measured_points.hpp"
 
 #include <abrade/core/parallel.hpp>
-#include <abrade/io/checkpoint.hpp>
+#include <abrade/io/state_file.hpp>
 
 #include <hdf5.h>
 #include <CLI/CLI.hpp>
@@ -133,16 +133,11 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
 /// have been.
 void keep_failed_run(const ChannelRun& run, OutputFolder& folder) {
     try {
-        const Snapshot& shot = run.last_good;
-        const auto bodies = shot.body_fields(), sites = shot.site_fields();
-        std::vector<FieldView> water;
-        for (const auto& one : run.last_water) water.push_back({one.name, one.unit, 1, one.values});
-        std::vector<FieldGroup> groups{{"bodies", bodies}, {"concrete", sites}};
-        if (!water.empty()) groups.push_back({"water", water});
-        save_fields(folder.path("last_good.h5"), groups,
-                    {{"time_s", shot.time},
-                     {"step", std::int64_t{shot.step}},
-                     {"water_time_s", water.empty() ? shot.time : run.last_water_time}});
+        Hdf5File file = Hdf5File::create(folder.path("last_good.h5"));
+        write_fields(file, "state", run.last_good);
+        for (const auto& one : run.last_water) file.write("water", {one.name, one.unit, 1, one.values});
+        if (!run.last_water.empty()) file.write_attribute("water", "time_s", run.last_water_time);
+        file.close();
     } catch (const std::exception& error) {
         std::cerr << "the last good state is lost: " << error.what() << "\n";
     }

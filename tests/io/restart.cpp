@@ -2,6 +2,7 @@
 #include "../verification/ledger_scenes.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/fluid/shallow_water.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/io/restart.hpp>
 #include <abrade/wear/sub_particle.hpp>
@@ -95,28 +96,28 @@ TEST_CASE("a bed of clumps that comes to rest, some of them asleep") {
 }
 
 TEST_CASE("stones that are fed, roll in a stream over standing concrete, wear it and leave") {
-    check_restarts(
-        "stream",
-        [] {
-            Scene scene;
-            scene.gravity = {0.5, 0, -9.81};
-            scene.bounds = {{-1, -1, -1}, {3, 1, 2}};
-            scene.concrete = ConcreteBlock{flat_lattice(0.6, 0.3, {.sphere_diameter = 0.02, .layers = 3})};
-            scene.concrete->level = ConcreteLevel::quasi_static;
-            scene.concrete->worn_out = WornOut::recedes;
-            scene.feed = FeedParams{.volume_rate = 2e-3,
-                                    .classes = {{0.04, 0.5}, {0.05, 0.5, StoneShape::angular}},
-                                    .region = {{-0.3, -0.1, 0.05}, {-0.1, 0.1, 0.15}},
-                                    .velocity = {1, 0, 0}};
-            scene.outlet = 0.3, scene.gauge = 0.0;
-            UniformFlow flow({.section = {.width = 1, .slope = 0.05}, .discharge = 0.3});
-            return simulate(scene)
-                .contact(linear)
-                .bond(MohrCoulomb{{.tensile = 2.7e5, .stiffness = 1e6}})
-                .wear(SubParticleAbrasion{{.acceleration = 2e5}})
-                .fluid(flow);
-        },
-        {.end_time = 0.6, .observe_every = 0.1});
+    check_restarts("stream",
+                   [] {
+                       Scene scene;
+                       scene.gravity = {0.5, 0, -9.81};
+                       scene.bounds = {{-1, -1, -1}, {3, 1, 2}};
+                       scene.concrete =
+                           ConcreteBlock{flat_lattice(0.6, 0.3, {.sphere_diameter = 0.02, .layers = 3})};
+                       scene.concrete->level = ConcreteLevel::quasi_static;
+                       scene.concrete->worn_out = WornOut::recedes;
+                       scene.feed = FeedParams{.volume_rate = 2e-3,
+                                               .classes = {{0.04, 0.5}, {0.05, 0.5, StoneShape::angular}},
+                                               .region = {{-0.3, -0.1, 0.05}, {-0.1, 0.1, 0.15}},
+                                               .velocity = {1, 0, 0}};
+                       scene.outlet = 0.3, scene.gauge = 0.0;
+                       UniformFlow flow({.section = {.width = 1, .slope = 0.05}, .discharge = 0.3});
+                       return simulate(scene)
+                           .contact(linear)
+                           .bond(MohrCoulomb{{.tensile = 2.7e5, .stiffness = 1e6}})
+                           .wear(SubParticleAbrasion{{.acceleration = 2e5}})
+                           .fluid(flow);
+                   },
+                   {.end_time = 0.6, .observe_every = 0.1});
 }
 
 TEST_CASE("bonded concrete that moves, and breaks") {
@@ -135,4 +136,20 @@ TEST_CASE("bonded concrete that moves, and breaks") {
                            .wear(SubParticleAbrasion{{.acceleration = 1e4}});
                    },
                    {.end_time = 0.01, .observe_every = 0.002});
+}
+
+TEST_CASE("a stone in shallow water that has settled for a while") {
+    check_restarts(
+        "shallow",
+        [] {
+            ShallowWaterParams<2> water;
+            water.low = {-1, -1}, water.high = {1, 1}, water.cells = {80, 80};
+            water.surface = [](Real x, Real) { return 0.3 + 0.1 * x; };
+            water.start_time = -2;
+            Scene scene;
+            scene.add_wall({0, 0, 0}, {0, 0, 1});
+            scene.stones = {{make_clump("ball", {{Vec3::Zero(), 0.04}}), 2650, {.position = {0, 0, 0.1}}}};
+            return simulate(scene).contact(linear).fluid(ShallowWater<2>(water));
+        },
+        {.end_time = 0.3, .observe_every = 0.05});
 }
