@@ -54,8 +54,8 @@ public:
         return volume;
     }
 
-    static auto fields() {
-        return std::tuple(field("stones", &PassedVolume::stones_), field("round", &PassedVolume::round_));
+    static void fields(auto&& field) {
+        field("stones", &PassedVolume::stones_), field("round", &PassedVolume::round_);
     }
 
 private:
@@ -64,9 +64,9 @@ private:
         Real volume = 0, farthest = -std::numeric_limits<Real>::infinity();  ///< [m3], [m]
         Index seen = 0;
 
-        static auto fields() {
-            return std::tuple(field("id", &Stone::id), field("volume", "m3", &Stone::volume),
-                              field("farthest", "m", &Stone::farthest), field("seen", &Stone::seen));
+        static void fields(auto&& field) {
+            field("id", &Stone::id), field("volume", "m3", &Stone::volume),
+                field("farthest", "m", &Stone::farthest), field("seen", &Stone::seen);
         }
     };
     /// Stones are numbered as they are fed: a new one comes last.
@@ -176,12 +176,12 @@ public:
         r.impacts_across = share_of(impacts_, losses), r.sliding_across = share_of(sliding_, losses);
     }
 
-    static auto fields() {
-        return std::tuple(field("passed", &BedRecord::passed_), field("history", &BedRecord::history_),
-                          field("next_note", "s", &BedRecord::next_note_),
-                          field("across", &BedRecord::across_), field("stones", &BedRecord::stones_),
-                          field("impacts", &BedRecord::impacts_), field("sliding", &BedRecord::sliding_),
-                          field("wanted", &BedRecord::wanted_), field("milestones", &BedRecord::milestones_));
+    static void fields(auto&& field) {
+        field("passed", &BedRecord::passed_), field("history", &BedRecord::history_),
+            field("next_note", "s", &BedRecord::next_note_), field("across", &BedRecord::across_),
+            field("stones", &BedRecord::stones_), field("impacts", &BedRecord::impacts_),
+            field("sliding", &BedRecord::sliding_), field("wanted", &BedRecord::wanted_),
+            field("milestones", &BedRecord::milestones_);
     }
 
 private:
@@ -189,9 +189,9 @@ private:
         Real converted = 0, past = 0;
         bool reached = false;
 
-        static auto fields() {
-            return std::tuple(field("converted", "m3", &Wanted::converted), field("past", "m", &Wanted::past),
-                              field("reached", &Wanted::reached));
+        static void fields(auto&& field) {
+            field("converted", "m3", &Wanted::converted), field("past", "m", &Wanted::past),
+                field("reached", &Wanted::reached);
         }
     };
 

@@ -22,7 +22,7 @@ struct ChannelFiles {
 /// Of a run's series.
 struct SeriesPlace {
     std::string stem{};
-    static auto fields() { return std::tuple(field("stem", &SeriesPlace::stem)); }
+    static void fields(auto&& field) { field("stem", &SeriesPlace::stem); }
 };
 
 /// Keeps the checkpoint of a run. What belongs to it is the file's text and all parameters.

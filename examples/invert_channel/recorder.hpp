@@ -30,9 +30,9 @@ public:
 
     /// Before its fields are saved.
     void close_file() { series_.begin_file(); }
-    static auto fields() {
-        return std::tuple(field("series", &Recorder::series_), field("next", "s", &Recorder::next_),
-                          field("history", &Recorder::history_));
+    static void fields(auto&& field) {
+        field("series", &Recorder::series_), field("next", "s", &Recorder::next_),
+            field("history", &Recorder::history_);
     }
 
 private:

@@ -26,9 +26,9 @@ struct LedgerHistory {
     std::vector<Real> time;                 ///< [s]
     std::vector<std::vector<Real>> values;  ///< [name][time] [J]
 
-    static auto fields() {
-        return std::tuple(field("names", &LedgerHistory::names), field("time", "s", &LedgerHistory::time),
-                          field("values", "J", &LedgerHistory::values));
+    static void fields(auto&& field) {
+        field("names", &LedgerHistory::names), field("time", "s", &LedgerHistory::time),
+            field("values", "J", &LedgerHistory::values);
     }
 };
 
@@ -52,11 +52,10 @@ struct ChannelWater {
     static constexpr Real settled_within = 0.1;
 
     /// What was seen as the stones began.
-    static auto fields() {
-        return std::tuple(field("depth_m", "m", &ChannelWater::depth_m),
-                          field("speed_m_per_s", "m/s", &ChannelWater::speed_m_per_s),
-                          field("froude", &ChannelWater::froude),
-                          field("bed_shear_Pa", "Pa", &ChannelWater::bed_shear_Pa));
+    static void fields(auto&& field) {
+        field("depth_m", "m", &ChannelWater::depth_m),
+            field("speed_m_per_s", "m/s", &ChannelWater::speed_m_per_s),
+            field("froude", &ChannelWater::froude), field("bed_shear_Pa", "Pa", &ChannelWater::bed_shear_Pa);
     }
 };
 
@@ -70,15 +69,15 @@ struct BedDepth {
     Real centre_mean_per_m3 = 0;            ///< over the compared section [mm/m3]
     Real max_depth_m = 0, band_width_m = 0;
 
-    static auto fields() {
-        return std::tuple(field("depth_m", "m", &BedDepth::depth_m), field("x_m", "m", &BedDepth::x_m),
-                          field("y_m", "m", &BedDepth::y_m),
-                          field("centre_depth_per_m3", "mm/m3", &BedDepth::centre_depth_per_m3),
-                          field("across_depth_m", "m", &BedDepth::across_depth_m),
-                          field("across_depth_per_m3", "mm/m3", &BedDepth::across_depth_per_m3),
-                          field("centre_mean_per_m3", "mm/m3", &BedDepth::centre_mean_per_m3),
-                          field("max_depth_m", "m", &BedDepth::max_depth_m),
-                          field("band_width_m", "m", &BedDepth::band_width_m));
+    static void fields(auto&& field) {
+        field("depth_m", "m", &BedDepth::depth_m), field("x_m", "m", &BedDepth::x_m),
+            field("y_m", "m", &BedDepth::y_m),
+            field("centre_depth_per_m3", "mm/m3", &BedDepth::centre_depth_per_m3),
+            field("across_depth_m", "m", &BedDepth::across_depth_m),
+            field("across_depth_per_m3", "mm/m3", &BedDepth::across_depth_per_m3),
+            field("centre_mean_per_m3", "mm/m3", &BedDepth::centre_mean_per_m3),
+            field("max_depth_m", "m", &BedDepth::max_depth_m),
+            field("band_width_m", "m", &BedDepth::band_width_m);
     }
 };
 
@@ -87,10 +86,9 @@ struct Milestone {
     Real converted_m3 = 0, past_m = 0, time_s = 0;
     BedDepth bed;
 
-    static auto fields() {
-        return std::tuple(field("converted_m3", "m3", &Milestone::converted_m3),
-                          field("past_m", "m", &Milestone::past_m), field("time_s", "s", &Milestone::time_s),
-                          field("bed", &Milestone::bed));
+    static void fields(auto&& field) {
+        field("converted_m3", "m3", &Milestone::converted_m3), field("past_m", "m", &Milestone::past_m),
+            field("time_s", "s", &Milestone::time_s), field("bed", &Milestone::bed);
     }
 };
 
@@ -99,10 +97,9 @@ struct PassedHistory {
     std::vector<Real> x_m, time_s;
     std::vector<std::vector<Real>> passed_m3;  ///< [x][time]
 
-    static auto fields() {
-        return std::tuple(field("x_m", "m", &PassedHistory::x_m),
-                          field("time_s", "s", &PassedHistory::time_s),
-                          field("passed_m3", "m3", &PassedHistory::passed_m3));
+    static void fields(auto&& field) {
+        field("x_m", "m", &PassedHistory::x_m), field("time_s", "s", &PassedHistory::time_s),
+            field("passed_m3", "m3", &PassedHistory::passed_m3);
     }
 };
 

@@ -20,13 +20,13 @@ namespace {
 struct Water {
     std::vector<Real> depth;
     std::array<std::vector<Real>, 2> speed;
-    static auto fields() {
-        return std::tuple(field("depth", "m", &Water::depth), field("speed", "m/s", &Water::speed));
+    static void fields(auto&& field) {
+        field("depth", "m", &Water::depth), field("speed", "m/s", &Water::speed);
     }
 };
 struct Stones {
     std::vector<Real> depth;
-    static auto fields() { return std::tuple(field("depth", "m", &Stones::depth)); }
+    static void fields(auto&& field) { field("depth", "m", &Stones::depth); }
 };
 
 Water water(std::size_t cells) { return {std::vector<Real>(cells, 1), {}}; }

@@ -16,9 +16,8 @@ struct Leaf {
     Real weight = 0;
     Vec3 place = Vec3::Zero();
     bool green = false;
-    static auto fields() {
-        return std::tuple(field("weight", "kg", &Leaf::weight), field("place", "m", &Leaf::place),
-                          field("green", &Leaf::green));
+    static void fields(auto&& field) {
+        field("weight", "kg", &Leaf::weight), field("place", "m", &Leaf::place), field("green", &Leaf::green);
     }
     bool operator==(const Leaf&) const = default;
 };
@@ -27,9 +26,8 @@ struct Twig {
     std::vector<Leaf> leaves;
     std::vector<Index> marks;
     Mood mood = Mood::calm;
-    static auto fields() {
-        return std::tuple(field("leaves", &Twig::leaves), field("marks", &Twig::marks),
-                          field("mood", &Twig::mood));
+    static void fields(auto&& field) {
+        field("leaves", &Twig::leaves), field("marks", &Twig::marks), field("mood", &Twig::mood);
     }
     bool operator==(const Twig&) const = default;
 };
@@ -43,10 +41,9 @@ public:
     std::vector<std::array<Index, 2>> pairs;
     int told = 0;
 
-    static auto fields() {
-        return std::tuple(field("twigs", &Tree::twigs), field("fallen", &Tree::fallen),
-                          field("rings", &Tree::rings), field("random", &Tree::random),
-                          field("pairs", &Tree::pairs));
+    static void fields(auto&& field) {
+        field("twigs", &Tree::twigs), field("fallen", &Tree::fallen), field("rings", &Tree::rings),
+            field("random", &Tree::random), field("pairs", &Tree::pairs);
     }
     void restored() { ++told; }
 };

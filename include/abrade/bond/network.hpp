@@ -227,12 +227,12 @@ public:
     const Bond& bond(Index number) const noexcept { return bonds_[at(number)]; }
     const Ties& ties() const noexcept { return ties_; }
 
-    static auto fields() {
-        return std::tuple(bytes_field("bonds", &Network::bonds_), field("active", &Network::active_),
-                          field("ties", &Network::ties_), field("breaks", &Network::breaks_),
-                          bytes_field("packs", &Network::packs_), field("first_pack", &Network::first_pack_),
-                          bytes_field("looked_after", &Network::looked_after_),
-                          field("first_bond", &Network::first_bond_), field("changed", &Network::changed_));
+    static void fields(auto&& field) {
+        field.bytes("bonds", &Network::bonds_), field("active", &Network::active_),
+            field("ties", &Network::ties_), field("breaks", &Network::breaks_),
+            field.bytes("packs", &Network::packs_), field("first_pack", &Network::first_pack_),
+            field.bytes("looked_after", &Network::looked_after_), field("first_bond", &Network::first_bond_),
+            field("changed", &Network::changed_);
     }
 
 private:

@@ -71,14 +71,13 @@ public:
     Index broken_shear() const noexcept { return broken_shear_; }
     const Ties& ties() const noexcept { return ties_; }
 
-    static auto fields() {
-        return std::tuple(
-            field("ties", &StandingBonds::ties_), field("cut", &StandingBonds::cut_),
+    static void fields(auto&& field) {
+        field("ties", &StandingBonds::ties_), field("cut", &StandingBonds::cut_),
             field("safe2", "N2", &StandingBonds::safe2_), field("known", &StandingBonds::known_),
             field("lost", &StandingBonds::lost_), field("seat_of", &StandingBonds::seat_of_),
             field("seats", &StandingBonds::seats_), field("doubtful", &StandingBonds::doubtful_),
             field("fresh", &StandingBonds::fresh_), field("broken_tension", &StandingBonds::broken_tension_),
-            field("broken_shear", &StandingBonds::broken_shear_));
+            field("broken_shear", &StandingBonds::broken_shear_);
     }
 
 private:

@@ -112,10 +112,9 @@ public:
         return all;
     }
 
-    static auto fields() {
-        return std::tuple(field("cut", &Ties::cut_), field("loose", &Ties::loose_),
-                          field("mark", &Ties::mark_), field("round", &Ties::round_),
-                          field("doubtful", &Ties::doubtful_));
+    static void fields(auto&& field) {
+        field("cut", &Ties::cut_), field("loose", &Ties::loose_), field("mark", &Ties::mark_),
+            field("round", &Ties::round_), field("doubtful", &Ties::doubtful_);
     }
 
 private:

@@ -145,7 +145,7 @@ public:
         return all;
     }
 
-    static auto fields() { return std::tuple(field("sections", &ContactList::sections_)); }
+    static void fields(auto&& field) { field("sections", &ContactList::sections_); }
 
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }

@@ -177,15 +177,14 @@ public:
     /// As of the last call of `refine`.
     ContactCensus census() const noexcept { return {near_.size(), candidates_, touching_, at_rest_}; }
 
-    static auto fields() {
-        return std::tuple(
-            bytes_field("near", &ContactSection::near_), bytes_field("kinds", &ContactSection::kinds_),
-            bytes_field("packs", &ContactSection::packs_), field("lane", &ContactSection::lane_),
+    static void fields(auto&& field) {
+        field.bytes("near", &ContactSection::near_), field.bytes("kinds", &ContactSection::kinds_),
+            field.bytes("packs", &ContactSection::packs_), field("lane", &ContactSection::lane_),
             field("concrete_sides", &ContactSection::concrete_sides_),
-            field("held_sides", &ContactSection::held_sides_), bytes_field("runs", &ContactSection::runs_),
+            field("held_sides", &ContactSection::held_sides_), field.bytes("runs", &ContactSection::runs_),
             field("filled", &ContactSection::filled_), field("candidates", &ContactSection::candidates_),
             field("touching", &ContactSection::touching_), field("at_rest", &ContactSection::at_rest_),
-            field("resting", &ContactSection::resting_), field("phantom", &ContactSection::phantom_));
+            field("resting", &ContactSection::resting_), field("phantom", &ContactSection::phantom_);
     }
 
 private:

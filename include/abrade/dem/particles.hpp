@@ -142,9 +142,8 @@ struct Particles {
         return moved;
     }
 
-    static auto fields() {
-        return std::tuple(
-            field("position", "m", &Particles::position), field("velocity", "m/s", &Particles::velocity),
+    static void fields(auto&& field) {
+        field("position", "m", &Particles::position), field("velocity", "m/s", &Particles::velocity),
             field("orientation", &Particles::orientation),
             field("angular_momentum", "kg m2/s", &Particles::angular_momentum),
             field("force", "N", &Particles::force), field("torque", "N m", &Particles::torque),
@@ -155,7 +154,7 @@ struct Particles {
             field("material", &Particles::material), field("first_sphere", &Particles::first_sphere),
             field("sphere_count", &Particles::sphere_count), field("body", &Particles::body),
             field("offset", "m", &Particles::offset), field("radius", "m", &Particles::radius),
-            field("centre", "m", &Particles::centre), field("next_id", &Particles::next_id));
+            field("centre", "m", &Particles::centre), field("next_id", &Particles::next_id);
     }
 
 private:

@@ -77,11 +77,11 @@ public:
     Index first_slab(Index chunk) const noexcept { return first_slab_[static_cast<std::size_t>(chunk)]; }
     Index chunk_of(Index slab) const noexcept { return chunk_of_[static_cast<std::size_t>(slab)]; }
 
-    static auto fields() {
-        return std::tuple(field("axis", &Slabs::axis_), field("low", "m", &Slabs::low_),
-                          field("extent", "m", &Slabs::extent_), field("thickness", "m", &Slabs::thickness_),
-                          field("count", &Slabs::count_), field("spheres", &Slabs::spheres_),
-                          field("first_slab", &Slabs::first_slab_), field("chunk_of", &Slabs::chunk_of_));
+    static void fields(auto&& field) {
+        field("axis", &Slabs::axis_), field("low", "m", &Slabs::low_), field("extent", "m", &Slabs::extent_),
+            field("thickness", "m", &Slabs::thickness_), field("count", &Slabs::count_),
+            field("spheres", &Slabs::spheres_), field("first_slab", &Slabs::first_slab_),
+            field("chunk_of", &Slabs::chunk_of_);
     }
 
 private:

@@ -14,9 +14,8 @@ namespace abrade {
 struct alignas(32) SpherePlace {
     Vec3 centre = Vec3::Zero();  ///< [m]
     Real radius = 0;             ///< [m]
-    static auto fields() {
-        return std::tuple(field("centre", "m", &SpherePlace::centre),
-                          field("radius", "m", &SpherePlace::radius));
+    static void fields(auto&& field) {
+        field("centre", "m", &SpherePlace::centre), field("radius", "m", &SpherePlace::radius);
     }
 };
 
@@ -26,11 +25,10 @@ struct alignas(64) SphereMotion {
     Real inverse_mass = 0;         ///< of its body, 0 where that is fixed [1/kg]
     Vec3 rim = Vec3::Zero();       ///< radius times angular velocity [m/s]
     Real curvature = 0;            ///< 1/radius [1/m]
-    static auto fields() {
-        return std::tuple(field("velocity", "m/s", &SphereMotion::velocity),
-                          field("inverse_mass", "1/kg", &SphereMotion::inverse_mass),
-                          field("rim", "m/s", &SphereMotion::rim),
-                          field("curvature", "1/m", &SphereMotion::curvature));
+    static void fields(auto&& field) {
+        field("velocity", "m/s", &SphereMotion::velocity),
+            field("inverse_mass", "1/kg", &SphereMotion::inverse_mass),
+            field("rim", "m/s", &SphereMotion::rim), field("curvature", "1/m", &SphereMotion::curvature);
     }
 };
 
@@ -42,9 +40,9 @@ struct alignas(64) SphereLoad {
     /// Sum of lambda f x n, and of couples over the radius; times that: the torque about the centre [N].
     Vec3 lever = Vec3::Zero();
     Real mass = 0;  ///< of its body: no load, but its place is free [kg]
-    static auto fields() {
-        return std::tuple(field("force", "N", &SphereLoad::force), field("worn", "m3", &SphereLoad::worn),
-                          field("lever", "N", &SphereLoad::lever), field("mass", "kg", &SphereLoad::mass));
+    static void fields(auto&& field) {
+        field("force", "N", &SphereLoad::force), field("worn", "m3", &SphereLoad::worn),
+            field("lever", "N", &SphereLoad::lever), field("mass", "kg", &SphereLoad::mass);
     }
 };
 
@@ -56,9 +54,9 @@ struct SphereLines {
     std::vector<SphereMotion> motion;
     std::vector<SphereLoad> load;
 
-    static auto fields() {
-        return std::tuple(field("place", &SphereLines::place), field("motion", &SphereLines::motion),
-                          field("load", &SphereLines::load));
+    static void fields(auto&& field) {
+        field("place", &SphereLines::place), field("motion", &SphereLines::motion),
+            field("load", &SphereLines::load);
     }
 
     void resize(std::size_t slots) { place.resize(slots), motion.resize(slots), load.resize(slots); }

@@ -22,15 +22,15 @@ struct MovingClump {
     Real mass = 0, inverse_mass = 0;                        ///< [kg], [1/kg]
     Vec3 inverse_inertia = Vec3::Zero();                    ///< about the principal axes [1/(kg m2)]
 
-    static auto fields() {
-        return std::tuple(field("body", &MovingClump::body), field("first_slot", &MovingClump::first_slot),
-                          field("count", &MovingClump::count), field("position", "m", &MovingClump::position),
-                          field("velocity", "m/s", &MovingClump::velocity),
-                          field("angular_momentum", "kg m2/s", &MovingClump::angular_momentum),
-                          field("orientation", &MovingClump::orientation),
-                          field("rotation", &MovingClump::rotation), field("mass", "kg", &MovingClump::mass),
-                          field("inverse_mass", "1/kg", &MovingClump::inverse_mass),
-                          field("inverse_inertia", "1/(kg m2)", &MovingClump::inverse_inertia));
+    static void fields(auto&& field) {
+        field("body", &MovingClump::body), field("first_slot", &MovingClump::first_slot),
+            field("count", &MovingClump::count), field("position", "m", &MovingClump::position),
+            field("velocity", "m/s", &MovingClump::velocity),
+            field("angular_momentum", "kg m2/s", &MovingClump::angular_momentum),
+            field("orientation", &MovingClump::orientation), field("rotation", &MovingClump::rotation),
+            field("mass", "kg", &MovingClump::mass),
+            field("inverse_mass", "1/kg", &MovingClump::inverse_mass),
+            field("inverse_inertia", "1/(kg m2)", &MovingClump::inverse_inertia);
     }
 
     /// In world axes, of an angular momentum in world axes.
@@ -247,16 +247,15 @@ public:
         }
     }
 
-    static auto fields() {
-        return std::tuple(
-            field("lines", &SphereStore::lines), field("slabs", &SphereStore::slabs),
+    static void fields(auto&& field) {
+        field("lines", &SphereStore::lines), field("slabs", &SphereStore::slabs),
             field("clumps", &SphereStore::clumps), field("sphere_of", &SphereStore::sphere_of_),
             field("slot_of", &SphereStore::slot_of_), field("clump_of", &SphereStore::clump_of_),
             field("first_slot", &SphereStore::first_slot_),
             field("first_clump_slot", &SphereStore::first_clump_slot_),
-            field("first_clump", &SphereStore::first_clump_), bytes_field("images", &SphereStore::images_),
-            bytes_field("requests", &SphereStore::requests_),
-            field("first_image", &SphereStore::first_image_), field("phantom", &SphereStore::phantom_));
+            field("first_clump", &SphereStore::first_clump_), field.bytes("images", &SphereStore::images_),
+            field.bytes("requests", &SphereStore::requests_),
+            field("first_image", &SphereStore::first_image_), field("phantom", &SphereStore::phantom_);
     }
 
 private:

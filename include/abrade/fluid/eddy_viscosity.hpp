@@ -99,9 +99,8 @@ public:
     const Field<State>& field() const noexcept { return field_; }
     Real largest() const noexcept { return largest_; }  ///< [m2/s]
 
-    static auto fields() {
-        return std::tuple(abrade::field("field", "m2/s", &EddyViscosity::field_),
-                          abrade::field("largest", "m2/s", &EddyViscosity::largest_));
+    static void fields(auto&& field) {
+        field("field", "m2/s", &EddyViscosity::field_), field("largest", "m2/s", &EddyViscosity::largest_);
     }
 
 private:

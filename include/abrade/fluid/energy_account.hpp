@@ -78,10 +78,9 @@ public:
         energy_.reshaped += energy_.total() - before;
     }
 
-    static auto fields() {
-        return std::tuple(field("mid", "m/s", &EnergyAccount::mid_),
-                          bytes_field("openings", &EnergyAccount::openings_),
-                          field("energy", &EnergyAccount::energy_));
+    static void fields(auto&& field) {
+        field("mid", "m/s", &EnergyAccount::mid_), field.bytes("openings", &EnergyAccount::openings_),
+            field("energy", &EnergyAccount::energy_);
     }
 
 private:

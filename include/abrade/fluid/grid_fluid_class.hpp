@@ -210,28 +210,20 @@ public:
         return energy_->energy();
     }
 
-    static auto fields() {
-        const auto all = std::tuple(
-            field("sides", &GridFluid::sides_), field("velocity", "m/s", &GridFluid::velocity_),
-            field("stage", "m/s", &GridFluid::stage_), field("pressure", "m2/s2", &GridFluid::pressure_),
-            field("energy", &GridFluid::energy_), bytes_field("report", &GridFluid::report_),
-            field("time", "s", &GridFluid::time_), field("fastest", "1/s", &GridFluid::fastest_),
-            field("enters", "1/s", &GridFluid::enters_), field("first_step", "s", &GridFluid::first_step_),
-            field("late", &GridFluid::late_), field("steps", &GridFluid::steps_));
-        const auto eddies = [] {
-            if constexpr (Turbulence::has_eddies)
-                return std::tuple(field("eddies", &GridFluid::eddies_));
-            else
-                return std::tuple();
-        }();
-        if constexpr (has_surface)
-            return std::tuple_cat(
-                all, eddies,
-                std::tuple(field("record", &GridFluid::record_), field("water", &GridFluid::water_),
-                           field("heights", &GridFluid::heights_), field("outflows", &GridFluid::outflows_)));
-        else
-            return std::tuple_cat(all, eddies,
-                                  std::tuple(field("saved_velocity", "m/s", &GridFluid::saved_velocity_)));
+    static void fields(auto&& field) {
+        field("sides", &GridFluid::sides_), field("velocity", "m/s", &GridFluid::velocity_);
+        field("stage", "m/s", &GridFluid::stage_), field("pressure", "m2/s2", &GridFluid::pressure_);
+        field("energy", &GridFluid::energy_), field.bytes("report", &GridFluid::report_);
+        field("time", "s", &GridFluid::time_), field("fastest", "1/s", &GridFluid::fastest_);
+        field("enters", "1/s", &GridFluid::enters_), field("first_step", "s", &GridFluid::first_step_);
+        field("late", &GridFluid::late_), field("steps", &GridFluid::steps_);
+        if constexpr (Turbulence::has_eddies) field("eddies", &GridFluid::eddies_);
+        if constexpr (has_surface) {
+            field("record", &GridFluid::record_), field("water", &GridFluid::water_);
+            field("heights", &GridFluid::heights_), field("outflows", &GridFluid::outflows_);
+        } else {
+            field("saved_velocity", "m/s", &GridFluid::saved_velocity_);
+        }
     }
     void restored() {
         if constexpr (has_surface) water_->show(projection_);

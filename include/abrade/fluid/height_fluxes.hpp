@@ -112,10 +112,10 @@ public:
     /// From the column below a column along an axis into it [m3].
     Real through(int a, Index column) const noexcept { return up_[a][at(column)] - down_[a][at(column)]; }
 
-    static auto fields() {
-        return std::tuple(field("lower", &HeightFluxes::lower_), field("upper", &HeightFluxes::upper_),
-                          field("up", &HeightFluxes::up_), field("down", &HeightFluxes::down_),
-                          field("keeps", &HeightFluxes::keeps_));
+    static void fields(auto&& field) {
+        field("lower", &HeightFluxes::lower_), field("upper", &HeightFluxes::upper_),
+            field("up", &HeightFluxes::up_), field("down", &HeightFluxes::down_),
+            field("keeps", &HeightFluxes::keeps_);
     }
 
 private:

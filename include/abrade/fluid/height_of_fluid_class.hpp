@@ -60,9 +60,9 @@ public:
         Real most = 0;   ///< largest of all steps [-]
         Real lost =
             0;  ///< potential energy over density, summed over steps [m5/s2]; in two dimensions [m4/s2]
-        static auto fields() {
-            return std::tuple(field("share", &Overturning::share), field("most", &Overturning::most),
-                              field("lost", "m5/s2", &Overturning::lost));
+        static void fields(auto&& field) {
+            field("share", &Overturning::share), field("most", &Overturning::most),
+                field("lost", "m5/s2", &Overturning::lost);
         }
     };
 
@@ -245,16 +245,15 @@ public:
         });
     }
 
-    static auto fields() {
-        return std::tuple(
-            field("fluxes", &HeightOfFluid::fluxes_), field("fraction", &HeightOfFluid::fraction_),
+    static void fields(auto&& field) {
+        field("fluxes", &HeightOfFluid::fluxes_), field("fraction", &HeightOfFluid::fraction_),
             field("surplus", &HeightOfFluid::surplus_), field("moved", "m3", &HeightOfFluid::moved_),
             field("wet", &HeightOfFluid::wet_), field("active", &HeightOfFluid::active_),
             field("touched", &HeightOfFluid::touched_), field("volume", "m3", &HeightOfFluid::volume_),
             field("next", "m3", &HeightOfFluid::next_), field("height", "m", &HeightOfFluid::height_),
             field("top", &HeightOfFluid::top_), field("rises", "m3", &HeightOfFluid::rises_),
             field("overturning", &HeightOfFluid::overturning_), field("steps", &HeightOfFluid::steps_),
-            field("brim", &HeightOfFluid::brim_), field("rose_far", &HeightOfFluid::rose_far_));
+            field("brim", &HeightOfFluid::brim_), field("rose_far", &HeightOfFluid::rose_far_);
     }
 
 private:

@@ -64,7 +64,7 @@ public:
         for (OutflowSide& side : sides_) side.mean_speed = side.next_mean;
     }
 
-    static auto fields() { return std::tuple(field("sides", &Outflows::sides_)); }
+    static void fields(auto&& field) { field("sides", &Outflows::sides_); }
 
 private:
     struct Face {
@@ -82,9 +82,9 @@ private:
         std::vector<Face> faces;
         std::optional<Real> mean_speed, next_mean;  ///< U_T before the step, behind it [m/s]
         std::vector<std::uint8_t> wet;              ///< columns
-        static auto fields() {
-            return std::tuple(field("mean_speed", "m/s", &OutflowSide::mean_speed),
-                              field("next_mean", "m/s", &OutflowSide::next_mean));
+        static void fields(auto&& field) {
+            field("mean_speed", "m/s", &OutflowSide::mean_speed),
+                field("next_mean", "m/s", &OutflowSide::next_mean);
         }
     };
 

@@ -124,8 +124,8 @@ public:
         return all;
     }
 
-    static auto fields() {
-        return std::tuple(field("solver", &ShallowWater::solver_), field("time", "s", &ShallowWater::time_));
+    static void fields(auto&& field) {
+        field("solver", &ShallowWater::solver_), field("time", "s", &ShallowWater::time_);
     }
 
 private:

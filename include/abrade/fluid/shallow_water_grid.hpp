@@ -115,9 +115,8 @@ struct ShallowState {
     CellColumn depth;                   ///< [m]
     std::array<CellColumn, Dim> speed;  ///< along x, y [m/s]
 
-    static auto fields() {
-        return std::tuple(field("depth", "m", &ShallowState::depth),
-                          field("speed", "m/s", &ShallowState::speed));
+    static void fields(auto&& field) {
+        field("depth", "m", &ShallowState::depth), field("speed", "m/s", &ShallowState::speed);
     }
 
     ShallowState() = default;
@@ -216,8 +215,8 @@ public:
         }
     }
 
-    static auto fields() {
-        return std::tuple(bytes_field("list", &ShallowTiles::list), field("due", &ShallowTiles::due));
+    static void fields(auto&& field) {
+        field.bytes("list", &ShallowTiles::list), field("due", &ShallowTiles::due);
     }
 
     std::vector<ShallowTile> list;

@@ -88,7 +88,7 @@ public:
             follow_fractions(planes, first, fraction, marks);
     }
 
-    static auto fields() { return std::tuple(field("known", &SurfaceAtWalls::known_)); }
+    static void fields(auto&& field) { field("known", &SurfaceAtWalls::known_); }
 
 private:
     static constexpr int vertical = Grid<Dim>::vertical;

@@ -82,11 +82,11 @@ public:
     /// Whether air is in the cell.
     bool airy(Offset cell) const noexcept { return air_[cell] != 0; }
 
-    static auto fields() {
-        return std::tuple(field("air", &SurfaceBand::air_), field("edge", &SurfaceBand::edge_),
-                          field("near", &SurfaceBand::near_), field("band", &SurfaceBand::band_),
-                          field("searched", &SurfaceBand::searched_), field("cell", &SurfaceBand::cell_),
-                          field("level", &SurfaceBand::level_));
+    static void fields(auto&& field) {
+        field("air", &SurfaceBand::air_), field("edge", &SurfaceBand::edge_),
+            field("near", &SurfaceBand::near_), field("band", &SurfaceBand::band_),
+            field("searched", &SurfaceBand::searched_), field("cell", &SurfaceBand::cell_),
+            field("level", &SurfaceBand::level_);
     }
 
 private:

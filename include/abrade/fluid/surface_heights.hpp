@@ -59,7 +59,7 @@ public:
         return (1 - weight[1]) * along(low[1]) + weight[1] * along(high[1]);
     }
 
-    static auto fields() { return std::tuple(field("heights", "m", &SurfaceHeights::heights_)); }
+    static void fields(auto&& field) { field("heights", "m", &SurfaceHeights::heights_); }
 
 private:
     std::size_t column(int plane, int across) const noexcept {

@@ -36,12 +36,11 @@ struct SurfacePlanes {
     /// Whether, in a cell that a wall cuts, the position tells where the liquid is, not its fraction.
     std::vector<std::uint8_t> told{};
 
-    static auto fields() {
-        return std::tuple(
-            field("cell", &SurfacePlanes::cell), field("level", &SurfacePlanes::level),
+    static void fields(auto&& field) {
+        field("cell", &SurfacePlanes::cell), field("level", &SurfacePlanes::level),
             field("normal", &SurfacePlanes::normal), field("distance", &SurfacePlanes::distance),
             field("position", &SurfacePlanes::position), field("has_normal", &SurfacePlanes::has_normal),
-            field("told", &SurfacePlanes::told));
+            field("told", &SurfacePlanes::told);
     }
 
     Index count() const noexcept { return static_cast<Index>(cell.size()); }

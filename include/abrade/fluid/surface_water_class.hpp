@@ -233,13 +233,12 @@ public:
         if constexpr (is_height) liquid_.gather(), find_rows(), find_held();
     }
 
-    static auto fields() {
-        return std::tuple(
-            field("liquid", &SurfaceWater::liquid_), field("held", &SurfaceWater::held_),
+    static void fields(auto&& field) {
+        field("liquid", &SurfaceWater::liquid_), field("held", &SurfaceWater::held_),
             field("before", &SurfaceWater::before_), field("wet", &SurfaceWater::wet_),
             field("rows", &SurfaceWater::rows_), field("rows_before", &SurfaceWater::rows_before_),
             field("faces", &SurfaceWater::faces_), field("extension", &SurfaceWater::extension_),
-            bytes_field("open", &SurfaceWater::open_), bytes_field("still", &SurfaceWater::still_));
+            field.bytes("open", &SurfaceWater::open_), field.bytes("still", &SurfaceWater::still_);
     }
     /// The pressure's operator, of what has been found; nothing stays of what it was before.
     void show(Projection<Dim, Real>& projection) const {

@@ -156,12 +156,11 @@ public:
     /// Those of a carrier one after the other.
     const std::vector<Rider>& riders(int a) const noexcept { return riders_[a]; }
 
-    static auto fields() {
-        return std::tuple(field("state", &VelocityExtension::state_),
-                          field("rows", &VelocityExtension::rows_),
-                          bytes_field("means", &VelocityExtension::means_),
-                          bytes_field("riders", &VelocityExtension::riders_),
-                          bytes_field("films", &VelocityExtension::films_));
+    static void fields(auto&& field) {
+        field("state", &VelocityExtension::state_), field("rows", &VelocityExtension::rows_),
+            field.bytes("means", &VelocityExtension::means_),
+            field.bytes("riders", &VelocityExtension::riders_),
+            field.bytes("films", &VelocityExtension::films_);
     }
 
 private:

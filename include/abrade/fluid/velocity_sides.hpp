@@ -220,11 +220,10 @@ public:
         }
     }
 
-    static auto fields() {
-        return std::tuple(
-            field("tables", "m/s", &VelocitySides::tables_), field("kept", "m/s", &VelocitySides::kept_),
+    static void fields(auto&& field) {
+        field("tables", "m/s", &VelocitySides::tables_), field("kept", "m/s", &VelocitySides::kept_),
             field("leaving", "m/s", &VelocitySides::leaving_),
-            field("inflow_scale", &VelocitySides::inflow_scale_), field("changed", &VelocitySides::changed_));
+            field("inflow_scale", &VelocitySides::inflow_scale_), field("changed", &VelocitySides::changed_);
     }
 
 private:

@@ -254,15 +254,14 @@ public:
         return std::clamp(share, least, Real(1));
     }
 
-    static auto fields() {
-        return std::tuple(
-            field("fraction", &VolumeOfFluid::fraction_), field("surplus", &VolumeOfFluid::surplus_),
+    static void fields(auto&& field) {
+        field("fraction", &VolumeOfFluid::fraction_), field("surplus", &VolumeOfFluid::surplus_),
             field("moved", "m3", &VolumeOfFluid::moved_), field("plane_of", &VolumeOfFluid::plane_of_),
             field("planes", &VolumeOfFluid::planes_), field("planes_before", &VolumeOfFluid::planes_before_),
             field("band", &VolumeOfFluid::band_), field("at_walls", &VolumeOfFluid::at_walls_),
             field("wet", &VolumeOfFluid::wet_), field("active", &VolumeOfFluid::active_),
             field("touched", &VolumeOfFluid::touched_), field("filled", &VolumeOfFluid::filled_),
-            field("settled", &VolumeOfFluid::settled_), field("steps", &VolumeOfFluid::steps_));
+            field("settled", &VolumeOfFluid::settled_), field("steps", &VolumeOfFluid::steps_);
     }
 
 private:

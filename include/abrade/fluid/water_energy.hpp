@@ -38,9 +38,8 @@ struct WaterEnergy {
 
     Real advection = 0;  ///< part of `numerical`, measured: loss by the advection scheme; full boxes only
 
-    static auto fields() {
-        return std::tuple(
-            field("kinetic", "J", &WaterEnergy::kinetic), field("potential", "J", &WaterEnergy::potential),
+    static void fields(auto&& field) {
+        field("kinetic", "J", &WaterEnergy::kinetic), field("potential", "J", &WaterEnergy::potential),
             field("kinetic_start", "J", &WaterEnergy::kinetic_start),
             field("potential_start", "J", &WaterEnergy::potential_start),
             field("inflow", "J", &WaterEnergy::inflow), field("outflow", "J", &WaterEnergy::outflow),
@@ -49,7 +48,7 @@ struct WaterEnergy {
             field("turbulent", "J", &WaterEnergy::turbulent),
             field("wall_friction", "J", &WaterEnergy::wall_friction),
             field("numerical", "J", &WaterEnergy::numerical),
-            field("advection", "J", &WaterEnergy::advection));
+            field("advection", "J", &WaterEnergy::advection);
     }
 
     Real total() const noexcept { return kinetic + potential; }

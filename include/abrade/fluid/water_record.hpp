@@ -14,8 +14,8 @@ namespace abrade::detail {
 struct LateSteps {
     Real last = 0, longest = 0;
 
-    static auto fields() {
-        return std::tuple(field("last", "s", &LateSteps::last), field("longest", "s", &LateSteps::longest));
+    static void fields(auto&& field) {
+        field("last", "s", &LateSteps::last), field("longest", "s", &LateSteps::longest);
     }
     /// Before the first: what it may be; infinite where nothing moves.
     void expect(Real dt) noexcept { longest = std::isfinite(dt) ? dt : 0; }
@@ -139,16 +139,15 @@ public:
         restored_ = true;
     }
 
-    static auto fields() {
-        return std::tuple(
-            field("rows", &WaterRecord::rows_), field("velocity", "m/s", &WaterRecord::velocity_),
+    static void fields(auto&& field) {
+        field("rows", &WaterRecord::rows_), field("velocity", "m/s", &WaterRecord::velocity_),
             field("change", "m/s2", &WaterRecord::change_),
             field("pressure", "m2/s2", &WaterRecord::pressure_), field("wet", &WaterRecord::wet_),
             field("fraction", &WaterRecord::fraction_), field("surplus", &WaterRecord::surplus_),
             field("steps", &WaterRecord::steps_), field("ahead", "s", &WaterRecord::ahead_),
             field("lead", "s", &WaterRecord::lead_), field("far", &WaterRecord::far_),
             field("brief", &WaterRecord::brief_), field("was_brief", &WaterRecord::was_brief_),
-            field("known", &WaterRecord::known_), field("restored", &WaterRecord::restored_));
+            field("known", &WaterRecord::known_), field("restored", &WaterRecord::restored_);
     }
 
 private:

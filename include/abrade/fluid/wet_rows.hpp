@@ -140,7 +140,7 @@ public:
     }
     const detail::PlaneRuns& runs() const noexcept { return runs_; }
 
-    static auto fields() { return std::tuple(bytes_field("rows", &WetRows::rows_)); }
+    static void fields(auto&& field) { field.bytes("rows", &WetRows::rows_); }
     void restored() { share_out(); }
 
 private:

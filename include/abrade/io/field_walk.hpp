@@ -2,12 +2,18 @@
 // A walk through what classes list as their fields, to the numbers that they are made of.
 
 #include <abrade/core/fields.hpp>
+#include <abrade/core/require.hpp>
+#include <abrade/io/column_of.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <ostream>
+#include <span>
+#include <sstream>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace abrade::detail {
@@ -64,78 +70,166 @@ template <class T>
 concept IsToldOfRestart = requires(T& one) { one.restored(); };
 // clang-format on
 
+/// What becomes of the numbers that a walk comes to: they are written, or read.
+class FieldPort {
+public:
+    FieldPort() = default;
+    FieldPort(const FieldPort&) = delete;
+    FieldPort& operator=(const FieldPort&) = delete;
+    virtual ~FieldPort() = default;
+
+    virtual bool reads() const noexcept = 0;
+    /// A column whose rows lie in these parts of memory, one after the other.
+    virtual void column(const std::string& path, std::string_view unit, const ColumnOf& of,
+                        std::span<const std::span<std::byte>> parts) = 0;
+    /// How many rows each of several has of a column.
+    virtual void counts(const std::string& path, std::vector<std::uint64_t>& counts) = 0;
+    virtual void text(const std::string& path, std::string& text) = 0;
+};
+
 /// Goes through fields in the order in which they are listed, of all objects of a kind at once, by pointers
-/// to them: so one column holds a field of all of them. `Port` is what becomes of the numbers: it writes them
-/// (objects are const) or reads them.
-template <class Port>
+/// to them: so one column holds a field of all of them. Cold, and pointers without types: there are hundreds
+/// of kinds, each of which is compiled, and it is files that take the time.
 class FieldWalk {
 public:
-    explicit FieldWalk(Port& port) : port_(port) {}
+    explicit FieldWalk(FieldPort& port) : port_(port) {}
 
-    template <FieldForm Form = FieldForm::numbers, class T>
-    void go(const std::string& path, std::string_view unit, const std::vector<T*>& all) {
-        using Plain = std::remove_const_t<T>;
-        if constexpr (IsRow<Plain>) {
-            port_.template rows<typename RowOf<Plain>::Number>(path, unit, RowOf<Plain>::numbers, all);
-        } else if constexpr (ListsFields<Plain>) {
-            for_each_field<Plain>([&](const auto& field) {
-                go<std::remove_cvref_t<decltype(field)>::form>(
-                    path + "/" + std::string(field.name), field.unit,
-                    pointers(all, [&](T& one) { return &(one.*field.member); }));
-            });
-            if constexpr (!std::is_const_v<T> && IsToldOfRestart<Plain>)
-                for (T* one : all) one->restored();
-        } else if constexpr (IsResizable<Plain>) {
-            port_.resize(path, all);
-            if constexpr (IsRow<typename Plain::value_type>)
-                blocks(path, unit, all);
-            else
-                go<Form>(path + "/each", unit, elements(all));
-        } else if constexpr (IsBlock<Plain>) {
-            blocks(path, unit, all);
-        } else if constexpr (IsOptional<Plain>) {
-            port_.emplace(path, all);
-            std::vector<decltype(&**all.front())> there;
-            for (T* one : all)
-                if (*one) there.push_back(&**one);
-            go<Form>(path + "/each", unit, there);
-        } else if constexpr (IsEngine<Plain>) {
-            for (T* one : all) port_.engine(path, *one);
-        } else if constexpr (IsPerAxis<Plain>) {
-            if (all.size() != 1) return go<Form>(path, unit, elements(all));
-            int axis = 0;  // each for itself: the largest columns there are need no copy
-            for (auto& one : *all.front())
-                go<Form>(path + "/" + std::to_string(axis++), unit, std::vector{&one});
-        } else {
-            static_assert(Form == FieldForm::bytes && std::is_trivially_destructible_v<Plain>,
-                          "a field that cannot be saved: let its class list its fields");
-            if constexpr (!std::is_empty_v<Plain>)
-                port_.template rows<std::uint8_t>(path, unit, static_cast<int>(sizeof(Plain)), all);
-        }
+    template <ListsFields T>
+    void go(const std::string& group, T& object) {
+        visit<T, false>(group, "-", {&object});
     }
 
 private:
-    template <class T, class Of>
-    static auto pointers(const std::vector<T*>& all, Of&& of) {
-        std::vector<decltype(of(*all.front()))> found;
-        found.reserve(all.size());
-        for (T* one : all) found.push_back(of(*one));
-        return found;
-    }
-    template <class T>
-    static auto elements(const std::vector<T*>& all) {
-        std::vector<decltype(&*all.front()->begin())> found;
-        for (T* one : all)
-            for (auto& element : *one) found.push_back(&element);
-        return found;
-    }
-    template <class T>
-    void blocks(const std::string& path, std::string_view unit, const std::vector<T*>& all) {
-        using Row = RowOf<std::remove_cvref_t<decltype(*all.front()->data())>>;
-        port_.template blocks<typename Row::Number>(path, unit, Row::numbers, all);
+    using Objects = std::vector<void*>;
+
+    /// `as_bytes`: what is made of no numbers that are known here is taken as it lies in memory.
+    template <class T, bool as_bytes>
+    [[gnu::cold, gnu::noinline]] void visit(const std::string& path, std::string_view unit,
+                                            const Objects& all) {
+        if constexpr (IsRow<T>) {
+            rows(path, unit, column_of<typename RowOf<T>::Number>(RowOf<T>::numbers), all);
+        } else if constexpr (ListsFields<T>) {
+            T::fields(Members<T>{*this, path, all});
+            if constexpr (IsToldOfRestart<T>)
+                if (port_.reads())
+                    for (void* one : all) static_cast<T*>(one)->restored();
+        } else if constexpr (IsResizable<T>) {
+            resize<T>(path, all);
+            if constexpr (IsRow<typename T::value_type>)
+                blocks<T>(path, unit, all);
+            else
+                visit<typename T::value_type, as_bytes>(path + "/each", unit, elements<T>(all));
+        } else if constexpr (IsBlock<T>) {
+            blocks<T>(path, unit, all);
+        } else if constexpr (IsOptional<T>) {
+            using Value = std::remove_reference_t<decltype(*std::declval<T&>())>;
+            visit<Value, as_bytes>(path + "/each", unit, those_there<T>(path, all));
+        } else if constexpr (IsEngine<T>) {
+            for (void* one : all) engine(path, *static_cast<T*>(one));
+        } else if constexpr (IsPerAxis<T>) {
+            using Element = std::remove_reference_t<decltype(*std::declval<T&>().begin())>;
+            const Objects each = elements<T>(all);
+            if (all.size() != 1) return visit<Element, as_bytes>(path, unit, each);
+            for (std::size_t axis = 0; axis < each.size();
+                 ++axis)  // the largest columns there are need no copy
+                visit<Element, as_bytes>(path + "/" + std::to_string(axis), unit, {each[axis]});
+        } else {
+            static_assert(as_bytes && std::is_trivially_destructible_v<T>,
+                          "a field that cannot be saved: let its class list its fields");
+            if constexpr (!std::is_empty_v<T>)
+                rows(path, unit, column_of<std::uint8_t>(static_cast<int>(sizeof(T))), all);
+        }
     }
 
-    Port& port_;
+    /// Takes the list of a class.
+    template <class T>
+    struct Members {
+        FieldWalk& walk;
+        const std::string& path;
+        const Objects& all;
+
+        template <class Type>
+        void operator()(std::string_view name, Type T::*member) const {
+            (*this)(name, "-", member);
+        }
+        template <class Type>
+        void operator()(std::string_view name, std::string_view unit, Type T::*member) const {
+            walk.visit<Type, false>(path + "/" + std::string(name), unit, of(member));
+        }
+        template <class Type>
+        void bytes(std::string_view name, Type T::*member) const {
+            walk.visit<Type, true>(path + "/" + std::string(name), "-", of(member));
+        }
+        template <class Type>
+        Objects of(Type T::*member) const {
+            Objects found;
+            for (void* one : all) found.push_back(&(static_cast<T*>(one)->*member));
+            return found;
+        }
+    };
+
+    template <class T>
+    static Objects elements(const Objects& all) {
+        Objects found;
+        for (void* one : all)
+            for (auto& element : *static_cast<T*>(one)) found.push_back(&element);
+        return found;
+    }
+    void rows(const std::string& path, std::string_view unit, const ColumnOf& of, const Objects& all) {
+        std::vector<std::span<std::byte>> parts;
+        for (void* one : all) parts.emplace_back(static_cast<std::byte*>(one), of.row());
+        port_.column(path, unit, of, parts);
+    }
+    template <class T>
+    void blocks(const std::string& path, std::string_view unit, const Objects& all) {
+        using Row = std::remove_cvref_t<decltype(*std::declval<T&>().data())>;
+        std::vector<std::span<std::byte>> parts;
+        for (void* one : all) {
+            T& block = *static_cast<T*>(one);
+            parts.emplace_back(reinterpret_cast<std::byte*>(block.data()),
+                               static_cast<std::size_t>(block.size()) * sizeof(Row));
+        }
+        port_.column(path, unit, column_of<typename RowOf<Row>::Number>(RowOf<Row>::numbers), parts);
+    }
+    template <class T>
+    void resize(const std::string& path, const Objects& all) {
+        std::vector<std::uint64_t> counts;
+        for (void* one : all) counts.push_back(static_cast<T*>(one)->size());
+        port_.counts(path, counts);
+        if (port_.reads())
+            for (std::size_t n = 0; n < all.size(); ++n)
+                static_cast<T*>(all[n])->resize(static_cast<std::size_t>(counts[n]));
+    }
+    template <class T>
+    Objects those_there(const std::string& path, const Objects& all) {
+        std::vector<std::uint64_t> counts;
+        for (void* one : all) counts.push_back(static_cast<T*>(one)->has_value());
+        port_.counts(path, counts);
+        Objects there;
+        for (std::size_t n = 0; n < all.size(); ++n) {
+            T& one = *static_cast<T*>(all[n]);
+            if (counts[n] == 0) one.reset();
+            if (counts[n] != 0 && !one) {
+                if constexpr (requires { one.emplace(); })
+                    one.emplace();
+                else
+                    fail({"checkpoint " + path, "of the same scene", {}, "build the scene as it was"},
+                         "another");
+            }
+            if (one) there.push_back(&*one);
+        }
+        return there;
+    }
+    template <class T>
+    void engine(const std::string& path, T& engine) {
+        std::ostringstream now;
+        now << engine;
+        std::string text = now.str();
+        port_.text(path, text);
+        if (port_.reads()) std::istringstream(text) >> engine;
+    }
+
+    FieldPort& port_;
 };
 
 }  // namespace abrade::detail

@@ -135,18 +135,16 @@ public:
         return column;
     }
 
-    /// Writes numbers as they are, row after row of `components`, as dataset `group/name`; so that a whole
-    /// number stays one, and a float single.
-    template <class Number>
-    void write_numbers(std::string_view group, std::string_view name, std::string_view unit, int components,
-                       std::span<const Number> values) {
-        make_group(group);
+    /// Writes numbers as they are in memory, row after row, as dataset `name`: so that a whole number stays
+    /// one, and a float single.
+    void write_rows(std::string_view name, std::string_view unit, const detail::ColumnOf& of,
+                    std::span<const std::byte> values) {
+        const std::string whole{name};
+        make_group(name.substr(0, name.rfind('/')));
         const hdf5::Quiet quiet;
-        const std::string whole = join(group, name);
-        const auto wide = static_cast<hsize_t>(components);
-        const std::array<hsize_t, 2> shape{values.size() / wide, wide};
+        const std::array<hsize_t, 2> shape{values.size() / of.row(), static_cast<hsize_t>(of.numbers)};
         const hdf5::Handle space{H5Screate_simple(2, shape.data(), nullptr)};
-        const hid_t type = hdf5::type_of<Number>();
+        const hid_t type = hdf5::type_of(of);
         const hdf5::Handle set{
             H5Dcreate2(file_.get(), whole.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
         if (!set ||
@@ -154,24 +152,21 @@ public:
             throw_write(whole);
         write_attribute(whole, "unit", std::string{unit});
     }
-    /// Rows of a dataset that `write_numbers` wrote; InputError where there is none of these numbers.
-    template <class Number>
-    std::size_t rows(std::string_view name, int components) const {
+    /// Rows of a dataset that `write_rows` wrote; InputError where there is none of these numbers.
+    std::size_t count_rows(std::string_view name, const detail::ColumnOf& of) const {
         const hdf5::Quiet quiet;
-        return static_cast<std::size_t>(open_numbers<Number>(name, components).second);
+        return static_cast<std::size_t>(open_rows(name, of).second);
     }
     /// Reads it, as many values as `out` holds.
-    template <class Number>
-    void read_numbers(std::string_view name, int components, std::span<Number> out) const {
+    void read_rows(std::string_view name, const detail::ColumnOf& of, std::span<std::byte> out) const {
         const hdf5::Quiet quiet;
-        const auto [set, count] = open_numbers<Number>(name, components);
-        if (count * static_cast<hsize_t>(components) != out.size())
+        const auto [set, count] = open_rows(name, of);
+        if (count * of.row() != out.size())
             throw_missing(std::to_string(count) + " rows and not the " +
-                              std::to_string(out.size() / static_cast<std::size_t>(components)) +
-                              " that are asked for",
+                              std::to_string(out.size() / of.row()) + " that are asked for",
                           name);
         if (!out.empty() &&
-            H5Dread(set.get(), hdf5::type_of<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
+            H5Dread(set.get(), hdf5::type_of(of), H5S_ALL, H5S_ALL, H5P_DEFAULT, out.data()) < 0)
             throw FileError(hdf5::message("read", path_, name, hdf5::reason()));
     }
 
@@ -318,19 +313,17 @@ private:
                 static_cast<Real>(field.values.size()));
     }
 
-    template <class Number>
-    std::pair<hdf5::Handle, hsize_t> open_numbers(std::string_view name, int components) const {
+    std::pair<hdf5::Handle, hsize_t> open_rows(std::string_view name, const detail::ColumnOf& of) const {
         hdf5::Handle set{H5Dopen2(file_.get(), std::string{name}.c_str(), H5P_DEFAULT)};
         if (!set) throw_missing("no such dataset", name);
         const hdf5::Handle type{H5Dget_type(set.get())}, space{H5Dget_space(set.get())};
         std::array<hsize_t, 2> shape{0, 0};
-        if (H5Sget_simple_extent_ndims(space.get()) != 2 ||
-            H5Tequal(type.get(), hdf5::type_of<Number>()) <= 0)
+        if (H5Sget_simple_extent_ndims(space.get()) != 2 || H5Tequal(type.get(), hdf5::type_of(of)) <= 0)
             throw_missing("numbers of another kind", name);
         H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
-        if (shape[1] != static_cast<hsize_t>(components))
+        if (shape[1] != static_cast<hsize_t>(of.numbers))
             throw_missing(
-                "rows of " + std::to_string(shape[1]) + " numbers and not of " + std::to_string(components),
+                "rows of " + std::to_string(shape[1]) + " numbers and not of " + std::to_string(of.numbers),
                 name);
         return {std::move(set), shape[0]};
     }

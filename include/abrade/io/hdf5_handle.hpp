@@ -2,13 +2,14 @@
 // What every call of the HDF5 C library needs: an identifier that closes itself, silence, and one clear
 // reason.
 
+#include <abrade/io/column_of.hpp>
+
 #include <hdf5.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 namespace abrade {
@@ -57,22 +58,18 @@ private:
     hid_t id_ = H5I_INVALID_HID;
 };
 
-/// HDF5's name for a number of C++.
-template <class Number>
-hid_t type_of() noexcept {
-    static_assert(std::is_arithmetic_v<Number> && sizeof(Number) <= 8);
-    if constexpr (std::is_floating_point_v<Number>) {
-        return sizeof(Number) == 8 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
-    } else if constexpr (std::is_signed_v<Number>) {
-        return sizeof(Number) == 8   ? H5T_NATIVE_INT64
-               : sizeof(Number) == 4 ? H5T_NATIVE_INT32
-               : sizeof(Number) == 2 ? H5T_NATIVE_INT16
-                                     : H5T_NATIVE_INT8;
-    } else {
-        return sizeof(Number) == 8   ? H5T_NATIVE_UINT64
-               : sizeof(Number) == 4 ? H5T_NATIVE_UINT32
-               : sizeof(Number) == 2 ? H5T_NATIVE_UINT16
-                                     : H5T_NATIVE_UINT8;
+/// HDF5's name for the numbers of a column.
+inline hid_t type_of(const detail::ColumnOf& of) noexcept {
+    const auto by_size = [&](hid_t one, hid_t two, hid_t four, hid_t eight) {
+        return of.bytes == 1 ? one : of.bytes == 2 ? two : of.bytes == 4 ? four : eight;
+    };
+    switch (of.kind) {
+        case detail::NumberKind::real:
+            return of.bytes == 4 ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
+        case detail::NumberKind::whole:
+            return by_size(H5T_NATIVE_INT8, H5T_NATIVE_INT16, H5T_NATIVE_INT32, H5T_NATIVE_INT64);
+        default:
+            return by_size(H5T_NATIVE_UINT8, H5T_NATIVE_UINT16, H5T_NATIVE_UINT32, H5T_NATIVE_UINT64);
     }
 }
 

@@ -63,7 +63,7 @@ void save_state(const std::filesystem::path& path, const std::string& about, Sta
     try {
         Hdf5File file = Hdf5File::create(aside);
         (write_fields(file, parts.name, std::as_const(parts.object)), ...);
-        file.write_numbers<char>("about", "text", "-", 1, std::span<const char>(about));
+        file.write_rows("about/text", "-", detail::column_of<char>(1), std::as_bytes(std::span(about)));
         file.write_attribute({}, "pack_lanes", std::int64_t{pack_lanes});
         file.write_attribute({}, detail::state_version_name, detail::state_version);
         file.close();
@@ -101,8 +101,8 @@ void restore_state(const std::filesystem::path& path, const std::string& about, 
         refuse("it was saved by a program that works on " + std::to_string(value("pack_lanes")) +
                " numbers at a time, not " + std::to_string(pack_lanes) +
                "; go on with a program compiled for the same processor");
-    std::string its(file.rows<char>("about/text", 1), '\0');
-    file.read_numbers<char>("about/text", 1, std::span(its));
+    std::string its(file.count_rows("about/text", detail::column_of<char>(1)), '\0');
+    file.read_rows("about/text", detail::column_of<char>(1), std::as_writable_bytes(std::span(its)));
     if (its != about) {
         const auto [saved, asked] = detail::first_difference(its, about);
         refuse("it is about '" + saved + "', not '" + asked + "'; ask for the run that was saved");

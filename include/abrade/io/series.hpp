@@ -54,8 +54,8 @@ public:
         data_->close();
         data_ = Hdf5File::create(file_path(++files_));
     }
-    static auto fields() {
-        return std::tuple(field("clouds", &SeriesWriter::clouds_), field("files", &SeriesWriter::files_));
+    static void fields(auto&& field) {
+        field("clouds", &SeriesWriter::clouds_), field("files", &SeriesWriter::files_);
     }
     /// Clouds whose files are gone begin anew.
     void restored() {
@@ -144,12 +144,12 @@ private:
         std::fstream xdmf;
         std::streamoff end = 0;  ///< where the closing tags begin
 
-        static auto fields() {
-            return std::tuple(field("name", &Cloud::name), field("points", &Cloud::points),
-                              field("constants", &Cloud::constants), field("times", &Cloud::times),
-                              field("last_time", "s", &Cloud::last_time),
-                              field("constant_geometry", &Cloud::constant_geometry),
-                              field("constant_fields", &Cloud::constant_fields), field("end", &Cloud::end));
+        static void fields(auto&& field) {
+            field("name", &Cloud::name), field("points", &Cloud::points),
+                field("constants", &Cloud::constants), field("times", &Cloud::times),
+                field("last_time", "s", &Cloud::last_time),
+                field("constant_geometry", &Cloud::constant_geometry),
+                field("constant_fields", &Cloud::constant_fields), field("end", &Cloud::end);
         }
     };
     struct Item {

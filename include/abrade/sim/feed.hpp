@@ -112,10 +112,10 @@ public:
     /// Whether a stone is due at time t [s] that has not been found to have no place.
     bool due(Real t) const noexcept { return !waits_ && next_is_due(t); }
 
-    static auto fields() {
-        return std::tuple(field("random", &Feed::random_), field("next", &Feed::next_),
-                          field("supplied", "m3", &Feed::supplied_), field("count", &Feed::count_),
-                          field("waits", &Feed::waits_));
+    static void fields(auto&& field) {
+        field("random", &Feed::random_), field("next", &Feed::next_),
+            field("supplied", "m3", &Feed::supplied_), field("count", &Feed::count_),
+            field("waits", &Feed::waits_);
     }
 
 private:

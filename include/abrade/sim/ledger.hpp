@@ -39,9 +39,8 @@ struct Ledger {
     // losses of contacts with concrete, once for each side that is concrete
     Real concrete_lost_normal = 0, concrete_lost_sliding = 0;
 
-    static auto fields() {
-        return std::tuple(
-            field("kinetic", "J", &Ledger::kinetic), field("potential", "J", &Ledger::potential),
+    static void fields(auto&& field) {
+        field("kinetic", "J", &Ledger::kinetic), field("potential", "J", &Ledger::potential),
             field("stored_contacts", "J", &Ledger::stored_contacts),
             field("stored_bonds", "J", &Ledger::stored_bonds),
             field("kinetic_start", "J", &Ledger::kinetic_start),
@@ -60,7 +59,7 @@ struct Ledger {
             field("left_potential", "J", &Ledger::left_potential),
             field("left_stored", "J", &Ledger::left_stored),
             field("concrete_lost_normal", "J", &Ledger::concrete_lost_normal),
-            field("concrete_lost_sliding", "J", &Ledger::concrete_lost_sliding));
+            field("concrete_lost_sliding", "J", &Ledger::concrete_lost_sliding);
     }
 
     /// Drag force times (fluid - body velocity): turned into heat and turbulence.

@@ -100,13 +100,13 @@ public:
     /// Whether bodies are too fast for any skin that the period of space has room for.
     bool outrun() const noexcept { return outrun_; }
 
-    static auto fields() {
-        return std::tuple(field("skin", "m", &Lists::skin_), field("list_skin", "m", &Lists::list_skin_),
-                          field("inner_skin", "m", &Lists::inner_skin_), field("moved", "m", &Lists::moved_),
-                          field("seconds", "s", &Lists::seconds_), field("inner_life", &Lists::inner_life_),
-                          field("outrun", &Lists::outrun_), field("dt", "s", &Lists::dt_),
-                          field("age", &Lists::age_), bytes_field("near_sites", &Lists::near_sites_),
-                          field("built_at", "m", &Lists::built_at_), field("passive", &Lists::passive_));
+    static void fields(auto&& field) {
+        field("skin", "m", &Lists::skin_), field("list_skin", "m", &Lists::list_skin_),
+            field("inner_skin", "m", &Lists::inner_skin_), field("moved", "m", &Lists::moved_),
+            field("seconds", "s", &Lists::seconds_), field("inner_life", &Lists::inner_life_),
+            field("outrun", &Lists::outrun_), field("dt", "s", &Lists::dt_), field("age", &Lists::age_),
+            field.bytes("near_sites", &Lists::near_sites_), field("built_at", "m", &Lists::built_at_),
+            field("passive", &Lists::passive_);
     }
 
 private:

@@ -30,15 +30,14 @@ struct FreeFlight {
     Index held = 0;                                        ///< spheres that fly but for their candidates
     bool sound = true;                                     ///< all that landed is where numbers are finite
 
-    static auto fields() {
-        return std::tuple(field("allowed", &FreeFlight::allowed), field("kicks", "s", &FreeFlight::kicks),
-                          field("drifts", "s", &FreeFlight::drifts), field("area", "s2", &FreeFlight::area),
-                          field("last", "s", &FreeFlight::last), field("start", "s", &FreeFlight::start),
-                          field("now", "s", &FreeFlight::now), field("fastest", "m/s", &FreeFlight::fastest),
-                          field("hardest", "m/s2", &FreeFlight::hardest),
-                          field("margin", "m", &FreeFlight::margin),
-                          field("horizon", "s", &FreeFlight::horizon), field("held", &FreeFlight::held),
-                          field("sound", &FreeFlight::sound));
+    static void fields(auto&& field) {
+        field("allowed", &FreeFlight::allowed), field("kicks", "s", &FreeFlight::kicks),
+            field("drifts", "s", &FreeFlight::drifts), field("area", "s2", &FreeFlight::area),
+            field("last", "s", &FreeFlight::last), field("start", "s", &FreeFlight::start),
+            field("now", "s", &FreeFlight::now), field("fastest", "m/s", &FreeFlight::fastest),
+            field("hardest", "m/s2", &FreeFlight::hardest), field("margin", "m", &FreeFlight::margin),
+            field("horizon", "s", &FreeFlight::horizon), field("held", &FreeFlight::held),
+            field("sound", &FreeFlight::sound);
     }
 
     void note(Real kick, Real drift, Real time) noexcept {
@@ -87,12 +86,10 @@ struct Sleep {
         Real slowest2 = 0;            ///< square of the lowest speed in that time [m2/s2]
         Vec3 support = Vec3::Zero();  ///< of contacts and fluid, as it fell asleep [N]
         Real strongest = 0;           ///< of those forces and its weight [N]
-        static auto fields() {
-            return std::tuple(field("asleep", &Body::asleep), field("rouse", &Body::rouse),
-                              field("watched", &Body::watched), field("slow_for", "s", &Body::slow_for),
-                              field("slowest2", "m2/s2", &Body::slowest2),
-                              field("support", "N", &Body::support),
-                              field("strongest", "N", &Body::strongest));
+        static void fields(auto&& field) {
+            field("asleep", &Body::asleep), field("rouse", &Body::rouse), field("watched", &Body::watched),
+                field("slow_for", "s", &Body::slow_for), field("slowest2", "m2/s2", &Body::slowest2),
+                field("support", "N", &Body::support), field("strongest", "N", &Body::strongest);
         }
     };
 
@@ -106,12 +103,11 @@ struct Sleep {
     bool watch_all = false;    ///< bodies left: anybody may have lost support
     bool changed = false;      ///< who sleeps, since `stored_at_rest` was asked for
 
-    static auto fields() {
-        return std::tuple(field("speed", "m/s", &Sleep::speed), field("after", "s", &Sleep::after),
-                          field("toppling", "s/m^(1/2)", &Sleep::toppling), field("bodies", &Sleep::bodies),
-                          field("rests", &Sleep::rests), field("count", &Sleep::count),
-                          field("stirred", &Sleep::stirred), field("watch_all", &Sleep::watch_all),
-                          field("changed", &Sleep::changed));
+    static void fields(auto&& field) {
+        field("speed", "m/s", &Sleep::speed), field("after", "s", &Sleep::after),
+            field("toppling", "s/m^(1/2)", &Sleep::toppling), field("bodies", &Sleep::bodies),
+            field("rests", &Sleep::rests), field("count", &Sleep::count), field("stirred", &Sleep::stirred),
+            field("watch_all", &Sleep::watch_all), field("changed", &Sleep::changed);
     }
 
     bool asleep(Index body) const noexcept {

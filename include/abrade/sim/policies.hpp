@@ -23,11 +23,8 @@ struct Policies {
     [[no_unique_address]] D drag;
 
     /// Laws are what they are; a fluid that goes on may have much to list.
-    static auto fields() {
-        if constexpr (ListsFields<F>)
-            return std::tuple(field("fluid", &Policies::fluid));
-        else
-            return std::tuple();
+    static void fields(auto&& field) {
+        if constexpr (ListsFields<F>) field("fluid", &Policies::fluid);
     }
 };
 

@@ -43,13 +43,12 @@ struct RunOptions {
     /// save the simulation from (io/restart.hpp).
     std::function<bool()> stop{};
 
-    static auto fields() {
-        return std::tuple(
-            field("end_time", "s", &RunOptions::end_time), field("time_step", "s", &RunOptions::time_step),
+    static void fields(auto&& field) {
+        field("end_time", "s", &RunOptions::end_time), field("time_step", "s", &RunOptions::time_step),
             field("safety", &RunOptions::safety), field("observe_every", "s", &RunOptions::observe_every),
             field("skin", "m", &RunOptions::skin), field("free_flight", &RunOptions::free_flight),
             field("sleep_speed", "m/s", &RunOptions::sleep_speed),
-            field("sleep_after", "s", &RunOptions::sleep_after));
+            field("sleep_after", "s", &RunOptions::sleep_after);
     }
     bool asks_the_same_as(const RunOptions& o) const noexcept {
         return end_time == o.end_time && time_step == o.time_step && safety == o.safety &&
@@ -66,11 +65,10 @@ struct RunAtWork {
     Index steps = 0, done = 0;  ///< from then on
     bool under_way = false;
 
-    static auto fields() {
-        return std::tuple(field("options", &RunAtWork::options), field("begun", "s", &RunAtWork::begun),
-                          field("next_observation", "s", &RunAtWork::next_observation),
-                          field("steps", &RunAtWork::steps), field("done", &RunAtWork::done),
-                          field("under_way", &RunAtWork::under_way));
+    static void fields(auto&& field) {
+        field("options", &RunAtWork::options), field("begun", "s", &RunAtWork::begun),
+            field("next_observation", "s", &RunAtWork::next_observation), field("steps", &RunAtWork::steps),
+            field("done", &RunAtWork::done), field("under_way", &RunAtWork::under_way);
     }
 };
 

@@ -94,14 +94,13 @@ public:
         if (!world_) build_world();
     }
     /// All of it that lasts. Between steps, as in `RunOptions::stop`, and between runs.
-    static auto fields() {
-        return std::tuple(
-            field("world", &Simulation::world_), field("ledger", &Simulation::ledger_),
+    static void fields(auto&& field) {
+        field("world", &Simulation::world_), field("ledger", &Simulation::ledger_),
             field("last_good", &Simulation::last_good_), field("time", "s", &Simulation::time_),
             field("time_step", "s", &Simulation::time_step_), field("step", &Simulation::step_),
             field("remembered", &Simulation::remembered_), field("shortened", &Simulation::shortened_),
             field("opened", &Simulation::opened_), field("has_grains", &Simulation::has_grains_),
-            field("wall_seconds", "s", &Simulation::wall_seconds_), field("run", &Simulation::run_));
+            field("wall_seconds", "s", &Simulation::wall_seconds_), field("run", &Simulation::run_);
     }
     /// The same run goes on where it was; another one begins from there.
     void restored() noexcept { resumes_ = run_.under_way; }

@@ -31,10 +31,10 @@ struct SiteBodies {
     std::vector<char> worn;  ///< [site] whether it has worn since it last sank
     Real longest_way = 0;    ///< [m]
 
-    static auto fields() {
-        return std::tuple(field("body_of", &SiteBodies::body_of), field("place", "m", &SiteBodies::place),
-                          field("worn_out", &SiteBodies::worn_out), field("emptied", &SiteBodies::emptied),
-                          field("worn", &SiteBodies::worn));
+    static void fields(auto&& field) {
+        field("body_of", &SiteBodies::body_of), field("place", "m", &SiteBodies::place),
+            field("worn_out", &SiteBodies::worn_out), field("emptied", &SiteBodies::emptied),
+            field("worn", &SiteBodies::worn);
     }
 
     bool recede() const noexcept { return !way.empty(); }

@@ -20,14 +20,13 @@ struct Snapshot {
     std::vector<Real> fracture_rate;                         ///< [site] [-]
     std::vector<std::uint32_t> seen;                         ///< of Concrete::renew_fracture_rates
 
-    static auto fields() {
-        return std::tuple(field("time", "s", &Snapshot::time), field("step", &Snapshot::step),
-                          field("id", &Snapshot::id), field("kind", &Snapshot::kind),
-                          field("site", &Snapshot::site), field("position", "m", &Snapshot::position),
-                          field("velocity", "m/s", &Snapshot::velocity),
-                          field("angular_momentum", "kg m2/s", &Snapshot::angular_momentum),
-                          field("orientation", &Snapshot::orientation),
-                          field("fracture_rate", &Snapshot::fracture_rate), field("seen", &Snapshot::seen));
+    static void fields(auto&& field) {
+        field("time", "s", &Snapshot::time), field("step", &Snapshot::step), field("id", &Snapshot::id),
+            field("kind", &Snapshot::kind), field("site", &Snapshot::site),
+            field("position", "m", &Snapshot::position), field("velocity", "m/s", &Snapshot::velocity),
+            field("angular_momentum", "kg m2/s", &Snapshot::angular_momentum),
+            field("orientation", &Snapshot::orientation), field("fracture_rate", &Snapshot::fracture_rate),
+            field("seen", &Snapshot::seen);
     }
 };
 

@@ -59,22 +59,21 @@ struct State {
     Real gauge_volume = 0;         ///< solid, net downstream [m3]
     std::vector<char> past_gauge;  ///< [body]
 
-    static auto fields() {
-        return std::tuple(
-            field("policies", &State::policies), field("particles", &State::particles),
+    static void fields(auto&& field) {
+        field("policies", &State::policies), field("particles", &State::particles),
             field("store", &State::store), field("pace", &State::pace),
             field("pace_if_alone", &State::pace_if_alone), field("flight", &State::flight),
             field("sleep", &State::sleep), field("contacts", &State::contacts),
             field("network", &State::network), field("concrete", &State::concrete),
             field("sites", &State::sites), field("standing", &State::standing),
-            bytes_field("presses", &State::presses), field("weakened", &State::weakened),
+            field.bytes("presses", &State::presses), field("weakened", &State::weakened),
             field("worn_away", &State::worn_away), field("let_go_count", &State::let_go_count),
             field("pieces", &State::pieces), field("feed", &State::feed), field("accounts", &State::accounts),
             field("velocity_in_fluid", "m/s", &State::velocity_in_fluid),
             field("broken_tension", &State::broken_tension), field("broken_shear", &State::broken_shear),
             field("pattern_changed", &State::pattern_changed), field("loosened", &State::loosened),
             field("smallest_radius", "m", &State::smallest_radius), field("size_ratio", &State::size_ratio),
-            field("gauge_volume", "m3", &State::gauge_volume), field("past_gauge", &State::past_gauge));
+            field("gauge_volume", "m3", &State::gauge_volume), field("past_gauge", &State::past_gauge);
     }
 
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }

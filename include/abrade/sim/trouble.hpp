@@ -29,10 +29,9 @@ struct Trouble {
 /// Wall time of parts of a step [s], summed over threads.
 struct StepSeconds {
     Real contacts = 0, bonds = 0, motion = 0;
-    static auto fields() {
-        return std::tuple(field("contacts", "s", &StepSeconds::contacts),
-                          field("bonds", "s", &StepSeconds::bonds),
-                          field("motion", "s", &StepSeconds::motion));
+    static void fields(auto&& field) {
+        field("contacts", "s", &StepSeconds::contacts), field("bonds", "s", &StepSeconds::bonds),
+            field("motion", "s", &StepSeconds::motion);
     }
     StepSeconds& operator+=(const StepSeconds& o) noexcept {
         return contacts += o.contacts, bonds += o.bonds, motion += o.motion, *this;

@@ -115,9 +115,8 @@ public:
         });
     }
 
-    static auto fields() {
-        return std::tuple(
-            field("state", &World::state_), field("lists", &World::lists_), field("ledger", &World::ledger_),
+    static void fields(auto&& field) {
+        field("state", &World::state_), field("lists", &World::lists_), field("ledger", &World::ledger_),
             field("now", "s", &World::now_), field("time_step", "s", &World::time_step_),
             field("led_here", "s", &World::led_here_), field("kicked", "s", &World::kicked_),
             field("last_kick", "s", &World::last_kick_), field("evaluated", &World::evaluated_),
@@ -125,7 +124,7 @@ public:
             field("stored_bonds", "J", &World::stored_bonds_),
             field("stored_at_rest", "J", &World::stored_at_rest_), field("unlooked", &World::unlooked_),
             field("too_deep", &World::too_deep_), field("timed", &World::timed_),
-            field("fluid_seconds", "s", &World::fluid_seconds_));
+            field("fluid_seconds", "s", &World::fluid_seconds_);
     }
 
 private:

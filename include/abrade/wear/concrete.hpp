@@ -26,8 +26,8 @@ struct WaitingSites {
     std::vector<Index> sites{};  ///< room for each site of the lattice
     Index count = 0;
 
-    static auto fields() {
-        return std::tuple(field("sites", &WaitingSites::sites), field("count", &WaitingSites::count));
+    static void fields(auto&& field) {
+        field("sites", &WaitingSites::sites), field("count", &WaitingSites::count);
     }
 
     /// True for the first.
@@ -189,13 +189,12 @@ public:
     const Lattice& lattice() const noexcept { return lattice_; }
     Index sites() const noexcept { return static_cast<Index>(lattice_.sites.size()); }
 
-    static auto fields() {
-        return std::tuple(
-            field("worn", &Concrete::worn_), field("gone", &Concrete::gone_),
-            field("wears", &Concrete::wears_), field("left", &Concrete::left_),
-            field("held_worn_out", &Concrete::held_worn_out_), field("exhausted", &Concrete::exhausted_),
-            field("waiting", &Concrete::waiting_), field("newly_worn_out", &Concrete::newly_worn_out_),
-            field("waits_since", "s", &Concrete::waits_since_), field("by_column", &Concrete::by_column_));
+    static void fields(auto&& field) {
+        field("worn", &Concrete::worn_), field("gone", &Concrete::gone_), field("wears", &Concrete::wears_),
+            field("left", &Concrete::left_), field("held_worn_out", &Concrete::held_worn_out_),
+            field("exhausted", &Concrete::exhausted_), field("waiting", &Concrete::waiting_),
+            field("newly_worn_out", &Concrete::newly_worn_out_),
+            field("waits_since", "s", &Concrete::waits_since_), field("by_column", &Concrete::by_column_);
     }
 
 private:
@@ -205,11 +204,10 @@ private:
         Real fractured = 0, overflow = 0, waiting = 0;       ///< [m3]
         Real collision = 0, largest = 0;                     ///< by the last collision, by any one [m3]
         Real last = -std::numeric_limits<Real>::infinity();  ///< when something was worn [s]
-        static auto fields() {
-            return std::tuple(
-                field("fractured", "m3", &Worn::fractured), field("overflow", "m3", &Worn::overflow),
+        static void fields(auto&& field) {
+            field("fractured", "m3", &Worn::fractured), field("overflow", "m3", &Worn::overflow),
                 field("waiting", "m3", &Worn::waiting), field("collision", "m3", &Worn::collision),
-                field("largest", "m3", &Worn::largest), field("last", "s", &Worn::last));
+                field("largest", "m3", &Worn::largest), field("last", "s", &Worn::last);
         }
     };
 

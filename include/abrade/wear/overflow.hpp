@@ -158,7 +158,7 @@ public:
         return top < end ? sites_[top] : -1;
     }
 
-    static auto fields() { return std::tuple(field("top", &SitesByColumn::top_)); }
+    static void fields(auto&& field) { field("top", &SitesByColumn::top_); }
 
 private:
     std::vector<Index> sites_;            ///< column by column, in each from the top down
