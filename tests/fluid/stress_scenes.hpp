@@ -34,6 +34,7 @@ Scene<Dim> box(std::string name, CellNumber<Dim> cells, Point<Dim> size = Point<
     Scene<Dim> s{.name = std::move(name)};
     s.params.grid.cells = cells;
     s.params.grid.spacing = size;
+    s.params.tolerance = 2e-8;  // a cell may hold ten times that too much
     s.params.gravity[Dim - 1] = -g;
     s.params.wall_law.kind = WallLaw::Kind::slip;
     s.fall = cells[Dim - 1] * size[Dim - 1];

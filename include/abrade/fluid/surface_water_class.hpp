@@ -253,7 +253,7 @@ private:
         if constexpr (is_height) {
             return {.steepest = params.steepest_surface, .most_overturning = params.most_overturning};
         } else {
-            const Real smallest = std::clamp(params.tolerance, 1e-6, 1e-4);
+            const Real smallest = std::clamp(params.tolerance, 1e-8, 1e-4);
             return {.courant = std::max(0.5, params.courant),
                     .smallest_void = smallest,
                     .most_surplus = 10 * smallest};

@@ -2,6 +2,7 @@
 // The four slots of a simulation as one type.
 
 #include <abrade/bond/bond_law.hpp>
+#include <abrade/core/fields.hpp>
 #include <abrade/coupling/drag.hpp>
 #include <abrade/wear/wear_law.hpp>
 
