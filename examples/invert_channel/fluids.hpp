@@ -16,10 +16,11 @@ namespace abrade::examples {
 /// How a run ended, and what is left of it.
 struct ChannelRun {
     ChannelResults results{};
-    std::string printed;     ///< what the simulation says of itself
-    std::string went_wrong;  ///< empty: nothing
-    int code = 0;            ///< for the shell
-    Snapshot last_good{};    ///< where it went wrong
+    std::string printed;           ///< what the simulation says of itself
+    std::string went_wrong;        ///< empty: nothing
+    int code = 0;                  ///< for the shell
+    bool owns_checkpoint = false;  ///< it is of this run
+    Snapshot last_good{};          ///< where it went wrong
     /// Of the water then: name, unit and one number for each cell.
     struct WaterColumn {
         std::string name, unit;

@@ -182,7 +182,8 @@ int run(const Options& options) {
         unfinished = error.what();
     }
     const std::filesystem::path place = folder.publish();
-    if (!results.stopped) std::filesystem::remove(files.checkpoint);
+    std::error_code ignored;
+    if (!results.stopped && run.owns_checkpoint) std::filesystem::remove(files.checkpoint, ignored);
 
     std::cout << run.printed;
     if (results.stopped)

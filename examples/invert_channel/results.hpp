@@ -104,7 +104,7 @@ struct PassedHistory {
 };
 
 struct ChannelResults {
-    bool stopped = false;  ///< by Ctrl-C
+    bool stopped = false;  ///< by a signal
     bool worn_through = false;
     Real wall_s = 0, simulated_s = 0, represented_h = 0, time_step_s = 0, stable_time_step_s = 0;
     Index steps = 0, stones = 0, stones_fed = 0, concrete_spheres = 0, bonds_broken = 0;

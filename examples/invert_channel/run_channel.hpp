@@ -51,18 +51,21 @@ ChannelRun run_channel(const ChannelConfig& config, const ChannelFiles& files, F
             sim.build();
             with_parts([&](auto... parts) { interruption.restore(parts...); });
         }
-        Progress progress("invert channel", config.end_time);
+        Progress progress("invert channel", config.end_time, "s", sim.time());
+        bool asked = false;  // to stop, and what there was then is saved
         const auto stop = [&] {
             std::string note = std::to_string(sim.feed()->supplied_stones()) + " stones fed";
             if constexpr (AdvancingFluid<Fluid>)
                 if (sim.fluid_model().time() < 0)
                     note = "water settles for " + short_text(-sim.fluid_model().time()) + " s";
             progress.update(sim.time(), note);
-            if (interrupt.requested() || interruption.due()) {
+            if (bed.done()) return true;
+            asked = interrupt.requested();
+            if (asked || interruption.due()) {
                 recorder.close_file();
                 with_parts([&](auto... parts) { interruption.save(parts...); });
             }
-            return interrupt.requested() || bed.done();
+            return asked;
         };
         const auto watch = [&](const auto& now) {
             if (now.steps() == 0) look_at(now.fluid_model(), true);
@@ -87,7 +90,9 @@ ChannelRun run_channel(const ChannelConfig& config, const ChannelFiles& files, F
             run.went_wrong = error.what(), run.code = 1;
         }
         history = recorder.take_history();
+        run.results.stopped = asked;
     }
+    run.owns_checkpoint = interruption.owns_checkpoint();
     if (run.code != 0) {
         run.last_good = sim.last_good();
         const auto& flow = sim.fluid_model();
@@ -101,8 +106,10 @@ ChannelRun run_channel(const ChannelConfig& config, const ChannelFiles& files, F
         return run;
     }
     look_at(sim.fluid_model(), false);
+    const bool stopped = run.results.stopped;
     run.results = make_results(config, sim, std::move(history), bed);
-    run.results.stopped = interrupt.requested();
+    run.results.stopped = stopped;
+    interruption.clear_left();
     std::ostringstream printed;
     printed << sim;
     run.printed = printed.str();

@@ -44,7 +44,7 @@ same_results "after $kill kills" whole killed
 [ ! -e killed.checkpoint.h5 ] || fail "a run that came to its end leaves its checkpoint"
 
 # --- what is lost is what came after the last checkpoint: no more than that time, and what a save takes
-"$program" "${base[@]}" --set run.checkpoint_every=$every --out young > young.log 2>&1 &
+"$program" "${base[@]}" --threads 1 --set run.checkpoint_every=$every --out young > young.log 2>&1 &
 pid=$!
 sleep 2.5
 kill -9 $pid || fail "the run is too short for this test"
@@ -53,7 +53,7 @@ age=$(($(date +%s%N) / 1000000 - $(date -r young.checkpoint.h5 +%s%N) / 1000000)
 [ $age -lt 1000 ] || fail "the last checkpoint is $age ms old, $every min are allowed"
 
 # --- SIGTERM: results so far, a checkpoint, and on from there
-"$program" "${base[@]}" --out ended > ended.log 2>&1 &
+"$program" "${base[@]}" --threads 1 --out ended > ended.log 2>&1 &
 pid=$!
 sleep 1
 kill -TERM $pid
@@ -75,6 +75,7 @@ refused() { # refused WHAT REGEX OPTION...
 }
 refused "no checkpoint" "no checkpoint .*refused.checkpoint.h5" "${base[@]}"
 cp kept.h5 refused.checkpoint.h5
+(flock 9; refused "a run that is under way" "under way" "${base[@]}") 9> refused.checkpoint.h5.lock
 refused "another run" "sediment.rate" "${base[@]}" --set sediment.rate=0.001
 head -c 100000 kept.h5 > refused.checkpoint.h5
 refused "truncated" "cannot (open|read) .*refused.checkpoint.h5.*truncated" "${base[@]}"

@@ -23,8 +23,8 @@ void check(const std::vector<Scene<Dim>>& scenes) {
         // At most 4e-3 was measured; 1e-3 was wanted.
         CHECK(seen.gained < 0.01);
         CHECK(seen.lost < 1e-12);  // round-off
-        // Ten times the tolerance of 2e-8 may stay by design, and what the last projection has left comes to it: up
-        // to four times as much was seen.
+        // Ten times the tolerance of 2e-8 may stay by design, and what the last projection has left comes to
+        // it: up to four times as much was seen.
         CHECK(seen.overfull < 1e-6);
         // A cell is wet from half full on: round-off of the pressure decides when.
         CHECK(seen.asymmetry < 0.1);

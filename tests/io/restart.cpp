@@ -19,11 +19,15 @@ namespace {
 template <class Sim>
 void append_state(std::vector<Real>& all, const Sim& sim) {
     const Particles& p = sim.particles();
-    all.push_back(sim.time()), all.push_back(sim.steps()), all.push_back(sim.sediment_passed());
+    all.insert(all.end(), {sim.time(), Real(sim.steps()), sim.sediment_passed(), Real(sim.bonds_broken()),
+                           sim.last_good().time});
     for (std::size_t b = 0; b < p.position.size(); ++b) {
         all.push_back(p.id[b]);
-        for (const Vec3* v : {&p.position[b], &p.velocity[b], &p.angular_momentum[b], &p.force[b]})
+        for (const Vec3* v :
+             {&p.position[b], &p.velocity[b], &p.angular_momentum[b], &p.force[b], &p.torque[b]})
             all.insert(all.end(), v->data(), v->data() + 3);
+        const auto& turned = p.orientation[b].coeffs();
+        all.insert(all.end(), turned.data(), turned.data() + 4);
     }
     sim.ledger().visit([&](std::string_view, Real value) { all.push_back(value); });
     for (Index s = 0; s < sim.concrete().sites(); ++s) all.push_back(sim.concrete().fracture(s));

@@ -45,6 +45,7 @@ void check_restarts(const std::string& name, const Make& make, const std::vector
     auto whole = make();
     std::vector<std::vector<Real>> seen;
     for (const Real time : times) whole.advance(time), seen.push_back(state(whole));
+    const int before = thread_count();
     for (const int threads : {1, 2}) {
         CAPTURE(threads);
         for (std::size_t n = 0; n < times.size(); ++n) {
@@ -57,7 +58,7 @@ void check_restarts(const std::string& name, const Make& make, const std::vector
             save_state(path, name, StatePart{"fluid", part});
         }
     }
-    set_thread_count(0);
+    set_thread_count(before);
 }
 
 template <int Dim>
@@ -115,6 +116,17 @@ TEST_CASE("a full box") {
         return flow;
     };
     check_restarts("cavity", make, {0.5, 1.0, 3.0});
+}
+
+TEST_CASE("depth-averaged water that flows in below deep water") {
+    const auto make = [] {
+        ShallowWaterParams<1> params;
+        params.high = {10}, params.cells = {50};
+        params.sides[0][0] = WaterSide::inflow(0.5);
+        params.surface = [](Real x, Real) { return 1 + 0.2 * std::exp(-square(x - 3)); };
+        return ShallowWater<1>(params);
+    };
+    check_restarts("inflow", make, {0.2, 0.5, 1.5});
 }
 
 TEST_CASE("depth-averaged water") {

@@ -37,6 +37,10 @@ public:
         depth.assign(flux.size(), 0.0), speed = bed = depth;
     }
 
+    static void fields(auto&& field) {
+        field("depth", "m", &ShallowSide::depth), field("speed", "m/s", &ShallowSide::speed);
+    }
+
     bool is_inflow() const noexcept { return side_.kind == WaterSide::Kind::inflow; }
     bool is_outflow() const noexcept { return side_.kind == WaterSide::Kind::outflow; }
     bool is_wall() const noexcept { return side_.kind == WaterSide::Kind::wall; }

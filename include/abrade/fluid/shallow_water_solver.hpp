@@ -92,8 +92,9 @@ public:
     }
 
     static void fields(auto&& field) {
-        field("tiles", &ShallowSolver::tiles_), field("states", &ShallowSolver::states_),
-            field("current", &ShallowSolver::current_), field("swiftest", "1/s", &ShallowSolver::swiftest_),
+        field("tiles", &ShallowSolver::tiles_), field("sides", &ShallowSolver::sides_),
+            field("states", &ShallowSolver::states_), field("current", &ShallowSolver::current_),
+            field("swiftest", "1/s", &ShallowSolver::swiftest_),
             field("volume_at_start", "m3", &ShallowSolver::volume_at_start_),
             field("volume_in", "m3", &ShallowSolver::volume_in_), field("steps", &ShallowSolver::steps_),
             field("repeated", &ShallowSolver::repeated_);

@@ -8,7 +8,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <locale>
+#include <optional>
 #include <ostream>
+#include <random>
 #include <span>
 #include <sstream>
 #include <string>
@@ -58,19 +61,21 @@ template <class T>
 concept IsResizable = requires(T& all) { typename T::value_type; all.resize(std::size_t{}); all.data(); };
 /// Rows next to each other, as many as there are: a field over a grid.
 template <class T>
-concept IsBlock = !IsResizable<T> && requires(T& all) { all.data(); all.size(); requires IsRow<std::remove_cvref_t<decltype(*all.data())>>; };
+concept IsBlock = !IsResizable<T> &&
+                  requires(T& all) { all.data(); all.size(); requires IsRow<std::remove_cvref_t<decltype(*all.data())>>; };
 template <class T>
 concept IsPerAxis = !IsBlock<T> && !IsResizable<T> && requires(T& all) { all.begin(); all.end(); };
 template <class T>
 concept IsOptional = requires(T& one) { one.has_value(); one.reset(); *one; };
 template <class T>
-concept IsEngine = requires(T& engine, std::ostream& out) { typename T::result_type; engine.discard(1); out << engine; };
+concept IsEngine =
+    requires(T& engine, std::ostream& out) { typename T::result_type; engine.discard(1); out << engine; };
 /// Has something to do once its fields have been read.
 template <class T>
 concept IsToldOfRestart = requires(T& one) { one.restored(); };
 // clang-format on
 
-/// What becomes of the numbers that a walk comes to: they are written, or read.
+/// Writes or reads the columns that a walk comes to.
 class FieldPort {
 public:
     FieldPort() = default;
@@ -102,7 +107,7 @@ public:
 private:
     using Objects = std::vector<void*>;
 
-    /// `as_bytes`: what is made of no numbers that are known here is taken as it lies in memory.
+    /// With `as_bytes` a type that is unknown here is copied as it lies in memory.
     template <class T, bool as_bytes>
     [[gnu::cold, gnu::noinline]] void visit(const std::string& path, std::string_view unit,
                                             const Objects& all) {
@@ -223,13 +228,26 @@ private:
     template <class T>
     void engine(const std::string& path, T& engine) {
         std::ostringstream now;
+        now.imbue(std::locale::classic());
         now << engine;
         std::string text = now.str();
         port_.text(path, text);
-        if (port_.reads()) std::istringstream(text) >> engine;
+        if (!port_.reads()) return;
+        std::istringstream saved(text);
+        saved.imbue(std::locale::classic());
+        if (!(saved >> engine))
+            fail({"checkpoint " + path, "the state of a random engine", {}, "save anew"}, "another");
     }
 
     FieldPort& port_;
 };
+
+static_assert(IsRow<Vec3> && IsRow<std::array<Real, 2>> && !IsRow<std::string>);
+static_assert(IsResizable<std::vector<Vec3>> && IsResizable<std::string> && !IsResizable<Real>);
+static_assert(!IsBlock<std::vector<Real>> && !IsBlock<Real>);
+static_assert(IsPerAxis<std::array<std::vector<Real>, 2>> && !IsPerAxis<std::vector<Real>>);
+static_assert(IsOptional<std::optional<Vec3>> && !IsOptional<Vec3>);
+static_assert(IsEngine<std::mt19937_64> && !IsEngine<std::string>);
+static_assert(!IsToldOfRestart<Vec3>);
 
 }  // namespace abrade::detail

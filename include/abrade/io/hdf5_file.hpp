@@ -161,7 +161,7 @@ public:
     void read_rows(std::string_view name, const detail::ColumnOf& of, std::span<std::byte> out) const {
         const hdf5::Quiet quiet;
         const auto [set, count] = open_rows(name, of);
-        if (count * of.row() != out.size())
+        if (count != out.size() / of.row())
             throw_missing(std::to_string(count) + " rows and not the " +
                               std::to_string(out.size() / of.row()) + " that are asked for",
                           name);

@@ -7,7 +7,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -30,12 +32,14 @@ namespace detail {
 inline constexpr std::int64_t state_version = 1;
 inline constexpr std::string_view state_version_name = "abrade_state_version";
 
-/// Asks the disk to have the file for good.
+/// Asks the disk to have a file, or a folder's list of files, for good: some say only then that they are
+/// full.
 inline void settle_on_disk(const std::filesystem::path& path) {
     const int file = ::open(path.c_str(), O_RDONLY);
-    if (file < 0) return;
-    ::fsync(file);
-    ::close(file);
+    const bool done = file >= 0 && ::fsync(file) == 0;
+    const int why = errno;
+    if (file >= 0) ::close(file);
+    if (!done) throw FileError(std::strerror(why));
 }
 
 /// The first line in which two texts differ.
@@ -69,6 +73,7 @@ void save_state(const std::filesystem::path& path, const std::string& about, Sta
         file.close();
         detail::settle_on_disk(aside);
         std::filesystem::rename(aside, path);
+        detail::settle_on_disk(std::filesystem::absolute(path).parent_path());
     } catch (const std::exception& error) {
         std::error_code ignored;
         std::filesystem::remove(aside, ignored);
@@ -76,21 +81,24 @@ void save_state(const std::filesystem::path& path, const std::string& about, Sta
     }
 }
 
-/// Reads them back into parts that were built as the saved ones were: a simulation of the same scene and laws
-/// after `build()`. It then goes on, with any number of threads, to the same bits. Throws InputError where
-/// the file is no such checkpoint, is broken, of another version, of another machine's packs or about
-/// something else; the parts are then no good.
+/// Reads the fields of a checkpoint into parts that were built as the saved ones were: a simulation of the
+/// same scene and laws after `build()`. It then goes on, with any number of threads, to the same bits. Throws
+/// InputError where the file is no such checkpoint, is broken, of another version, of another machine's packs
+/// or about something else; the parts are then no good.
 template <class... T>
 void restore_state(const std::filesystem::path& path, const std::string& about, StatePart<T>... parts) {
     const Hdf5File file = Hdf5File::open(path);
     const auto refuse = [&](const std::string& why) {
         throw InputError("cannot go on from '" + path.string() + "': " + why);
     };
-    const Attributes attributes = file.attributes();
-    const auto value = [&](std::string_view name) {
-        const auto found = attributes.find(name);
-        const auto* number = found == attributes.end() ? nullptr : std::get_if<std::int64_t>(&found->second);
-        return number ? *number : std::int64_t{-1};
+    const auto value = [&](std::string_view name) -> std::int64_t {
+        try {
+            const AttributeValue found = file.attribute({}, name);
+            const auto* number = std::get_if<std::int64_t>(&found);
+            return number ? *number : -1;
+        } catch (const InputError&) {
+            return -1;
+        }
     };
     if (value(detail::state_version_name) < 0)
         refuse("it is an HDF5 file but not what save_state() wrote; name a checkpoint of a run");
@@ -107,7 +115,11 @@ void restore_state(const std::filesystem::path& path, const std::string& about, 
         const auto [saved, asked] = detail::first_difference(its, about);
         refuse("it is about '" + saved + "', not '" + asked + "'; ask for the run that was saved");
     }
-    (read_fields(file, parts.name, parts.object), ...);
+    try {
+        (read_fields(file, parts.name, parts.object), ...);
+    } catch (const FileError& error) {
+        refuse(std::string("it is damaged: ") + error.what());
+    }
 }
 
 /// When to save: so many seconds of wall time after the last time.

@@ -1,5 +1,5 @@
 #pragma once
-// Point clouds over time for ParaView: one HDF5 file of columns, and per cloud one XDMF 3 file that names
+// Point clouds over time for ParaView: HDF5 files of columns, and per cloud one XDMF 3 file that names
 // them.
 
 #include <abrade/core/fields.hpp>
@@ -14,6 +14,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -22,11 +23,12 @@
 
 namespace abrade {
 
-/// Writes `stem.h5` and, for each cloud, `stem_<cloud>.xdmf`: a temporal collection of Polyvertex grids.
-/// One file per cloud, because ParaView then gives each its own filters and colours.
-/// In ParaView choose "Xdmf3 Reader T": the older "XDMF Reader" reads the same file, but complains of times
-/// without points. The number of points may change from one time to the next. After every write both files
-/// are complete on disk: a run that is killed leaves a series that opens and ends at the last write.
+/// Writes `stem.h5` (after each `begin_file` another one) and, for each cloud, `stem_<cloud>.xdmf`: a
+/// temporal collection of Polyvertex grids. One file per cloud, because ParaView then gives each its own
+/// filters and colours. In ParaView choose "Xdmf3 Reader T": the older "XDMF Reader" reads the same file, but
+/// complains of times without points. The number of points may change from one time to the next. After every
+/// write both files are complete on disk: a run that is killed leaves a series that opens and ends at the
+/// last write.
 ///
 /// A series goes on in a later run: `begin_file` before its fields are saved, and a writer made with
 /// `goes_on` that reads them, at a stem to which the files have been copied. What was written in between is
@@ -51,8 +53,8 @@ public:
     /// Closes the data file, if there is anything in it, and goes on in another.
     void begin_file() {
         if (!std::exchange(written_, false)) return;
-        data_->close();
-        data_ = Hdf5File::create(file_path(++files_));
+        data().close();
+        begin_data(files_ + 1);
     }
     static void fields(auto&& field) {
         field("clouds", &SeriesWriter::clouds_), field("files", &SeriesWriter::files_);
@@ -61,8 +63,12 @@ public:
     void restored() {
         for (Cloud& cloud : clouds_) {
             std::error_code error;
-            std::filesystem::resize_file(xdmf_path(cloud.name), static_cast<std::uintmax_t>(cloud.end),
-                                         error);
+            if (std::filesystem::file_size(xdmf_path(cloud.name), error) <
+                static_cast<std::uintmax_t>(cloud.end))
+                error = std::make_error_code(std::errc::no_such_file_or_directory);
+            if (!error)
+                std::filesystem::resize_file(xdmf_path(cloud.name), static_cast<std::uintmax_t>(cloud.end),
+                                             error);
             if (error) {
                 begin(cloud);
             } else {
@@ -70,7 +76,7 @@ public:
                 append(cloud, {});
             }
         }
-        data_ = Hdf5File::create(file_path(files_));
+        begin_data(files_);
     }
     /// All that there is of a series at a stem.
     static std::vector<std::filesystem::path> files_at(const std::filesystem::path& stem) {
@@ -130,7 +136,7 @@ public:
     }
 
     /// Closes the data file. What was written stays readable in any case.
-    void close() { data_->close(); }
+    void close() { data().close(); }
 
 private:
     struct Cloud {
@@ -159,6 +165,18 @@ private:
 
     static constexpr std::string_view closing_tags_ = "    </Grid>\n  </Domain>\n</Xdmf>\n";
 
+    /// In the middle of a run: a file that cannot be made is no wrong input.
+    void begin_data(int number) {
+        try {
+            data_ = Hdf5File::create(file_path(files_ = number));
+        } catch (const InputError& error) {
+            throw FileError(error.what());
+        }
+    }
+    Hdf5File& data() {
+        if (!data_) throw std::logic_error("SeriesWriter: read its fields before it goes on");
+        return *data_;
+    }
     std::filesystem::path file_path(int number) const {
         return with_suffix(number == 1 ? ".h5" : "-" + std::to_string(number) + ".h5");
     }
@@ -208,7 +226,7 @@ private:
     }
 
     Item store(const std::string& group, const FieldView& field) {
-        data_->write(group, field, storage_);
+        data().write(group, field, storage_);
         written_ = true;
         return {&field, group + "/" + std::string{field.name}};
     }
@@ -237,7 +255,7 @@ private:
         text += positions == nullptr ? c.constant_geometry : geometry(store(group, *positions));
         for (const FieldView& field : fields) text += attribute(store_checked(c, group, field, points));
         text += c.constant_fields + "      </Grid>\n";
-        data_->flush();  // the data first: the XDMF never names what is not on disk
+        data().flush();  // the data first: the XDMF never names what is not on disk
         append(c, text);
         c.last_time = time;
         ++c.times;
@@ -248,15 +266,15 @@ private:
     std::string topology(std::size_t points) {
         const std::string count = std::to_string(points);
         const std::string list = "vertices/of_" + count;
-        if (!data_->contains(list)) {
+        if (!data().contains(list)) {
             std::vector<Real> numbers(points);
             std::iota(numbers.begin(), numbers.end(), Real{0});
-            data_->write("vertices", {"of_" + count, "-", 1, numbers}, {StoredNumber::int32, storage_.gzip});
+            data().write("vertices", {"of_" + count, "-", 1, numbers}, {StoredNumber::int32, storage_.gzip});
         }
         return "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + count +
                "\" NodesPerElement=\"1\"><DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" "
                "Dimensions=\"" +
-               count + "\">" + escape(data_->path().filename().string()) + ":/" + list +
+               count + "\">" + escape(data().path().filename().string()) + ":/" + list +
                "</DataItem></Topology>\n";
     }
 

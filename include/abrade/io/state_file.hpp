@@ -4,7 +4,9 @@
 #include <abrade/io/field_walk.hpp>
 #include <abrade/io/hdf5_file.hpp>
 
+#include <cstdint>
 #include <cstring>
+#include <filesystem>
 
 namespace abrade {
 
@@ -36,10 +38,11 @@ private:
     Hdf5File& file_;
 };
 
-/// What is there already and has no size to be given must be as large.
+/// A member whose size is fixed must be as large as its column.
 class StateReader : public FieldPort {
 public:
-    explicit StateReader(const Hdf5File& file) : file_(file) {}
+    explicit StateReader(const Hdf5File& file)
+        : file_(file), most_(std::filesystem::file_size(file.path())) {}
 
     bool reads() const noexcept override { return true; }
     void column(const std::string& path, std::string_view /*unit*/, const ColumnOf& of,
@@ -58,6 +61,13 @@ public:
     void counts(const std::string& path, std::vector<std::uint64_t>& counts) override {
         file_.read_rows(counts_of(path), column_of<std::uint64_t>(1),
                         std::as_writable_bytes(std::span(counts)));
+        std::uint64_t left = most_;  // a row takes a byte at least
+        for (const std::uint64_t count : counts) {
+            if (count > left)
+                fail({"checkpoint " + path, "no more rows than the file has bytes", {}, "save anew"},
+                     std::to_string(count));
+            left -= count;
+        }
     }
     void text(const std::string& path, std::string& text) override {
         text.resize(file_.count_rows(path, column_of<char>(1)));
@@ -66,6 +76,7 @@ public:
 
 private:
     const Hdf5File& file_;
+    std::uint64_t most_;
 };
 
 }  // namespace detail

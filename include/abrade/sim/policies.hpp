@@ -25,6 +25,8 @@ struct Policies {
 
     /// Laws are what they are; a fluid that goes on may have much to list.
     static void fields(auto&& field) {
+        static_assert(ListsFields<F> || !AdvancingFluid<F>,
+                      "a fluid that changes must list its fields to be saved");
         if constexpr (ListsFields<F>) field("fluid", &Policies::fluid);
     }
 };

@@ -33,9 +33,10 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
         return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
     };
     out << "\ntime     " << short_text(sim.time_) << " s in " << sim.step_ << " steps of "
-        << short_text(sim.time_step_) << " s (stable: " << short_text(sim.stable_time_step().seconds) << " s, set by "
-        << sim.stable_time_step().limit << ")\nbodies   " << sim.particles().bodies() << ", spheres "
-        << sim.particles().spheres() << ", near pairs " << sim.world_->contacts().census().near << "\n";
+        << short_text(sim.time_step_) << " s (stable: " << short_text(sim.stable_time_step().seconds)
+        << " s, set by " << sim.stable_time_step().limit << ")\nbodies   " << sim.particles().bodies()
+        << ", spheres " << sim.particles().spheres() << ", near pairs "
+        << sim.world_->contacts().census().near << "\n";
     if (sim.concrete().sites() > 0)
         out << "concrete " << sim.concrete().sites() << " spheres, " << sim.bonds_broken()
             << " bonds broken, worn volume " << short_text(sim.concrete().worn_volume()) << " m3\n";

@@ -50,11 +50,23 @@ struct RunOptions {
             field("sleep_speed", "m/s", &RunOptions::sleep_speed),
             field("sleep_after", "s", &RunOptions::sleep_after);
     }
-    bool asks_the_same_as(const RunOptions& o) const noexcept {
-        return end_time == o.end_time && time_step == o.time_step && safety == o.safety &&
-               observe_every == o.observe_every && skin == o.skin && free_flight == o.free_flight &&
-               sleep_speed == o.sleep_speed && sleep_after == o.sleep_after;
+    bool asks_the_same_as(const RunOptions& other) const {
+        Same same{*this, other};
+        fields(same);
+        return same.so_far;
     }
+
+private:
+    struct Same {
+        const RunOptions &one, &other;
+        bool so_far = true;
+        void operator()(std::string_view /*name*/, auto member) {
+            so_far = so_far && one.*member == other.*member;
+        }
+        void operator()(std::string_view name, std::string_view /*unit*/, auto member) {
+            (*this)(name, member);
+        }
+    };
 };
 
 /// A run at work: how it was asked for, and how far it is.

@@ -88,7 +88,7 @@ public:
     // --- saving and going on later ---------------------------------------------------------------
 
     /// Makes of the scene what a run would begin with, without running: what a restart reads into
-    /// (io/restart.hpp). Throws InputError as `run` does.
+    /// (io/restart.hpp). Throws InputError where the scene cannot be used.
     void build() {
         static_assert(!std::same_as<C, ContactLawIsMissing>, "a simulation needs a contact law");
         if (!world_) build_world();
@@ -102,7 +102,7 @@ public:
             field("opened", &Simulation::opened_), field("has_grains", &Simulation::has_grains_),
             field("wall_seconds", "s", &Simulation::wall_seconds_), field("run", &Simulation::run_);
     }
-    /// The same run goes on where it was; another one begins from there.
+    /// A run that was under way goes on if it is asked for again; another one begins at the restored time.
     void restored() noexcept { resumes_ = run_.under_way; }
 
     // --- what came of it -----------------------------------------------------------------------

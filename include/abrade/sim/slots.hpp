@@ -17,6 +17,7 @@ struct AfterRejectedLaw {
     AfterRejectedLaw wear(auto&&...) { return {}; }
     AfterRejectedLaw fluid(auto&&...) { return {}; }
     void run(const RunOptions&, auto&&...) {}
+    void build() {}
 };
 
 }  // namespace detail
