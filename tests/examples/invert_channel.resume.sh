@@ -5,6 +5,7 @@ set -euo pipefail
 program="$1"
 kills=50
 failures=0
+export GOMP_SPINCOUNT=3000  # tests share their cores
 
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 # What two runs of the same may differ in: wall times, and how many threads there were.
@@ -61,7 +62,7 @@ wait $pid || fail "SIGTERM: exit code $?"
 grep -q -- '--resume goes on' ended.log || fail "SIGTERM: no word of how to go on: $(cat ended.log)"
 grep -q '"stopped_early": true' ended/summary.json || fail "SIGTERM: the results do not say so"
 cp ended.checkpoint.h5 kept.h5
-"$program" "${base[@]}" --out ended --resume > ended.log 2>&1 || fail "after SIGTERM it does not go on: $(cat ended.log)"
+"$program" "${base[@]}" --threads 1 --out ended --resume > ended.log 2>&1 || fail "after SIGTERM it does not go on: $(cat ended.log)"
 same_results "after SIGTERM" whole ended
 
 # --- what is refused: exit 2, one message, nothing written, the checkpoint left alone
@@ -86,14 +87,14 @@ refused "another HDF5 file" "not what save_state\(\) wrote" "${base[@]}"
 
 # --- a full disk ends the run, and the last checkpoint is whole
 mkdir -p small
-if mount -t tmpfs -o size=24m none small 2> /dev/null; then
+if mount -t tmpfs -o size=12m none small 2> /dev/null; then
     code=0
-    (cd small && "$program" "${base[@]}" --set run.output_every=0.001 --set run.checkpoint_every=$every --out full > ../full.log 2>&1) || code=$?
+    (cd small && "$program" "${base[@]}" --threads 1 --set run.output_every=0.002 --set run.checkpoint_every=$every --out full > ../full.log 2>&1) || code=$?
     [ $code -eq 1 ] || fail "a full disk: exit code $code: $(cat full.log)"
     grep -qiE 'no space|disk' full.log || fail "a full disk is not named: $(cat full.log)"
     if [ -e small/full.checkpoint.h5 ]; then
         cp small/full.checkpoint.h5 refused.checkpoint.h5
-        "$program" "${base[@]}" --set run.output_every=0.001 --out refused --resume > refused.log 2>&1 || fail "the checkpoint of a full disk: $(cat refused.log)"
+        "$program" "${base[@]}" --threads 1 --set run.output_every=0.002 --out refused --resume > refused.log 2>&1 || fail "the checkpoint of a full disk: $(cat refused.log)"
     else
         fail "a full disk: no checkpoint is left"
     fi
