@@ -86,7 +86,7 @@ TEST_CASE("what is no checkpoint, cut off, of another version or another process
     CHECK_THROWS_WITH_AS(restored("wide.h5"), doctest::Contains("numbers at a time"), InputError);
 
     save("cut.h5", water(10000));
-    for (const std::uintmax_t part : {1, 2, 3}) {
+    for (const std::uintmax_t part : {1u, 2u, 3u}) {
         std::filesystem::copy_file("cut.h5", "part.h5", std::filesystem::copy_options::overwrite_existing);
         std::filesystem::resize_file("part.h5", std::filesystem::file_size("cut.h5") * part / 4);
         CHECK_THROWS_WITH_AS(restored("part.h5"), doctest::Contains("truncated"), InputError);
