@@ -108,7 +108,7 @@ nlohmann::json data_of(const water_flows::Vortices& f) {
     return {{"u", f.u}, {"v", f.v}, {"u_at", {0, 0.5}}, {"v_at", {0.5, 0}}};
 }
 nlohmann::json data_of(const water_flows::Collapse& f) {
-    return {{"time", f.time}, {"floor", f.floor}, {"depth", f.depth}};
+    return {{"time", f.time}, {"floor", f.floor}};
 }
 nlohmann::json data_of(const water_flows::Bump& f) { return {{"x", f.x}, {"level", f.surface}}; }
 
