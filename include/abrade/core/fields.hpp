@@ -27,13 +27,12 @@ struct AnyField {
 };
 
 /// A class that lists, once, what of it lasts from step to step:
-///     static void fields(auto&& field) { field("velocity", "m/s", &X::velocity_), field("count",
-///     &X::count_); }
-/// What it makes of its parameters as it is built is not among them, nor what each step finds anew. Output,
-/// checkpoints and restarts read that list. A member may be a number, a vector or array of numbers, a class
-/// that lists its own fields, a text, a random engine, and a vector, array or optional of these; with
-/// `field.bytes(name, member)` also what is to lie in a file as it lies in memory: packs, and what laws
-/// remember.
+///     static void fields(auto&& field) { field("velocity", "m/s", &X::velocity_); }
+/// What it makes of its parameters as it is built is not among them, nor what each step finds anew.
+/// Checkpoints, restarts and what is kept of a run that failed read that list. A member may be a number, a
+/// vector or array of numbers, a class that lists its own fields, a text, a random engine, and a vector,
+/// array or optional of these; with `field.bytes(name, member)` also what is to lie in a file as it lies in
+/// memory: packs, and what laws remember.
 template <class T>
 concept ListsFields = requires {
     T::fields(AnyField{});
