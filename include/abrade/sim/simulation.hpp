@@ -1,7 +1,9 @@
 #pragma once
 // One simulation from four policies: the builder, the loop and its guards.
 
+#include <abrade/bond/bond_law.hpp>
 #include <abrade/dem/linear_spring.hpp>
+#include <abrade/fluid/fluid_model.hpp>
 #include <abrade/sim/run_options.hpp>
 #include <abrade/sim/scene_limits.hpp>
 #include <abrade/sim/slots.hpp>
