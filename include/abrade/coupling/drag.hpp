@@ -71,7 +71,11 @@ static_assert(!DragLaw<NoParams>);
 struct FluidLoad {
     Vec3 drag = Vec3::Zero();            ///< [N]
     Vec3 buoyancy = Vec3::Zero();        ///< [N]
+    Vec3 flow = Vec3::Zero();            ///< all at once, by a fluid that resolves the body [N]
+    Vec3 torque = Vec3::Zero();          ///< about the centroid, by such a fluid [N m]
     Vec3 fluid_velocity = Vec3::Zero();  ///< that the drag was reckoned with [m/s]
+
+    Vec3 force() const noexcept { return drag + buoyancy + flow; }
 };
 
 /// The share of a sphere's volume below the surface when its centre is `depth` below it: a spherical cap.
@@ -103,7 +107,9 @@ FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Imm
     const Real area = share * pi * square(radius);
     // Written with Re C_d so that it stays finite at rest.
     const Real factor = speed > 0 ? 0.5 * surroundings.density * law.coefficient(reynolds) * area * speed : 0;
-    return {factor * relative, -share * surroundings.density * body.volume * gravity, surroundings.velocity};
+    return {.drag = factor * relative,
+            .buoyancy = -share * surroundings.density * body.volume * gravity,
+            .fluid_velocity = surroundings.velocity};
 }
 
 }  // namespace abrade

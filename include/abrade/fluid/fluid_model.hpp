@@ -3,6 +3,7 @@
 // The null policy.
 
 #include <abrade/core/law.hpp>
+#include <abrade/fluid/flow_body.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -68,6 +69,18 @@ concept AdvancingFluid = FluidModel<F> && requires(F& fluid, const F& still) {
     fluid.advance(Real{});
     { still.time() } noexcept -> std::same_as<Real>;
     { still.stable_step() } -> std::same_as<FluidStep>;
+};
+// clang-format on
+
+// clang-format off
+/// A fluid that flows around bodies and finds what it does to them, together with its own pressure.
+/// `advance(to_time, bodies)`: bodies as they stand at `to_time`, moved there by all that acts on them, the load
+/// that they had from the last exchange included; gives them the velocity that they have together with the fluid,
+/// and the load that stands for the fluid until the next exchange. Solids lead: they take their steps up to the end
+/// of the fluid's next one, then the fluid follows. `sample` is not asked.
+template <class F>
+concept ResolvedFluid = AdvancingFluid<F> && requires(F& fluid, std::span<FlowBody> bodies) {
+    fluid.advance(Real{}, bodies);
 };
 // clang-format on
 

@@ -8,6 +8,7 @@
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/momentum.hpp>
 #include <abrade/fluid/outflows.hpp>
+#include <abrade/fluid/solids_in_flow.hpp>
 #include <abrade/fluid/step_limits.hpp>
 #include <abrade/fluid/surface_heights.hpp>
 #include <abrade/fluid/thin_water.hpp>
@@ -38,11 +39,13 @@ struct HeightSurface {};
 /// With a TurbulenceModel the viscosity grows by that of eddies, found at the end of each step from the
 /// velocity as the pressure left it.
 template <int Dim = 3, class Surface = FreeSurface, AdvectionScheme Scheme = Limited, class State = Real,
-          TurbulenceModel Turbulence = NoTurbulence>
+          TurbulenceModel Turbulence = NoTurbulence, SolidsInFlow Solids = NoSolids>
 class GridFluid {
     static constexpr bool is_height = std::same_as<Surface, HeightSurface>;
     static constexpr bool has_surface = is_height || std::same_as<Surface, FreeSurface>;
     static_assert(!has_surface || std::same_as<State, Real>, "a surface is kept in double precision");
+    static_assert(!Solids::present || (Dim == 3 && std::same_as<State, Real> && !has_surface),
+                  "solids that move: in three dimensions, in double precision, in a full box");
 
 public:
     static constexpr std::string_view name = "GridFluid";
@@ -50,9 +53,9 @@ public:
     using Liquid = std::conditional_t<is_height, HeightOfFluid<Dim>, VolumeOfFluid<Dim>>;
 
     /// Throws InputError where parameters make no flow, and what given functions throw.
-    explicit GridFluid(Params params, Turbulence turbulence = {})
+    explicit GridFluid(Params params, Turbulence turbulence = {}, Solids solids = {})
         : params_((params.validate(), std::move(params))), turbulence_(std::move(turbulence)),
-          grid_(std::make_shared<const Grid<Dim>>(params_.grid)),
+          solids_(std::move(solids)), grid_(std::make_shared<const Grid<Dim>>(params_.grid)),
           sides_(*grid_, gliding_sides(params_.sides, params_.wall_law), params_.side_velocity,
                  params_.start_time),
           projection_(*grid_, params_.sides), velocity_(face_field<Dim, State>(layout())), stage_(velocity_),
@@ -88,6 +91,10 @@ public:
         } else {
             saved_velocity_ = velocity_;
         }
+        if constexpr (Solids::present) {
+            mixture_ = velocity_;
+            find_pressure_of_weight(1e-12);  // what bodies feel first
+        }
     }
 
     const Params& params() const noexcept { return params_; }
@@ -101,6 +108,7 @@ public:
     const Field<State>& eddy_viscosity() const noexcept requires Turbulence::has_eddies {
         return eddies_->field();
     }
+    const Solids& solids() const noexcept { return solids_; }
     Index wet_cells() const noexcept { return projection_.wet_cells(); }
     Real time() const noexcept { return time_; }  ///< [s]
     const auto& last_projection() const noexcept { return report_; }
@@ -132,6 +140,10 @@ public:
             if (steps <= 1) time_ = to_time;
         }
     }
+
+    /// The same among bodies that stand at `to_time` as they are given, and came there straight
+    /// (ResolvedFluid). Throws as that does, and leaves the flow as it was before the step that went wrong.
+    void advance(Real to_time, std::span<FlowBody> bodies) requires Solids::present;
 
     /// One step of dt [s]. Throws FluidError where it is longer than `stable_step` or goes wrong, and leaves
     /// the flow as it was.
@@ -224,6 +236,8 @@ public:
         } else {
             field("saved_velocity", "m/s", &GridFluid::saved_velocity_);
         }
+        if constexpr (Solids::present)
+            field("mixture", "m/s", &GridFluid::mixture_), field("solids", &GridFluid::solids_);
     }
     void restored() {
         if constexpr (has_surface) water_->show(projection_);
@@ -341,10 +355,12 @@ private:
 
     Params params_;
     [[no_unique_address]] Turbulence turbulence_;
+    [[no_unique_address]] Solids solids_;
     std::shared_ptr<const Grid<Dim>> grid_;  ///< shared among copies, parts of which point to it
     VelocitySides<Dim> sides_;
     Projection<Dim, State> projection_;
     FaceField<Dim, State> velocity_, stage_, saved_velocity_;
+    std::conditional_t<Solids::present, FaceField<Dim, State>, Nothing> mixture_{};
     Field<State> pressure_, saved_pressure_;
     std::conditional_t<has_surface, detail::WaterRecord<Dim, Liquid>, Nothing> record_{};
     WallFriction<Dim> side_friction_;  ///< of a full box

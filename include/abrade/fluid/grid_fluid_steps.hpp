@@ -5,8 +5,9 @@
 
 namespace abrade {
 
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step(Real dt) {
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step(Real dt) {
     require_positive(dt, "GridFluid.step: dt", "s");
     refuse_beyond_stable(dt);
     sides_.keep(velocity_);
@@ -33,8 +34,46 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step(Real dt) {
     if constexpr (has_surface) heights_.find(*grid_, water_->rows(), water_->held());
 }
 
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-void GridFluid<Dim, Surface, Scheme, State, Turbulence>::refuse_beyond_stable(Real dt) const {
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
+    Real to_time, std::span<FlowBody> bodies) requires Solids::present {
+    require_finite(to_time, "GridFluid.advance: to_time", "s");
+    if (!(time_ < to_time)) return;
+    std::vector<FlowBody> now(bodies.begin(), bodies.end());
+    std::vector<Sphere> spheres;
+    for (const FlowBody& body : bodies)
+        spheres.insert(spheres.end(), body.spheres.begin(), body.spheres.end());
+    while (time_ < to_time) {
+        const Real left = to_time - time_;
+        const Real steps = std::max(std::ceil(left / stable_step().seconds - 1e-9), 1.0);
+        const Real dt = left / steps, after = left - dt;
+        auto sphere = spheres.begin();
+        for (std::size_t b = 0; b < now.size(); ++b) {
+            const Vec3 back = steps > 1 ? Vec3(-after * bodies[b].velocity) : Vec3(Vec3::Zero());
+            now[b].position = bodies[b].position + back;
+            now[b].spheres = {sphere, bodies[b].spheres.size()};
+            for (const Sphere& s : bodies[b].spheres) *sphere++ = {s.centre + back, s.radius};
+        }
+        solids_.place(*grid_, params_.sides, now, nullptr);
+        projection_.fill_box(solids_);
+        step(dt);
+        for (std::size_t b = 0; b < now.size(); ++b) {
+            const FlowBody& found = solids_.bodies()[b];
+            now[b].velocity = found.velocity, now[b].angular_velocity = found.angular_velocity;
+        }
+        if (steps <= 1) time_ = to_time;
+    }
+    solids_.hand_over();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        bodies[b].velocity = now[b].velocity, bodies[b].angular_velocity = now[b].angular_velocity;
+        bodies[b].load = solids_.bodies()[b].load;
+    }
+}
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::refuse_beyond_stable(Real dt) const {
     std::string cause;
     try {
         const FluidStep stable = stable_step();
@@ -50,8 +89,9 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::refuse_beyond_stable(Re
 
 /// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage_`
 /// how water at rest is accelerated [m/s2].
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-void GridFluid<Dim, Surface, Scheme, State, Turbulence>::find_pressure_of_weight(Real tolerance) {
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::find_pressure_of_weight(Real tolerance) {
     pressure_.fill(0);
     for (auto& component : stage_) component.fill(0);
     const Point<Dim> falls = params_.acceleration(time_);
@@ -60,22 +100,30 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::find_pressure_of_weight
         stage_[a].fill(falls[a]);
         sides_.close(stage_[a], a);
     }
-    water_->clear_walls(stage_);
-    carry_weight(stage_, falls);
-    outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1], true});
+    if constexpr (has_surface) {
+        water_->clear_walls(stage_);
+        carry_weight(stage_, falls);
+        outflows_.push(stage_, pressure_, projection_, {1, -falls[Dim - 1], true});
+    }
     projection_.project(stage_, pressure_, {1, tolerance});
-    water_->clear_air(stage_);
+    if constexpr (has_surface) water_->clear_air(stage_);
     finish(stage_);
 }
 
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step_full(Real dt) {
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real dt) {
     const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
     if (!params_.steady_sides) sides_.set_time(time_ + dt);
     saved_pressure_ = pressure_;  // the velocity is kept by the second stage
     sides_.fill_cells(pressure_);
     const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
-        Stage s{by, by, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
+        const FaceField<Dim, State>* carrier = &by;
+        if constexpr (Solids::present) {
+            if (kept > 0) mixture_ = by, solids_.mix(mixture_);
+            carrier = &mixture_;
+        }
+        Stage s{by, *carrier, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
         advance(projection_.faces(), s);
         sides_.leave(result);
     };
@@ -88,13 +136,20 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step_full(Real dt) {
     side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
     std::swap(velocity_, saved_velocity_);
     if (!params_.steady_sides) sides_.fill(velocity_);
+    if constexpr (Solids::present) solids_.force(velocity_, pressure_, {params_.density, dt, nu(), falls});
     project({dt, params_.tolerance, false, nullptr, late_.pace(dt)});
-    if (late_.brief(dt)) pressure_ = saved_pressure_;  // what pushes so briefly is none to go on with
     finish(velocity_);
+    if constexpr (Solids::present) {
+        mixture_ = velocity_;
+        solids_.settle(velocity_, pressure_);
+        finish(velocity_);
+    }
+    if (late_.brief(dt)) pressure_ = saved_pressure_;  // what pushes so briefly is none to go on with
 }
 
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step_below_surface(Real dt) {
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surface(Real dt) {
     auto& water = *water_;
     if (record_.keep(velocity_, pressure_, water, late_, dt)) {
         finish(velocity_);
@@ -149,19 +204,21 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::step_below_surface(Real
 }
 
 /// What is left beyond `most_left` is solved for once more: single precision may have lost its way.
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-void GridFluid<Dim, Surface, Scheme, State, Turbulence>::project(
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::project(
     typename Projection<Dim, State>::Demand demand) {
-    report_ = projection_.project(velocity_, pressure_, demand);
+    report_ = projection_.project(velocity_, pressure_, demand, solids_);
     if (report_.after <= most_left()) return;
     demand.push = false;
-    const auto first = std::exchange(report_, projection_.project(velocity_, pressure_, demand));
+    const auto first = std::exchange(report_, projection_.project(velocity_, pressure_, demand, solids_));
     report_.iterations += first.iterations, report_.rounds += first.rounds;
 }
 
 /// Back to what a step that went wrong began with.
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-void GridFluid<Dim, Surface, Scheme, State, Turbulence>::restore() {
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::restore() {
     if constexpr (has_surface) {
         record_.restore(velocity_, pressure_, *water_);
         water_->find(projection_, pressure_);
@@ -176,8 +233,9 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::restore() {
     }
 }
 
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-void GridFluid<Dim, Surface, Scheme, State, Turbulence>::check(Real dt) {
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::check(Real dt) {
     Real size = 0;
     for (int a = 0; a < Dim; ++a) size = std::max(size, grid_->largest(a));
     // Without a surface and an outflow the pressure is known but for a constant, and takes no volume.
@@ -195,9 +253,10 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence>::check(Real dt) {
     throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);
 }
 
-template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence>
-typename GridFluid<Dim, Surface, Scheme, State, Turbulence>::EnergyAccount::View
-GridFluid<Dim, Surface, Scheme, State, Turbulence>::energy_view() const {
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+typename GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::EnergyAccount::View
+GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::energy_view() const {
     const Field<State>* eddies = nullptr;
     if constexpr (Turbulence::has_eddies) eddies = &eddies_->field();
     if constexpr (has_surface) {

@@ -1,7 +1,8 @@
 #pragma once
 // Conjugate gradients preconditioned by geometric multigrid, for the pressure.
 
-#include <abrade/fluid/poisson.hpp>
+#include <abrade/fluid/coarse_poisson.hpp>
+#include <abrade/fluid/solids_in_flow.hpp>
 #include <abrade/fluid/wavefront.hpp>
 
 namespace abrade {
@@ -57,9 +58,10 @@ public:
 
     /// Coarse operators from the finest.
     void build() {
-        close_periodic(levels_[0].matrix);
+        detail::close_periodic(levels_[0].matrix);
         detail::parallel_planes(levels_[0].runs, [&](int plane) { levels_[0].matrix.complete(plane); });
-        for (std::size_t l = 0; l + 1 < levels_.size(); ++l) coarsen(levels_[l], levels_[l + 1]);
+        for (std::size_t l = 0; l + 1 < levels_.size(); ++l)
+            detail::coarsen(levels_[l].matrix, levels_[l].paired, levels_[l + 1].matrix, levels_[l + 1].runs);
         for (Level& level : levels_) level.share_out();
         floating_ = levels_.back().matrix.dirichlet[levels_.back().matrix.layout.at({})] == 0;
     }
@@ -71,7 +73,8 @@ public:
 
     /// Fills `solution()` from `right_side()`, which is overwritten, until the residual's norm is at most
     /// `target` or `limit` iterations are done.
-    Report solve(Real target, int limit) {
+    template <class Solids = const NoSolids>
+    Report solve(Real target, int limit, [[maybe_unused]] Solids& solids = no_solids) {
         Level& fine = levels_[0];
         const Poisson<Dim>& a = fine.matrix;
         if (floating_) remove_mean();
@@ -88,7 +91,8 @@ public:
             const Real rho = cycle(0);
             const float beta = rho_before > 0 ? static_cast<float>(rho / rho_before) : 0;
             rho_before = rho;
-            const Real curvature = search_along(a, beta);
+            Real curvature = search_along(a, beta);
+            if constexpr (Solids::present) curvature += solids.add_product(search_, product_);
             if (!(curvature > 0) || !(rho > 0)) {
                 // What is not a number must not outlive the solution that it came from.
                 for (Level& level : levels_) level.x.fill(0), level.b.fill(0);
@@ -124,96 +128,6 @@ private:
             colour_runs = odd ? detail::PlaneRuns{0, l.planes()} : runs;
         }
     };
-
-    static void close_periodic(Poisson<Dim>& m) {
-        // The upper face of the last cell is the lower face of the first.
-        const Layout<Dim>& l = m.layout;
-        for (int a = 0; a < Dim; ++a) {
-            if (!m.periodic[a]) continue;
-            if (l.cells[a] == 1) m.face[a].fill(0);  // a cell has no exchange with itself
-            const Offset around = l.cells[a] * l.stride[a];
-            for_face(l, a, [&](Offset c) { m.face[a][c + around] = m.face[a][c]; });
-        }
-    }
-    /// Calls body(offset) for the cells at the lower end of an axis.
-    static void for_face(const Layout<Dim>& l, int axis, auto&& body) {
-        CellNumber<Dim> cell{};
-        const auto walk = [&](auto&& self, int a) -> void {
-            if (a == Dim) return body(l.at(cell));
-            for (int i = 0; i < (a == axis ? 1 : l.cells[a]); ++i) {
-                cell[a] = i;
-                self(self, a + 1);
-            }
-        };
-        walk(walk, 0);
-    }
-
-    static void coarsen(const Level& fine, Level& coarse) {
-        const Poisson<Dim>& f = fine.matrix;
-        Poisson<Dim>& c = coarse.matrix;
-        const Layout<Dim>&lf = f.layout, &lc = c.layout;
-        c.amid = f.amid;
-        for (int a = 0; a < Dim; ++a) {
-            if (!fine.paired[a]) continue;
-            for (int b = 0; b < Dim; ++b) c.amid[b] *= a == b ? 0.5f : 2.0f;
-        }
-        /// Fine numbers that make up a coarse one.
-        const auto children = [&](int a, int i) {
-            const int first = fine.paired[a] ? 2 * i : i;
-            return RowRange{first, std::min(first + (fine.paired[a] ? 2 : 1), lf.cells[a])};
-        };
-        detail::parallel_planes(coarse.runs, [&](int coarse_plane) {
-            const RowRange planes = children(outer, coarse_plane);
-            for (int coarse_row = 0; coarse_row < lc.rows_per_plane(); ++coarse_row) {
-                const RowRange rows = Dim == 3 ? children(Dim - 1, coarse_row) : RowRange{0, 1};
-                RowRange all;
-                for (int plane = planes.begin; plane < planes.end; ++plane)
-                    for (int row = rows.begin; row < rows.end; ++row) all = hull(all, f.range(plane, row));
-                if (fine.paired[inner] && !all.empty()) all = {all.begin / 2, (all.end + 1) / 2};
-                all = hull(all, c.range(coarse_plane, coarse_row));
-                c.look_at(coarse_plane, coarse_row, all);
-                if (all.empty()) continue;
-                const Offset to = lc.row_start(coarse_plane, coarse_row);
-                for (auto& component : c.face)
-                    std::fill_n(component.data() + to + all.begin, all.length() + 1, 0.0f);
-                std::fill_n(c.dirichlet.data() + to + all.begin, all.length(), 0.0f);
-                for (int plane = planes.begin; plane < planes.end; ++plane)
-                    for (int row = rows.begin; row < rows.end; ++row) gather(fine, coarse, {plane, row}, to);
-            }
-        });
-        close_periodic(c);
-        detail::parallel_planes(coarse.runs, [&](int plane) { c.complete(plane); });
-    }
-
-    struct RowNumber {
-        int plane, row;
-    };
-    /// Adds what a fine row conducts to the coarse row that starts at `to`.
-    static void gather(const Level& fine, Level& coarse, RowNumber at, Offset to) {
-        const Poisson<Dim>& f = fine.matrix;
-        const RowRange r = f.range(at.plane, at.row);
-        const Offset from = f.layout.row_start(at.plane, at.row);
-        const bool pairs = fine.paired[inner];
-        const auto parent = [&](int i) { return pairs ? i / 2 : i; };
-        const float* const dirichlet = f.dirichlet.data() + from;
-        float* const tied = coarse.matrix.dirichlet.data() + to;
-        for (int i = r.begin; i < r.end; ++i) tied[parent(i)] += 0.5f * dirichlet[i];
-        for (int a = 0; a < Dim; ++a) {
-            const float* const face = f.face[a].data() + from;
-            float* const sum = coarse.matrix.face[a].data() + to;
-            if (a == inner) {
-                if (pairs)
-                    for (int j = (r.begin + 1) / 2; j < (r.end + 1) / 2; ++j) sum[j] += 0.5f * face[2 * j];
-                else
-                    for (int i = r.begin; i < r.end; ++i) sum[i] += face[i];
-                continue;
-            }
-            const int number = a == outer ? at.plane : at.row;
-            if (fine.paired[a] && number % 2 != 0) continue;  // inside the coarse cell
-            const float share = fine.paired[a] ? 0.5f : 1.0f;
-            for (int i = r.begin; i < r.end; ++i) sum[parent(i)] += share * face[i];
-        }
-    }
 
     /// x of level l from its b, one V-cycle; returns b . x.
     Real cycle(std::size_t l) {

@@ -1,13 +1,11 @@
 #pragma once
 // Makes a velocity free of divergence, and finds the pressure that does it.
 
-#include <abrade/fluid/level_table.hpp>
 #include <abrade/fluid/multigrid.hpp>
+#include <abrade/fluid/net_outflow.hpp>
 #include <abrade/fluid/water_cells.hpp>
 
-#include <bit>
 #include <cstdint>
-#include <type_traits>
 
 namespace abrade {
 
@@ -20,26 +18,30 @@ template <int Dim, class State>
 class Projection {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner,
                          vertical = Grid<Dim>::vertical;
-    using Bits = std::conditional_t<sizeof(State) == 8, std::int64_t, std::int32_t>;
 
 public:
     /// A box full of water.
     Projection(const Grid<Dim>& grid, const Sides<Dim>& sides)
-        : grid_(&grid), sides_(sides), multigrid_(grid.layout(), mean_size(grid), sides.periodic_axes()) {
+        : grid_(&grid), sides_(sides), outflow_(grid),
+          multigrid_(grid.layout(), mean_size(grid), sides.periodic_axes()) {
         for (int b = 0; b < Dim; ++b) {
             const auto level_along = [b](int k) { return b == vertical ? k : 0; };
-            area_[b] = Table(grid, [&](int k) { return area(b, k); });
-            per_size_[b] = Table(grid, [&](int k) { return 1 / grid.size(b, level_along(k)); });
             per_gap_[b] = Table(grid, [&](int k) { return 1 / grid.gap(b, level_along(k)); });
             conductance_[b] = detail::LevelTable<Dim, float>(
                 grid, [&](int k) { return area(b, k) / grid.gap(b, level_along(k)); });
         }
         for (auto& f : faces_) f = WetRows<Dim>(grid.layout());
-        Field<std::uint8_t> wet(grid.layout().total, 0);
-        const auto rows = WetRows<Dim>::whole(grid.layout());
-        grid.for_each([&](const CellNumber<Dim>&, Offset c) { wet[c] = 1; });
+        fill_box();
+    }
+
+    /// All cells are wet.
+    template <class Solids = const NoSolids>
+    void fill_box(Solids& solids = no_solids) {
+        Field<std::uint8_t> wet(grid_->layout().total, 0);
+        const auto rows = WetRows<Dim>::whole(grid_->layout());
+        grid_->for_each([&](const CellNumber<Dim>&, Offset c) { wet[c] = 1; });
         const std::vector<OpenFace> open = outflows(wet);
-        set({wet, rows, open});
+        set({wet, rows, open}, solids);
     }
 
     /// Faces of wet cells at sides where water leaves.
@@ -59,7 +61,8 @@ public:
     }
 
     /// Takes over which cells are wet; builds the operator and its coarser ones.
-    void set(const WaterCells<Dim>& water) {
+    template <class Solids = const NoSolids>
+    void set(const WaterCells<Dim>& water, [[maybe_unused]] Solids& solids = no_solids) {
         open_.assign(water.open.begin(), water.open.end());
         open_area_ = water.open_area;
         open_volume_ = water.open_volume;
@@ -71,7 +74,9 @@ public:
         });
         for (const OpenFace& open : open_)
             m.dirichlet[open.cell] += static_cast<float>(face_area(open) * std::abs(open.slope));
+        if constexpr (Solids::present) solids.close(m);
         multigrid_.build();
+        if constexpr (Solids::present) solids.keep_wet(m);
         find_faces();
     }
 
@@ -102,12 +107,14 @@ public:
 
     /// `u`: normal components at the sides set, ghosts not needed. `pressure` over density [m2/s2], 0 in dry
     /// cells, grows by phi / dt; with `push` its gradient is taken from u first.
-    Report project(FaceField<Dim, State>& u, Field<State>& pressure, const Demand& asked) {
+    template <class Solids = const NoSolids>
+    Report project(FaceField<Dim, State>& u, Field<State>& pressure, const Demand& asked,
+                   Solids& solids = no_solids) {
         surplus_ = asked.surplus;
         step_ = asked.step, pace_ = std::max(asked.step, asked.pace);
         const Real tolerance = asked.tolerance;
         Report report;
-        Real norm = asked.push ? correct(u, pressure, true) : start(u);
+        Real norm = asked.push ? correct(u, pressure, true, solids) : start(u);
         const Real unit =
             wet_cells_ > 0 ? pace_ / (mean_volume() * std::sqrt(static_cast<Real>(wet_cells_))) : 0;
         report.before = report.after = norm * unit;
@@ -115,11 +122,11 @@ public:
         while (report.after > tolerance && report.rounds < most_rounds) {
             // Half of what is allowed, since single precision promises more than it keeps.
             const auto solved =
-                multigrid_.solve(std::max(0.5 * tolerance / unit, 1e-5 * norm), most_iterations);
+                multigrid_.solve(std::max(0.5 * tolerance / unit, 1e-5 * norm), most_iterations, solids);
             report.iterations += solved.iterations;
             ++report.rounds;
             const Real last = norm;
-            norm = correct(u, pressure, false);
+            norm = correct(u, pressure, false, solids);
             report.after = norm * unit;
             if (!(norm < last)) break;
         }
@@ -134,13 +141,7 @@ private:
         return mean;
     }
     Real mean_volume() const { return mean_size(*grid_).prod(); }
-    /// Area of a face along an axis of cells at a level [m2]; [m] in 2-D.
-    Real area(int axis, int level) const noexcept {
-        Real product = 1;
-        for (int a = 0; a < Dim; ++a)
-            if (a != axis) product *= grid_->size(a, a == vertical ? level : 0);
-        return product;
-    }
+    Real area(int axis, int level) const noexcept { return detail::area_of_face(*grid_, axis, level); }
     static int number(int axis, int plane, int row, int i) noexcept {
         return axis == outer ? plane : axis == inner ? i : row;
     }
@@ -207,73 +208,12 @@ private:
         for (const Index c : counts) wet_cells_ += c;
     }
 
-    /// b = - net outflow of each cell, less what it is to lose; returns its square sum over the plane.
+    /// Fills the right side on a plane; returns the square sum of what it lacks.
     Real diverge(const FaceField<Dim, State>& u, int plane) {
-        const Poisson<Dim>& m = multigrid_.matrix();
-        Real total = 0;
-        State fastest = 0;
-        for (int row = 0; row < m.layout.rows_per_plane(); ++row) {
-            const RowRange r = m.range(plane, row);
-            if (r.empty()) continue;
-            const Offset start = m.layout.row_start(plane, row);
-            // Flat, not an array: so that loops see plain numbers.
-            const auto area0 = area_[0].row(row), area1 = area_[1].row(row), area2 = area_[Dim - 1].row(row);
-            const auto per0 = per_size_[0].row(row), per1 = per_size_[1].row(row);
-            PerAxis<const State*, 3> low{}, high{};
-            PerAxis<const Real*, 3> low_open{}, high_open{};
-            for (int a = 0; a < Dim; ++a) {
-                low[a] = u[a].data() + start, high[a] = low[a] + m.layout.stride[a];
-                if (open_area_)
-                    low_open[a] = (*open_area_)[a].data() + start,
-                    high_open[a] = low_open[a] + m.layout.stride[a];
-            }
-            const State per2 = Dim == 3 ? static_cast<State>(1 / grid_->size(Dim - 1, row)) : State(0);
-            float* const __restrict b = multigrid_.right_side().data() + start;
-            const float* const __restrict inverse = m.inverse_diagonal.data() + start;
-            // Without walls shares are never read, nor are volumes and surplus where there is none.
-            const Real* const surplus = surplus_ ? surplus_->data() + start : nullptr;
-            const Real* const volume = open_volume_ ? open_volume_->data() + start : nullptr;
-            const auto per_step = static_cast<State>(1 / pace_);
-            State sum = 0;
-            // Reals from 0 on compare as their bits do, and clang++ has packs for the largest of these only.
-            auto most = std::bit_cast<Bits>(fastest);
-            const auto all = [&]<bool Open, bool Surplus>() {
-#pragma omp simd reduction(+ : sum) reduction(max : most)
-                for (int i = r.begin; i < r.end; ++i) {
-                    const auto net = [&](State area, const State* from, const State* to,
-                                         const Real* from_open, const Real* to_open) {
-                        if constexpr (Open)
-                            return area * (to[i] * static_cast<State>(to_open[i]) -
-                                           from[i] * static_cast<State>(from_open[i]));
-                        else
-                            return area * (to[i] - from[i]);
-                    };
-                    State out = net(area0[i], low[0], high[0], low_open[0], high_open[0]) +
-                                net(area1[i], low[1], high[1], low_open[1], high_open[1]);
-                    State rate = std::abs(low[0][i]) * per0[i] + std::abs(low[1][i]) * per1[i];
-                    if constexpr (Dim == 3) {
-                        out += net(area2[i], low[2], high[2], low_open[2], high_open[2]);
-                        rate += std::abs(low[2][i]) * per2;
-                    }
-                    if constexpr (Surplus) {
-                        const Real beyond = Open ? surplus[i] * volume[i] : surplus[i];
-                        out -= static_cast<State>(beyond) * per_step * (area0[i] / per0[i]);
-                    }
-                    out = inverse[i] > 0 ? out : State(0);
-                    b[i] = static_cast<float>(-out);
-                    sum += out * out;
-                    most = std::max(most, std::bit_cast<Bits>(inverse[i] > 0 ? rate : State(0)));
-                }
-            };
-            if (open_area_)
-                surplus ? all.template operator()<true, true>() : all.template operator()<true, false>();
-            else
-                surplus ? all.template operator()<false, true>() : all.template operator()<false, false>();
-            fastest = std::bit_cast<State>(most);
-            total += static_cast<Real>(sum);
-        }
-        rates_[static_cast<std::size_t>(plane)] = static_cast<Real>(fastest);
-        return total;
+        const auto found = outflow_.of(u, {open_area_, open_volume_, surplus_, pace_}, multigrid_.matrix(),
+                                       multigrid_.right_side(), plane);
+        rates_[static_cast<std::size_t>(plane)] = found.fastest;
+        return found.squares;
     }
 
     void make_room() {
@@ -293,7 +233,9 @@ private:
 
     /// Takes the gradient of the last solution from u and adds it to the pressure, or (`push`) takes the
     /// gradient of the pressure itself; then finds the divergence of what comes out.
-    Real correct(FaceField<Dim, State>& u, Field<State>& pressure, bool push) {
+    template <class Solids>
+    Real correct(FaceField<Dim, State>& u, Field<State>& pressure, bool push,
+                 [[maybe_unused]] Solids& solids) {
         make_room();
         const Poisson<Dim>& m = multigrid_.matrix();
         const Field<float>& e = multigrid_.solution();
@@ -303,6 +245,7 @@ private:
             const State value = push ? dt * pressure[open.cell] : static_cast<State>(e[open.cell]);
             u[open.axis][open.face] -= static_cast<State>(open.slope) * value;
         }
+        if constexpr (Solids::present) push ? solids.push(pressure, step_) : solids.push(e, 1);
         // Stage 1 reads the next plane's lower faces, which stage 0 has corrected.
         detail::wavefront(multigrid_.runs(), 2, sides_.periodic(outer), [&](int stage, int plane) {
             if (stage == 1) {
@@ -310,12 +253,11 @@ private:
                 squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
                 return;
             }
-            for (int row = 0; row < m.layout.rows_per_plane(); ++row) {
-                if (push) {
-                    take_gradient(u, pressure, dt, plane, row);
-                    continue;
-                }
-                take_gradient(u, e, State(1), plane, row);
+            for (int row = 0; row < m.layout.rows_per_plane(); ++row)
+                push ? take_gradient(u, pressure, dt, plane, row) : take_gradient(u, e, State(1), plane, row);
+            if constexpr (Solids::present)
+                push ? solids.correct(u, pressure, step_, plane) : solids.correct(u, e, 1, plane);
+            for (int row = 0; row < m.layout.rows_per_plane() && !push; ++row) {
                 const RowRange r = m.range(plane, row);
                 const Offset start = m.layout.row_start(plane, row);
                 const float* const __restrict from = e.data() + start;
@@ -383,7 +325,8 @@ private:
 
     const Grid<Dim>* grid_;
     Sides<Dim> sides_;
-    PerAxis<Table, Dim> area_, per_size_, per_gap_;  ///< [m2], [1/m], [1/m]
+    detail::NetOutflow<Dim, State> outflow_;
+    PerAxis<Table, Dim> per_gap_;  ///< [1/m]
     PerAxis<detail::LevelTable<Dim, float>, Dim> conductance_;
     Multigrid<Dim> multigrid_;
     PerAxis<WetRows<Dim>, Dim> faces_;

@@ -34,21 +34,20 @@ template <class P>
         const Real mass = load.mass;
         if (motion.inverse_mass > 0) {
             FluidLoad fluid;
-            Quad other{};
             if constexpr (P::has_fluid) {
                 const auto sphere = static_cast<std::size_t>(state.store.sphere_of(static_cast<Index>(slot)));
                 if (const Index body = state.particles.body[sphere]; state.feels_fluid(body)) {
                     fluid =
                         state.fluid_on(body, place.centre, motion.velocity, move.time, move.ahead_in_fluid);
                     state.velocity_in_fluid[static_cast<std::size_t>(body)] = motion.velocity;
-                    other = detail::quad(Vec3(fluid.drag + fluid.buoyancy));
                 }
             }
-            const KickedSphere after = kick(motion, load, other, gravity, move.kick);
+            const KickedSphere after = kick(motion, load, fluid, gravity, move.kick);
             sums.interaction = sums.interaction + after.interaction;
             sums.path = sums.path + after.path;
             if constexpr (P::has_fluid)
                 sums.add(fluid, 0.5 * move.kick * (motion.velocity + detail::first_three(after.velocity)),
+                         0.5 * move.kick * motion.curvature * (motion.rim + detail::first_three(after.rim)),
                          move.kick);
             detail::quad(motion, 0) = after.velocity, detail::quad(motion, 1) = after.rim;
             const Quad velocity = detail::three_ones * after.velocity;
@@ -80,11 +79,11 @@ template <class P>
                                            move.ahead_in_fluid);
                     state.velocity_in_fluid[static_cast<std::size_t>(clump.body)] = clump.velocity;
                 }
-            const KickedClump after = kick(clump, load_of(clump, lines), Vec3(fluid.drag + fluid.buoyancy),
-                                           state.scene.gravity, move.kick);
+            const KickedClump after =
+                kick(clump, load_of(clump, lines), fluid, state.scene.gravity, move.kick);
             sums.interaction.value[0] += after.interaction;
             sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
-            if constexpr (P::has_fluid) sums.add(fluid, after.path, move.kick);
+            if constexpr (P::has_fluid) sums.add(fluid, after.path, after.turn, move.kick);
             clump.velocity = after.velocity, clump.angular_momentum = after.angular_momentum;
             if (move.drift > 0) drift(clump, move.drift, state.store, state.particles);
             for (std::size_t m = first; m < last; ++m)
@@ -141,7 +140,6 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         if constexpr (P::has_fluid)
             if (state.feels_fluid(body))
                 fluid = state.fluid_on(body, position, velocity, move.time, move.ahead_in_fluid);
-        return Vec3(fluid.drag + fluid.buoyancy);
     };
     if (clump_index >= 0) {
         const MovingClump& clump = state.store.clumps[static_cast<std::size_t>(clump_index)];
@@ -152,13 +150,14 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         p.position[b] = clump.position, p.orientation[b] = clump.orientation;
         if (at_rest()) return;
         const ClumpLoad load = load_of(clump, lines);
-        const Vec3 other = sample(clump.position, clump.velocity);
-        const KickedClump after = kick(clump, load, other, state.scene.gravity, move.kick);
+        sample(clump.position, clump.velocity);
+        const KickedClump after = kick(clump, load, fluid, state.scene.gravity, move.kick);
         p.velocity[b] = after.velocity, p.angular_momentum[b] = after.angular_momentum;
-        p.force[b] = load.force + p.mass[b] * state.scene.gravity + other, p.torque[b] = load.torque;
+        p.force[b] = load.force + p.mass[b] * state.scene.gravity + fluid.force();
+        p.torque[b] = load.torque + fluid.torque;
         sums.interaction.value[0] += after.interaction;
         sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
-        sums.add(fluid, after.path, move.kick);
+        sums.add(fluid, after.path, after.turn, move.kick);
         return;
     }
     const auto slot = static_cast<std::size_t>(state.store.slot_of(static_cast<Index>(first)));
@@ -180,16 +179,16 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
                            sums);
         return;
     }
-    const Vec3 other = sample(place.centre, motion.velocity);
-    const KickedSphere after =
-        kick(motion, load, detail::quad(other), detail::quad(state.scene.gravity), move.kick);
+    sample(place.centre, motion.velocity);
+    const KickedSphere after = kick(motion, load, fluid, detail::quad(state.scene.gravity), move.kick);
     p.velocity[b] = detail::first_three(after.velocity);
     p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * detail::first_three(after.rim);
-    p.force[b] = load.force + p.mass[b] * state.scene.gravity + other;
-    p.torque[b] = place.radius * load.lever;
+    p.force[b] = load.force + p.mass[b] * state.scene.gravity + fluid.force();
+    p.torque[b] = place.radius * load.lever + fluid.torque;
     sums.interaction = sums.interaction + after.interaction;
     sums.path = sums.path + after.path;
-    sums.add(fluid, 0.5 * move.kick * (motion.velocity + p.velocity[b]), move.kick);
+    sums.add(fluid, 0.5 * move.kick * (motion.velocity + p.velocity[b]),
+             0.5 * move.kick * motion.curvature * (motion.rim + detail::first_three(after.rim)), move.kick);
 }
 
 }  // namespace abrade

@@ -26,12 +26,11 @@ FlightLoad flight_load(const State<P>& state, Index body, const Vec3& position, 
             const Real inverse_mass = state.particles.inverse_mass[static_cast<std::size_t>(body)];
             const FluidLoad first = state.fluid_on(body, position, velocity, flight.start, 0);
             const Vec3 half =
-                velocity +
-                0.5 * flight.kicks * (state.scene.gravity + inverse_mass * (first.drag + first.buoyancy));
+                velocity + 0.5 * flight.kicks * (state.scene.gravity + inverse_mass * first.force());
             const Real to_middle = 0.5 * (flight.drifts - flight.last);
             found.fluid =
                 state.fluid_on(body, position + to_middle * half, half, flight.start + to_middle, 0);
-            found.acceleration += inverse_mass * (found.fluid.drag + found.fluid.buoyancy);
+            found.acceleration += inverse_mass * found.fluid.force();
         }
     return found;
 }
@@ -51,7 +50,7 @@ template <class P>
 void add_flight(const State<P>& state, Index body, const FlightLoad& load, const Vec3& path, Real kicks,
                 MotionSums& sums) noexcept {
     sums.path = sums.path + quad(Vec3(state.particles.mass[static_cast<std::size_t>(body)] * path));
-    if constexpr (P::has_fluid) sums.add(load.fluid, path, kicks);
+    if constexpr (P::has_fluid) sums.add(load.fluid, path, Vec3::Zero(), kicks);  // torques do not fly
 }
 
 }  // namespace detail

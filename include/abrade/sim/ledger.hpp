@@ -31,6 +31,7 @@ struct Ledger {
     Real drag_input = 0;    ///< drag force times fluid velocity: put in by the flow
     Real drag_work = 0;     ///< drag force times body velocity: what reached the bodies
     Real buoyancy_work = 0;
+    Real flow_work = 0;  ///< of a fluid that resolves the bodies: all that it does to them
     Real gravity_work = 0;
     Real interaction_work = 0;  ///< done on the bodies by contacts and bonds
     Real fed_kinetic = 0, fed_potential = 0;
@@ -51,7 +52,7 @@ struct Ledger {
             field("lost_rolling", "J", &Ledger::lost_rolling), field("lost_bond", "J", &Ledger::lost_bond),
             field("lost_asleep", "J", &Ledger::lost_asleep), field("drag_input", "J", &Ledger::drag_input),
             field("drag_work", "J", &Ledger::drag_work), field("buoyancy_work", "J", &Ledger::buoyancy_work),
-            field("gravity_work", "J", &Ledger::gravity_work),
+            field("flow_work", "J", &Ledger::flow_work), field("gravity_work", "J", &Ledger::gravity_work),
             field("interaction_work", "J", &Ledger::interaction_work),
             field("fed_kinetic", "J", &Ledger::fed_kinetic),
             field("fed_potential", "J", &Ledger::fed_potential),
@@ -71,13 +72,13 @@ struct Ledger {
     /// Kinetic energy against the work done: zero but for round-off.
     Real residual() const noexcept {
         return kinetic - (kinetic_start + fed_kinetic - left_kinetic + gravity_work + buoyancy_work +
-                          drag_work + interaction_work - lost_asleep);
+                          drag_work + flow_work + interaction_work - lost_asleep);
     }
 
     /// Energy that passed through: what `residual` is to be measured by.
     Real throughput() const noexcept {
         return std::max({kinetic_start + fed_kinetic + drag_input, lost() + left_kinetic + kinetic,
-                         std::abs(gravity_work) + std::abs(buoyancy_work), 1e-300});
+                         std::abs(gravity_work) + std::abs(buoyancy_work) + std::abs(flow_work), 1e-300});
     }
     Real residual_relative() const noexcept { return std::abs(residual()) / throughput(); }
 
@@ -101,7 +102,7 @@ struct Ledger {
         f("concrete_lost_normal", concrete_lost_normal);
         f("concrete_lost_sliding", concrete_lost_sliding);
         f("drag_input", drag_input), f("drag_work", drag_work);
-        f("buoyancy_work", buoyancy_work), f("gravity_work", gravity_work);
+        f("buoyancy_work", buoyancy_work), f("flow_work", flow_work), f("gravity_work", gravity_work);
         f("interaction_work", interaction_work);
         f("fed_kinetic", fed_kinetic), f("fed_potential", fed_potential);
         f("left_kinetic", left_kinetic), f("left_potential", left_potential), f("left_stored", left_stored);

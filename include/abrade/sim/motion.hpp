@@ -14,16 +14,17 @@ namespace abrade {
 struct MotionSums {
     Quad interaction{};  ///< work of contacts and bonds; its first three numbers are to be added up [J]
     Quad path{};         ///< sum of mass times path [kg m]; times gravity: its work
-    Real drag = 0, drag_input = 0, buoyancy = 0;  ///< [J]
-    Real fastest2 = 0;                            ///< of spheres' centres [m2/s2]
+    Real drag = 0, drag_input = 0, buoyancy = 0, flow = 0;  ///< [J]
+    Real fastest2 = 0;                                      ///< of spheres' centres [m2/s2]
     Quad low{{1e300, 1e300, 1e300, 1e300}}, high{{-1e300, -1e300, -1e300, -1e300}};  ///< of positions [m]
     Quad finite{};       ///< sum of velocities: not finite where one is not
     bool stirs = false;  ///< one beside a sleeper has become fast
 
-    /// What the fluid did over a `way` [m] and for `time` [s].
-    void add(const FluidLoad& fluid, const Vec3& way, Real time) noexcept {
+    /// What the fluid did over a `way` [m] and a `turn` [rad], and for `time` [s].
+    void add(const FluidLoad& fluid, const Vec3& way, const Vec3& turn, Real time) noexcept {
         drag += fluid.drag.dot(way), drag_input += time * fluid.drag.dot(fluid.fluid_velocity);
         buoyancy += fluid.buoyancy.dot(way);
+        flow += fluid.flow.dot(way) + fluid.torque.dot(turn);
     }
     /// A sphere that has moved: where it is, its velocity, and the speed of its rim.
     void notice(const Quad& place, const Quad& velocity, const Quad& rim) noexcept {
@@ -35,7 +36,7 @@ struct MotionSums {
 
     MotionSums& operator+=(const MotionSums& o) noexcept {
         interaction = interaction + o.interaction, path = path + o.path;
-        drag += o.drag, drag_input += o.drag_input, buoyancy += o.buoyancy;
+        drag += o.drag, drag_input += o.drag_input, buoyancy += o.buoyancy, flow += o.flow;
         fastest2 = std::max(fastest2, o.fastest2);
         low = least(low, o.low), high = most(high, o.high), finite = finite + o.finite;
         stirs |= o.stirs;
@@ -52,7 +53,7 @@ inline void book(Ledger& to, const MotionSums& motion, const Vec3& gravity) noex
     to.interaction_work += motion.interaction_work();
     to.gravity_work += motion.gravity_work(gravity);
     to.drag_work += motion.drag, to.drag_input += motion.drag_input;
-    to.buoyancy_work += motion.buoyancy;
+    to.buoyancy_work += motion.buoyancy, to.flow_work += motion.flow;
 }
 
 /// What a kick does to a single sphere, and the works it does: a force is paired with the mean of the
@@ -62,9 +63,8 @@ struct KickedSphere {
     Quad interaction, path;  ///< as in MotionSums
 };
 
-/// v += dt (f/m + g), r omega += dt 5/2 lever/m: a solid sphere has I = 2/5 m r^2. `other` is what the fluid
-/// does [N].
-inline KickedSphere kick(const SphereMotion& motion, const SphereLoad& load, const Quad& other,
+/// v += dt (f/m + g), r omega += dt 5/2 lever/m: a solid sphere has I = 2/5 m r^2.
+inline KickedSphere kick(const SphereMotion& motion, const SphereLoad& load, const FluidLoad& fluid,
                          const Quad& gravity, Real dt) noexcept {
     const Quad& before = detail::quad(motion, 0);
     const Quad& rim = detail::quad(motion, 1);
@@ -72,8 +72,9 @@ inline KickedSphere kick(const SphereMotion& motion, const SphereLoad& load, con
                lever = detail::three_ones * detail::quad(load, 1);
     const Quad mass = detail::same(load.mass), per_mass = detail::same(dt * motion.inverse_mass);
     KickedSphere after;
-    after.velocity = before + per_mass * (force + mass * gravity + other);
-    after.rim = rim + detail::same(2.5) * per_mass * lever;
+    after.velocity = before + per_mass * (force + mass * gravity + detail::quad(Vec3(fluid.force())));
+    after.rim =
+        rim + detail::same(2.5) * per_mass * (lever + detail::quad(Vec3(motion.curvature * fluid.torque)));
     const Quad way = detail::same(0.5 * dt) * (before + after.velocity);
     after.interaction = force * way + lever * (detail::same(0.5 * dt) * (rim + after.rim));
     after.path = detail::three_ones * mass * way;
@@ -101,18 +102,18 @@ inline ClumpLoad load_of(const MovingClump& clump, const SphereLines& lines) noe
 /// What a kick does to a clump, likewise.
 struct KickedClump {
     Vec3 velocity, angular_momentum;
-    Vec3 path;         ///< [m]
+    Vec3 path, turn;   ///< [m], [rad]
     Real interaction;  ///< [J]
 };
 
-inline KickedClump kick(const MovingClump& clump, const ClumpLoad& load, const Vec3& other,
+inline KickedClump kick(const MovingClump& clump, const ClumpLoad& load, const FluidLoad& fluid,
                         const Vec3& gravity, Real dt) noexcept {
     const Vec3 velocity =
-        clump.velocity + dt * clump.inverse_mass * (load.force + clump.mass * gravity + other);
-    const Vec3 momentum = clump.angular_momentum + dt * load.torque;
+        clump.velocity + dt * clump.inverse_mass * (load.force + clump.mass * gravity + fluid.force());
+    const Vec3 momentum = clump.angular_momentum + dt * (load.torque + fluid.torque);
     const Vec3 path = 0.5 * dt * (clump.velocity + velocity);
     const Vec3 turn = 0.5 * dt * clump.angular_velocity(clump.angular_momentum + momentum);
-    return {velocity, momentum, path, load.force.dot(path) + load.torque.dot(turn)};
+    return {velocity, momentum, path, turn, load.force.dot(path) + load.torque.dot(turn)};
 }
 
 /// Turns a clump on which no torque acts over dt.

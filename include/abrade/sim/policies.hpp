@@ -16,6 +16,7 @@ struct Policies {
     static constexpr bool has_wear = !std::same_as<W, NoWear>;
     static constexpr bool has_fluid = !std::same_as<F, NoFluid>;
     static constexpr bool fluid_advances = AdvancingFluid<F>;
+    static constexpr bool fluid_resolves = ResolvedFluid<F>;
 
     C contact;
     [[no_unique_address]] B bond;

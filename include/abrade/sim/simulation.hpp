@@ -58,7 +58,8 @@ public:
         else
             return detail::AfterRejectedLaw{};
     }
-    template <class L, class Drag = std::conditional_t<std::same_as<L, NoFluid>, NoDrag, CliftGauvin>>
+    template <class L, class Drag = std::conditional_t<std::same_as<L, NoFluid> || ResolvedFluid<L>, NoDrag,
+                                                       CliftGauvin>>
     auto fluid(L law, Drag drag = Drag{}) && {
         check_not_run();
         static_assert(FluidModel<L>, "Simulation::fluid(law): the fluid misses what the notes below name");

@@ -61,7 +61,7 @@ std::vector<Support> supports(const State<P>& state, const std::vector<char>& wa
             if (state.feels_fluid(b)) {
                 const FluidLoad fluid =
                     state.fluid_on(b, state.store.position_of(state.particles, b), Vec3::Zero(), time, 0);
-                own.sum += fluid.drag + fluid.buoyancy;
+                own.sum += fluid.force();
             }
     }
     return all;

@@ -51,6 +51,7 @@ struct State {
     Ledger accounts;  ///< works and losses up to the velocities that the lines hold
     std::vector<Vec3>
         velocity_in_fluid;  ///< [body] that drag was last reckoned with [m/s]; empty without a fluid
+    std::vector<FlowLoad> flow_load;  ///< [body] from the last exchange with a fluid that resolves bodies
     Index broken_tension = 0, broken_shear = 0;
     bool pattern_changed = false;  ///< a bond broke
     bool loosened = false;         ///< concrete came loose or is gone
@@ -70,10 +71,11 @@ struct State {
             field("worn_away", &State::worn_away), field("let_go_count", &State::let_go_count),
             field("pieces", &State::pieces), field("feed", &State::feed), field("accounts", &State::accounts),
             field("velocity_in_fluid", "m/s", &State::velocity_in_fluid),
-            field("broken_tension", &State::broken_tension), field("broken_shear", &State::broken_shear),
-            field("pattern_changed", &State::pattern_changed), field("loosened", &State::loosened),
-            field("smallest_radius", "m", &State::smallest_radius), field("size_ratio", &State::size_ratio),
-            field("gauge_volume", "m3", &State::gauge_volume), field("past_gauge", &State::past_gauge);
+            field("flow_load", &State::flow_load), field("broken_tension", &State::broken_tension),
+            field("broken_shear", &State::broken_shear), field("pattern_changed", &State::pattern_changed),
+            field("loosened", &State::loosened), field("smallest_radius", "m", &State::smallest_radius),
+            field("size_ratio", &State::size_ratio), field("gauge_volume", "m3", &State::gauge_volume),
+            field("past_gauge", &State::past_gauge);
     }
 
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
@@ -136,6 +138,8 @@ struct State {
     /// What the fluid does to a body at time t; `ahead` as in ContactStep.
     FluidLoad fluid_on(Index body, const Vec3& position, const Vec3& velocity, Real t,
                        Real ahead) const noexcept {
+        if constexpr (P::fluid_resolves)
+            return {.flow = flow_load[at(body)].force, .torque = flow_load[at(body)].torque};
         const Vec3 now = velocity + ahead * (velocity - velocity_in_fluid[at(body)]);
         return fluid_load(policies.drag, policies.fluid.sample(position, t),
                           {position, now, particles.volume[at(body)]}, scene.gravity);

@@ -2,6 +2,7 @@
 // Everything that moves, and one step of it.
 
 #include <abrade/sim/advance.hpp>
+#include <abrade/sim/exchange.hpp>
 #include <abrade/sim/lists.hpp>
 #include <abrade/sim/trouble_finder.hpp>
 
@@ -18,12 +19,15 @@ public:
 
     explicit World(State<P> state) : state_(std::move(state)) {}
 
-    /// A fluid that changes goes on to `t` or beyond; may throw FluidError. Here solids will go into it, and
-    /// loads come out.
+    /// Before solids step on to `t`: a fluid that changes goes there or beyond; one that resolves bodies
+    /// follows them to where they are, once their next step would lead beyond its own. May throw FluidError.
     void advance_fluid(Real t) {
         if constexpr (P::fluid_advances) {
             Stopwatch watch{state_.policies.fluid.time() < t};
-            bring_fluid_to(state_.policies.fluid, t);
+            if constexpr (P::fluid_resolves)
+                exchange_before(t);
+            else
+                bring_fluid_to(state_.policies.fluid, t);
             watch.lap(fluid_seconds_);
         }
     }
@@ -77,7 +81,7 @@ public:
 
     void set_skin(Real skin) noexcept { lists_.set_skin(skin); }
     void set_free_flight(bool allowed) {
-        state_.flight.allowed = allowed;
+        state_.flight.allowed = allowed && !P::fluid_resolves;  // each exchange asks where all are
         find_flyers(state_);
     }
     /// As RunOptions says.
@@ -193,16 +197,29 @@ private:
         return stored_at_rest_;
     }
 
-    /// Velocities come up to the present before a step of another length begins.
+    /// Velocities come up to the present.
+    void make_whole() {
+        if (whole_) return;
+        catch_up();
+        const Move move{0.5 * time_step_, 0, true, now_, ahead_in_fluid()};
+        pass(false, &move, false);
+        kicked_ += move.kick, last_kick_ = move.kick;
+        whole_ = true;
+    }
+    /// Before a step of another length begins.
     void change_step(Real dt) {
-        if (!whole_) {
-            catch_up();
-            const Move move{0.5 * time_step_, 0, true, now_, ahead_in_fluid()};
-            pass(false, &move, false);
-            kicked_ += move.kick, last_kick_ = move.kick;
-            whole_ = true;
-        }
+        make_whole();
         time_step_ = dt;
+    }
+
+    /// The fluid comes to where the solids are, if a step to `t` would have it take more than one of its own.
+    void exchange_before(Real t) {
+        auto& fluid = state_.policies.fluid;
+        if (!(fluid.time() < now_) || fluid.time() + fluid.stable_step().seconds >= t) return;
+        make_whole();
+        FlowBodies<P> flow(state_);
+        fluid.advance(now_, flow.bodies());
+        state_.accounts.flow_work += flow.give_back(state_);
     }
 
     /// Forces, if asked for, and motion, if asked for, of all slabs. A chunk's first slab comes last: the

@@ -1,0 +1,40 @@
+#pragma once
+// A rigid body as water on a grid sees it, and what the water does to it.
+
+#include <abrade/core/types.hpp>
+#include <abrade/geometry/solid_moments.hpp>
+
+#include <span>
+
+namespace abrade {
+
+/// Force and torque about a body's centroid.
+struct FlowLoad {
+    Vec3 force = Vec3::Zero();   ///< [N]
+    Vec3 torque = Vec3::Zero();  ///< [N m]
+
+    static void fields(auto&& field) {
+        field("force", "N", &FlowLoad::force), field("torque", "N m", &FlowLoad::torque);
+    }
+    FlowLoad& operator+=(const FlowLoad& o) noexcept { return force += o.force, torque += o.torque, *this; }
+    friend FlowLoad operator-(const FlowLoad& a, const FlowLoad& b) noexcept {
+        return {a.force - b.force, a.torque - b.torque};
+    }
+};
+
+/// A rigid body among water that flows around it. What is in: shape, pose, mass, and the velocity that
+/// everything but the water has given it, with the `load` that stood for the water meanwhile. What comes out:
+/// the velocity that it has together with the water, and the load that stands for the water from here on.
+struct FlowBody {
+    Index id = 0;                          ///< the same at each exchange, and no other body's
+    Vec3 position = Vec3::Zero();          ///< of the centroid [m]
+    Vec3 velocity = Vec3::Zero();          ///< of the centroid [m/s]
+    Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s]
+    Real volume = 0;                       ///< [m3]
+    Real inverse_mass = 0;                 ///< 0: it moves as it is told [1/kg]
+    Mat3 inverse_inertia = Mat3::Zero();   ///< about the centroid, along the axes of the box [1/(kg m2)]
+    std::span<const Sphere> spheres{};     ///< whose union it is [m]
+    FlowLoad load{};                       ///< mean over the water's step
+};
+
+}  // namespace abrade

@@ -1,0 +1,96 @@
+#pragma once
+// Bodies and the flow that resolves them: out to it, and back with what it did to them.
+
+#include <abrade/fluid/flow_body.hpp>
+#include <abrade/sim/state.hpp>
+
+#include <vector>
+
+namespace abrade {
+
+/// Stones and grains, and fixed stones, as a flow sees them. Velocities are those of the present.
+template <class P>
+class FlowBodies {
+public:
+    explicit FlowBodies(const State<P>& state) {
+        const Particles& p = state.particles;
+        const SphereStore& store = state.store;
+        std::vector<std::size_t> first;
+        for (Index b = 0; b < p.bodies(); ++b) {
+            const Kind kind = p.kind[at(b)];
+            if (kind == Kind::concrete) continue;
+            const auto from = at(p.first_sphere[at(b)]), count = at(p.sphere_count[at(b)]);
+            first.push_back(spheres_.size());
+            for (std::size_t s = from; s < from + count; ++s) {
+                const SpherePlace& place = store.lines.place[at(store.slot_of(static_cast<Index>(s)))];
+                spheres_.push_back({place.centre, place.radius});
+            }
+            FlowBody body{.id = p.id[at(b)], .volume = p.volume[at(b)]};
+            body.load = state.flow_load[at(b)];
+            const bool free = p.inverse_mass[at(b)] > 0 && !state.sleep.asleep(b);
+            if (const Index c = store.clump_of(b); c >= 0) {
+                const MovingClump& clump = store.clumps[at(c)];
+                body.position = clump.position, body.velocity = clump.velocity;
+                body.angular_velocity = clump.angular_velocity(clump.angular_momentum);
+                if (free)
+                    body.inverse_mass = clump.inverse_mass,
+                    body.inverse_inertia =
+                        clump.rotation * clump.inverse_inertia.asDiagonal() * clump.rotation.transpose();
+            } else {
+                const SphereMotion& motion = store.lines.motion[at(store.slot_of(p.first_sphere[at(b)]))];
+                body.position = spheres_.back().centre, body.velocity = motion.velocity;
+                body.angular_velocity = motion.curvature * motion.rim;
+                if (free)
+                    body.inverse_mass = motion.inverse_mass,
+                    body.inverse_inertia = p.inverse_inertia[at(b)].x() * Mat3::Identity();
+            }
+            bodies_.push_back(body), number_.push_back(b);
+        }
+        first.push_back(spheres_.size());
+        for (std::size_t i = 0; i < bodies_.size(); ++i)
+            bodies_[i].spheres = std::span(spheres_).subspan(first[i], first[i + 1] - first[i]);
+    }
+
+    std::span<FlowBody> bodies() noexcept { return bodies_; }
+
+    /// Gives bodies the velocities and loads that they have come back with; returns the work that this did
+    /// [J].
+    Real give_back(State<P>& state) const {
+        Real work = 0;
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            const FlowBody& body = bodies_[i];
+            const Index b = number_[i];
+            state.flow_load[at(b)] = body.load;
+            if (body.inverse_mass == 0) continue;
+            const Real mass = state.particles.mass[at(b)];
+            if (const Index c = state.store.clump_of(b); c >= 0) {
+                MovingClump& clump = state.store.clumps[at(c)];
+                const Vec3 before = clump.angular_velocity(clump.angular_momentum);
+                const Vec3 spun = body.angular_velocity - before;
+                const Vec3 momentum =
+                    clump.rotation * (clump.rotation.transpose() * spun).cwiseQuotient(clump.inverse_inertia);
+                work += 0.5 * mass * (body.velocity - clump.velocity).dot(body.velocity + clump.velocity) +
+                        0.5 * momentum.dot(body.angular_velocity + before);
+                clump.velocity = body.velocity, clump.angular_momentum += momentum;
+                continue;
+            }
+            const Index slot = state.store.slot_of(state.particles.first_sphere[at(b)]);
+            SphereMotion& motion = state.store.lines.motion[at(slot)];
+            const Vec3 rim = body.angular_velocity / motion.curvature;
+            work += 0.5 * mass *
+                    ((body.velocity - motion.velocity).dot(body.velocity + motion.velocity) +
+                     0.4 * (rim - motion.rim).dot(rim + motion.rim));
+            motion.velocity = body.velocity, motion.rim = rim;
+        }
+        return work;
+    }
+
+private:
+    static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
+
+    std::vector<Sphere> spheres_;
+    std::vector<FlowBody> bodies_;
+    std::vector<Index> number_;  ///< of the body in `particles`
+};
+
+}  // namespace abrade
