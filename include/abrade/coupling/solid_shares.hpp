@@ -1,0 +1,293 @@
+#pragma once
+// Which parts of the faces of a staggered grid a rigid body covers.
+
+#include <abrade/fluid/cut_cell.hpp>
+#include <abrade/fluid/flow_body.hpp>
+#include <abrade/fluid/sides.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace abrade {
+
+/// A face of whose control volume, which lies half in either cell, a body covers some.
+struct SolidFace {
+    Offset face = 0;  ///< of the velocity component
+    Offset low = 0;   ///< of the cell below it, across a periodic side where there is one
+    int axis = 0;
+    int plane = 0;            ///< of the face, across the longest axis
+    Real share = 0;           ///< sigma, of the control volume [-]
+    Real area = 0, gap = 0;   ///< of the face [m2]; between the centres of its cells [m]
+    Vec3 arm = Vec3::Zero();  ///< from the body's centroid to the face's centre [m]
+
+    Real volume() const noexcept { return area * gap; }
+    /// What the face's velocity owes to the body's spin: component `axis` of spin x arm.
+    Vec3 lever() const noexcept { return arm.cross(Vec3::Unit(axis)); }
+};
+
+/// A cell of which a body covers some. As the body moves by V dt and turns by W dt it gives
+/// dt (way . V + turn . W) to the cells around.
+struct SolidCell {
+    Offset cell = 0;
+    Vec3 way = Vec3::Zero();   ///< [m2]
+    Vec3 turn = Vec3::Zero();  ///< [m3]
+    Vec3 arm = Vec3::Zero();   ///< from the body's centroid to the cell's centre [m]
+};
+
+/// A body on the grid.
+struct SolidCover {
+    std::vector<SolidFace> faces;
+    std::vector<SolidCell> cells;   ///< that it covers in part
+    std::vector<SolidCell> inside;  ///< and as a whole
+};
+
+namespace detail {
+
+/// Shares of a body that is a union of spheres, in the control volumes of the faces about it.
+///
+/// Within a volume the surface is taken for a plane across the line to the nearest sphere's centre, moved by
+/// what its curvature takes: <t^2> / (2 R), t along the plane. Then the shares are corrected such that along
+/// each axis they hold the body's volume, and its centroid across that axis: so a pressure that is linear in
+/// space (that of water at rest) pushes with rho g V and does not turn the body, wherever it stands. The
+/// correction is
+///   sigma (1 - sigma) (a + b . arm), a and b from linear equations, at most sigma (1 - sigma).
+/// What is closed (walls, what lies beyond them) holds nothing, and the rest takes it over. A body that is
+/// hardly larger than a cell is spread: its spheres grow, and cover a share.
+template <class Closed>
+class SolidCoverFinder {
+public:
+    /// `closed(axis, face)`: faces that walls close.
+    SolidCoverFinder(const Grid<3>& grid, const Sides<3>& sides, Closed closed)
+        : grid_(grid), sides_(sides), closed_(std::move(closed)) {}
+
+    void find(const FlowBody& body, SolidCover& cover) {
+        cover.faces.clear(), cover.cells.clear(), cover.inside.clear();
+        body_ = &body;
+        find_box();
+        for (int a = 0; a < 3; ++a) find_shares(a), list_faces(a, cover);
+        list_cells(cover);
+    }
+
+private:
+    using Number = CellNumber<3>;
+    enum class Kind : char {
+        closed,
+        open,
+        beyond  ///< could let water through, but is no part of the box
+    };
+
+    Real size(int a, int i) const noexcept { return grid_.size(a, std::clamp(i, 0, grid_.cells(a) - 1)); }
+    /// Lower face of cell i, which may be one beyond the ghosts.
+    Real face(int a, int i) const noexcept {
+        const int n = grid_.cells(a);
+        if (i < 0) return grid_.low(a) + i * size(a, 0);
+        if (i > n) return grid_.high(a) + (i - n) * size(a, n - 1);
+        return grid_.face(a, i);
+    }
+    Real centre(int a, int i) const noexcept { return face(a, i) + 0.5 * size(a, i); }
+    int cell_at(int a, Real x) const noexcept {
+        const int n = grid_.cells(a);
+        if (x < grid_.low(a)) return static_cast<int>(std::floor((x - grid_.low(a)) / size(a, 0)));
+        if (x >= grid_.high(a)) return n + static_cast<int>((x - grid_.high(a)) / size(a, n - 1));
+        int low = 0;
+        for (int end = n; end - low > 1;) {
+            const int middle = (low + end) / 2;
+            (grid_.face(a, middle) <= x ? low : end) = middle;
+        }
+        return low;
+    }
+    int wrapped(int a, int i) const noexcept {
+        const int n = grid_.cells(a);
+        return sides_.periodic(a) ? (i % n + n) % n : i;
+    }
+
+    /// The cells about the body, one more on either side than it reaches: the control volumes of their
+    /// outermost faces hold nothing.
+    void find_box() {
+        Real cell = 1;
+        for (int a = 0; a < 3; ++a) cell *= size(a, cell_at(a, body_->position[a]));
+        const Real radius = std::cbrt(0.75 / pi * body_->volume), least = 0.9 * std::cbrt(cell);
+        grown_ = std::max(least - radius, 0.0);
+        scale_ = grown_ > 0 ? cube(radius / least) : 1;
+        std::size_t count = 1;
+        for (int a = 0; a < 3; ++a) {
+            Real low = std::numeric_limits<Real>::infinity(), high = -low;
+            for (const Sphere& s : body_->spheres) {
+                low = std::min(low, s.centre[a] - s.radius - grown_);
+                high = std::max(high, s.centre[a] + s.radius + grown_);
+            }
+            first_[a] = cell_at(a, low) - 1;
+            length_[a] = cell_at(a, high) + 3 - first_[a];
+            stride_[a] = count;
+            count *= static_cast<std::size_t>(length_[a]);
+        }
+        for (int a = 0; a < 3; ++a) share_[a].assign(count, 0), kind_[a].assign(count, Kind::closed);
+    }
+    void for_each(auto&& visit) const {
+        std::size_t k = 0;
+        Number n;
+        for (n[2] = first_[2]; n[2] < first_[2] + length_[2]; ++n[2])
+            for (n[1] = first_[1]; n[1] < first_[1] + length_[1]; ++n[1])
+                for (n[0] = first_[0]; n[0] < first_[0] + length_[0]; ++n[0], ++k) visit(std::as_const(n), k);
+    }
+    /// Centre and size of the control volume of a face; axis -1: of a cell.
+    Vec3 place(int axis, const Number& n) const noexcept {
+        Vec3 x;
+        for (int a = 0; a < 3; ++a) x[a] = a == axis ? face(a, n[a]) : centre(a, n[a]);
+        return x;
+    }
+    Vec3 extent(int axis, const Number& n) const noexcept {
+        Vec3 s;
+        for (int a = 0; a < 3; ++a) s[a] = a == axis ? centre(a, n[a]) - centre(a, n[a] - 1) : size(a, n[a]);
+        return s;
+    }
+    Number inside_box(const Number& n) const noexcept {
+        Number inside;
+        for (int a = 0; a < 3; ++a) inside[a] = wrapped(a, n[a]);
+        return inside;
+    }
+
+    Kind kind(int axis, const Number& n) const noexcept {
+        bool beyond = false;
+        for (int a = 0; a < 3; ++a) {
+            const bool low = n[a] < (a == axis ? 1 : 0), high = n[a] >= grid_.cells(a);
+            if (sides_.periodic(a) || (!low && !high)) continue;
+            if (is_closed(sides_[a][low ? 0 : 1])) return Kind::closed;
+            beyond = true;
+        }
+        if (beyond) return Kind::beyond;
+        return closed_(axis, grid_.layout().at(inside_box(n))) ? Kind::closed : Kind::open;
+    }
+
+    struct Near {
+        Real distance = std::numeric_limits<Real>::infinity();  ///< to the surface, negative inside [m]
+        Real radius = 0;
+        Vec3 from = Vec3::Zero();  ///< that sphere's centre [m]
+    };
+    Near nearest(const Vec3& x) const noexcept {
+        Near near;
+        for (const Sphere& s : body_->spheres) {
+            const Vec3 from = x - s.centre;
+            const Real radius = s.radius + grown_;
+            const Real distance = from.norm() - radius;
+            if (distance < near.distance) near = {distance, radius, from};
+        }
+        return near;
+    }
+
+    /// Of a box of size s about a point.
+    Real share_of(const Near& near, const Vec3& s) const noexcept {
+        const Real length = near.from.norm();
+        const Vec3 normal = length > 0 ? Vec3(near.from / length) : Vec3(0, 0, 1);
+        const Vec3 across = s.cwiseProduct(normal);
+        const Real curved = (s.squaredNorm() - across.squaredNorm()) / (24 * near.radius);
+        return scale_ *
+               liquid_fraction<3>(std::array{across[0], across[1], across[2]}, -near.distance - curved);
+    }
+
+    void find_shares(int axis) {
+        auto& share = share_[axis];
+        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        const Real unit = std::cbrt(body_->volume);  // lest the equations be as uneven as metres make them
+        const auto terms = [&](const Vec3& x) {
+            const Vec3 arm = (x - body_->position) / unit;
+            return Vec3(1, arm[b], arm[c]);
+        };
+        for_each([&](const Number& n, std::size_t k) {
+            const Vec3 s = extent(axis, n);
+            const Near near = nearest(place(axis, n));
+            if (near.distance > 0.6 * s.norm()) return;
+            kind_[axis][k] = kind(axis, n);
+            if (kind_[axis][k] != Kind::closed) share[k] = share_of(near, s);
+        });
+        constexpr int most_rounds =
+            4;  // one, but where a floor takes so much that shares are at their bounds
+        for (int round = 0; round < most_rounds; ++round) {
+            Mat3 matrix = 1e-12 * body_->volume * Mat3::Identity();
+            Vec3 lacks(body_->volume, 0, 0);
+            for_each([&](const Number& n, std::size_t k) {
+                if (share[k] == 0) return;
+                const Vec3 x = terms(place(axis, n));
+                const Real volume = extent(axis, n).prod();
+                lacks -= share[k] * volume * x;
+                matrix += share[k] * (1 - share[k]) * volume * x * x.transpose();
+            });
+            if (lacks.norm() < 1e-14 * body_->volume) return;
+            const Vec3 by = matrix.ldlt().solve(lacks);
+            for_each([&](const Number& n, std::size_t k) {
+                if (share[k] == 0 || share[k] == 1) return;
+                share[k] += share[k] * (1 - share[k]) * std::clamp(by.dot(terms(place(axis, n))), -1.0, 1.0);
+            });
+        }
+    }
+
+    void list_faces(int axis, SolidCover& cover) const {
+        const Layout<3>& l = grid_.layout();
+        for_each([&](const Number& n, std::size_t k) {
+            if (kind_[axis][k] != Kind::open || share_[axis][k] == 0) return;
+            const Number inside = inside_box(n);
+            Number below = inside;
+            below[axis] = wrapped(axis, inside[axis] - 1);
+            const Vec3 s = extent(axis, n);
+            cover.faces.push_back({.face = l.at(inside),
+                                   .low = l.at(below),
+                                   .axis = axis,
+                                   .plane = inside[Layout<3>::outer],
+                                   .share = share_[axis][k],
+                                   .area = s.prod() / s[axis],
+                                   .gap = s[axis],
+                                   .arm = place(axis, n) - body_->position});
+        });
+    }
+
+    void list_cells(SolidCover& cover) const {
+        for_each([&](const Number& n, std::size_t k) {
+            const Number inside = inside_box(n);
+            bool last = !grid_.has(inside), all = true, none = true;
+            for (int a = 0; a < 3; ++a) last |= n[a] == first_[a] + length_[a] - 1;
+            if (last) return;
+            SolidCell cell{.cell = grid_.layout().at(inside), .arm = place(-1, n) - body_->position};
+            for (int a = 0; a < 3; ++a)
+                for (int up = 0; up < 2; ++up) {
+                    const std::size_t at = k + static_cast<std::size_t>(up) * stride_[a];
+                    const Real share = kind_[a][at] == Kind::open ? share_[a][at] : 0;
+                    all &= share == 1, none &= share == 0;
+                    Number of = n;
+                    of[a] += up;
+                    const Vec3 s = extent(a, of);
+                    const Real out = (up == 1 ? share : -share) * s.prod() / s[a];
+                    cell.way[a] += out;
+                    cell.turn += out * (place(a, of) - body_->position).cross(Vec3::Unit(a));
+                }
+            if (!none) (all ? cover.inside : cover.cells).push_back(cell);
+        });
+    }
+
+    const Grid<3>& grid_;
+    const Sides<3>& sides_;
+    Closed closed_;
+    const FlowBody* body_ = nullptr;
+    Real grown_ = 0, scale_ = 1;  ///< of a small body's spheres [m], of its shares [-]
+    Number first_{}, length_{};
+    PerAxis<std::size_t, 3> stride_{};
+    PerAxis<std::vector<Real>, 3> share_;
+    PerAxis<std::vector<Kind>, 3> kind_;
+};
+
+}  // namespace detail
+
+/// The parts of the faces of `grid` that `body` covers; `closed(axis, face)`: faces that walls close.
+template <class Closed>
+SolidCover cover_of(const Grid<3>& grid, const Sides<3>& sides, const FlowBody& body, Closed closed) {
+    SolidCover cover;
+    detail::SolidCoverFinder<Closed>(grid, sides, std::move(closed)).find(body, cover);
+    return cover;
+}
+
+}  // namespace abrade
