@@ -4,6 +4,7 @@
 #include <abrade/coupling/monolithic.hpp>
 #include <abrade/fluid/grid_fluid.hpp>
 
+#include <algorithm>
 #include <vector>
 
 namespace resolved {
@@ -16,6 +17,7 @@ using Water = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolid
 struct Ball {
     Sphere sphere;
     FlowBody body;
+    Real floor = -1e9;  ///< on which it stops [m]
 
     Ball(const Vec3& centre, Real radius, Real density, Index id = 0) : sphere{centre, radius} {
         body.id = id, body.position = centre, body.volume = 4.0 / 3 * pi * cube(radius);
@@ -29,12 +31,15 @@ struct Ball {
         if (body.inverse_mass > 0) body.velocity += dt * (gravity + body.inverse_mass * body.load.force);
         body.angular_velocity += dt * body.inverse_inertia * body.load.torque;
         body.position += dt * body.velocity;
+        if (body.position.z() < floor + sphere.radius)
+            body.position.z() = floor + sphere.radius, body.velocity.z() = std::max(body.velocity.z(), 0.0);
         sphere.centre = body.position;
     }
 };
 
 /// One step of both.
-inline void step(Water& water, std::vector<Ball>& balls, Real dt) {
+template <class Flow>
+void step(Flow& water, std::vector<Ball>& balls, Real dt) {
     std::vector<FlowBody> bodies;
     for (Ball& ball : balls) {
         ball.move(dt, water.params().gravity);

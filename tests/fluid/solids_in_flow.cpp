@@ -11,7 +11,12 @@ namespace {
 struct Idle {
     static constexpr bool present = true;
     void place(const Grid<3>&, const Sides<3>&, std::span<const FlowBody>, const FaceField<3>*) {}
-    void close(Poisson<3>&) {}
+    void close(Poisson<3>&, std::span<const OpenFace>) {}
+    void mix_last(FaceField<3>&) const {}
+    void seep(FaceField<3>&) const {}
+    std::vector<SolidPart> parts() const { return {}; }
+    std::span<const SolidFlux> fluxes() const { return {}; }
+    Real water_share(const OpenFace&) const { return 1; }
     void keep_wet(const Poisson<3>&) {}
     void mix(FaceField<3>&) const {}
     void force(FaceField<3>&, const Field<Real>&, const FlowStage&) {}
@@ -20,6 +25,7 @@ struct Idle {
     Real add_product(const Field<float>&, Field<float>&) { return 0; }
     void settle(FaceField<3>&, Field<Real>&) {}
     void hand_over() {}
+    Real fastest() const { return 0; }
     std::span<const FlowBody> bodies() const { return {}; }
     static void fields(auto&&) {}
 };
@@ -37,7 +43,7 @@ struct Fan : Idle {
 struct Piston : Idle {
     std::vector<Offset> faces;
     Real speed = 0;  ///< [m/s]
-    void close(Poisson<3>& m) {
+    void close(Poisson<3>& m, std::span<const OpenFace>) {
         for (const Offset f : faces) m.face[0][f] = 0;
     }
     void force(FaceField<3>& u, const Field<Real>&, const FlowStage&) {

@@ -2,8 +2,7 @@
 // Which parts of the faces of a staggered grid a rigid body covers.
 
 #include <abrade/fluid/cut_cell.hpp>
-#include <abrade/fluid/flow_body.hpp>
-#include <abrade/fluid/sides.hpp>
+#include <abrade/fluid/solids_in_flow.hpp>
 
 #include <Eigen/Cholesky>
 
@@ -45,6 +44,7 @@ struct SolidCover {
     std::vector<SolidFace> faces;
     std::vector<SolidCell> cells;   ///< that it covers in part
     std::vector<SolidCell> inside;  ///< and as a whole
+    std::vector<SolidPart> parts;   ///< its volume in cells
 };
 
 namespace detail {
@@ -67,14 +67,21 @@ public:
         : grid_(grid), sides_(sides), closed_(std::move(closed)) {}
 
     void find(const FlowBody& body, SolidCover& cover) {
-        cover.faces.clear(), cover.cells.clear(), cover.inside.clear();
+        cover.faces.clear(), cover.cells.clear(), cover.inside.clear(), cover.parts.clear();
         body_ = &body;
         find_box();
         for (int a = 0; a < 3; ++a) find_shares(a), list_faces(a, cover);
         list_cells(cover);
+        find_shares(of_cells);
+        for_each([&](const Number& n, std::size_t k) {
+            if (kind_[of_cells][k] == Kind::open && share_[of_cells][k] > 0)
+                cover.parts.push_back(
+                    {grid_.layout().at(inside_box(n)), share_[of_cells][k] * extent(of_cells, n).prod()});
+        });
     }
 
 private:
+    static constexpr int of_cells = 3;  ///< after the three axes
     using Number = CellNumber<3>;
     enum class Kind : char {
         closed,
@@ -127,7 +134,8 @@ private:
             stride_[a] = count;
             count *= static_cast<std::size_t>(length_[a]);
         }
-        for (int a = 0; a < 3; ++a) share_[a].assign(count, 0), kind_[a].assign(count, Kind::closed);
+        for (auto& share : share_) share.assign(count, 0);
+        for (auto& kind : kind_) kind.assign(count, Kind::closed);
     }
     void for_each(auto&& visit) const {
         std::size_t k = 0;
@@ -136,7 +144,7 @@ private:
             for (n[1] = first_[1]; n[1] < first_[1] + length_[1]; ++n[1])
                 for (n[0] = first_[0]; n[0] < first_[0] + length_[0]; ++n[0], ++k) visit(std::as_const(n), k);
     }
-    /// Centre and size of the control volume of a face; axis -1: of a cell.
+    /// Centre and size of the control volume of a face, or of a cell.
     Vec3 place(int axis, const Number& n) const noexcept {
         Vec3 x;
         for (int a = 0; a < 3; ++a) x[a] = a == axis ? face(a, n[a]) : centre(a, n[a]);
@@ -162,7 +170,7 @@ private:
             beyond = true;
         }
         if (beyond) return Kind::beyond;
-        return closed_(axis, grid_.layout().at(inside_box(n))) ? Kind::closed : Kind::open;
+        return axis < 3 && closed_(axis, grid_.layout().at(inside_box(n))) ? Kind::closed : Kind::open;
     }
 
     struct Near {
@@ -252,7 +260,7 @@ private:
             bool last = !grid_.has(inside), all = true, none = true;
             for (int a = 0; a < 3; ++a) last |= n[a] == first_[a] + length_[a] - 1;
             if (last) return;
-            SolidCell cell{.cell = grid_.layout().at(inside), .arm = place(-1, n) - body_->position};
+            SolidCell cell{.cell = grid_.layout().at(inside), .arm = place(of_cells, n) - body_->position};
             for (int a = 0; a < 3; ++a)
                 for (int up = 0; up < 2; ++up) {
                     const std::size_t at = k + static_cast<std::size_t>(up) * stride_[a];
@@ -276,8 +284,8 @@ private:
     Real grown_ = 0, scale_ = 1;  ///< of a small body's spheres [m], of its shares [-]
     Number first_{}, length_{};
     PerAxis<std::size_t, 3> stride_{};
-    PerAxis<std::vector<Real>, 3> share_;
-    PerAxis<std::vector<Kind>, 3> kind_;
+    PerAxis<std::vector<Real>, 4> share_;  ///< of the faces across each axis, of cells
+    PerAxis<std::vector<Kind>, 4> kind_;
 };
 
 }  // namespace detail

@@ -277,6 +277,11 @@ public:
     Real smallest(int axis) const noexcept {
         return *std::min_element(size_[axis].begin(), size_[axis].end());
     }
+    Real smallest() const noexcept {
+        Real least = smallest(0);
+        for (int a = 1; a < Dim; ++a) least = std::min(least, smallest(a));
+        return least;
+    }
     Real largest(int axis) const noexcept {
         return *std::max_element(size_[axis].begin(), size_[axis].end());
     }

@@ -44,8 +44,8 @@ class GridFluid {
     static constexpr bool is_height = std::same_as<Surface, HeightSurface>;
     static constexpr bool has_surface = is_height || std::same_as<Surface, FreeSurface>;
     static_assert(!has_surface || std::same_as<State, Real>, "a surface is kept in double precision");
-    static_assert(!Solids::present || (Dim == 3 && std::same_as<State, Real> && !has_surface),
-                  "solids that move: in three dimensions, in double precision, in a full box");
+    static_assert(!Solids::present || (Dim == 3 && std::same_as<State, Real> && (is_height || !has_surface)),
+                  "solids that move: in 3-D, in double precision, in a full box or below a HeightSurface");
 
 public:
     static constexpr std::string_view name = "GridFluid";
@@ -93,7 +93,7 @@ public:
         }
         if constexpr (Solids::present) {
             mixture_ = velocity_;
-            find_pressure_of_weight(1e-12);  // what bodies feel first
+            if constexpr (!has_surface) find_pressure_of_weight(1e-12);  // what bodies feel first
         }
     }
 
@@ -236,8 +236,7 @@ public:
         } else {
             field("saved_velocity", "m/s", &GridFluid::saved_velocity_);
         }
-        if constexpr (Solids::present)
-            field("mixture", "m/s", &GridFluid::mixture_), field("solids", &GridFluid::solids_);
+        if constexpr (Solids::present) field("solids", &GridFluid::solids_);
     }
     void restored() {
         if constexpr (has_surface) water_->show(projection_);
@@ -277,6 +276,9 @@ private:
     /// A given force may not know the time beyond the run: where it fails, it fails the step that asks for
     /// it.
     FluidStep smooth(FluidStep step) const {
+        if constexpr (Solids::present)
+            if (const Real speed = solids_.fastest(); speed > 0)
+                step.lower(params_.courant * grid_->smallest() / speed, "solids");
         if (!params_.body_force || !std::isfinite(step.seconds)) return step;
         try {
             step.lower(detail::smooth_step<Dim>(params_.body_force, time_, step.seconds), "body force");
@@ -342,6 +344,20 @@ private:
         if constexpr (Turbulence::has_eddies) eddies_->find(velocity_, sides_, rows(), held());
     }
 
+    /// What carries the water, from its velocity.
+    void mix(const FaceField<Dim, State>& u, auto&& with_solids) requires Solids::present {
+        mixture_ = u;
+        with_solids();
+        sides_.fill(mixture_);
+    }
+
+    /// What moves the water alone.
+    const FaceField<Dim, State>& seeping() {
+        if constexpr (!Solids::present) return velocity_;
+        if constexpr (Solids::present) mix(velocity_, [&] { solids_.seep(mixture_); });
+        if constexpr (Solids::present) return mixture_;
+    }
+
     /// Air beside the water, ghosts.
     void finish(FaceField<Dim, State>& u) {
         if constexpr (has_surface) water_->extend(u);
@@ -360,7 +376,8 @@ private:
     VelocitySides<Dim> sides_;
     Projection<Dim, State> projection_;
     FaceField<Dim, State> velocity_, stage_, saved_velocity_;
-    std::conditional_t<Solids::present, FaceField<Dim, State>, Nothing> mixture_{};
+    std::conditional_t<Solids::present, FaceField<Dim, State>, Nothing> mixture_{};  ///< at work
+    std::span<const FlowBody> arriving_;  ///< bodies of the step to come
     Field<State> pressure_, saved_pressure_;
     std::conditional_t<has_surface, detail::WaterRecord<Dim, Liquid>, Nothing> record_{};
     WallFriction<Dim> side_friction_;  ///< of a full box

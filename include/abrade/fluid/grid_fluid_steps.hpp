@@ -44,6 +44,12 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
     std::vector<Sphere> spheres;
     for (const FlowBody& body : bodies)
         spheres.insert(spheres.end(), body.spheres.begin(), body.spheres.end());
+    if constexpr (has_surface)
+        if (steps_ == 0) {  // what stands in the water that was given
+            for (FlowBody& body : now) body.position -= (to_time - time_) * body.velocity;
+            solids_.place(*grid_, params_.sides, now, water_->open_area());
+            water_->stand_solids(solids_.parts());
+        }
     while (time_ < to_time) {
         const Real left = to_time - time_;
         const Real steps = std::max(std::ceil(left / stable_step().seconds - 1e-9), 1.0);
@@ -55,8 +61,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
             now[b].spheres = {sphere, bodies[b].spheres.size()};
             for (const Sphere& s : bodies[b].spheres) *sphere++ = {s.centre + back, s.radius};
         }
-        solids_.place(*grid_, params_.sides, now, nullptr);
-        projection_.fill_box(solids_);
+        arriving_ = now;
         step(dt);
         for (std::size_t b = 0; b < now.size(); ++b) {
             const FlowBody& found = solids_.bodies()[b];
@@ -94,6 +99,7 @@ template <int Dim, class Surface, AdvectionScheme Scheme, class State, Turbulenc
 void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::find_pressure_of_weight(Real tolerance) {
     pressure_.fill(0);
     for (auto& component : stage_) component.fill(0);
+    if constexpr (Solids::present && has_surface) water_->show(projection_);  // as if solids were water
     const Point<Dim> falls = params_.acceleration(time_);
     if (falls.isZero()) return;
     for (int a = 0; a < Dim; ++a) {
@@ -116,11 +122,16 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
     const Point<Dim> falls = params_.acceleration(time_ + 0.5 * dt);
     if (!params_.steady_sides) sides_.set_time(time_ + dt);
     saved_pressure_ = pressure_;  // the velocity is kept by the second stage
+    if constexpr (Solids::present) {
+        mix(velocity_, [&] { solids_.mix_last(mixture_); });
+        solids_.place(*grid_, params_.sides, std::exchange(arriving_, {}), nullptr);
+        projection_.fill_box(solids_);
+    }
     sides_.fill_cells(pressure_);
     const auto stage = [&](const FaceField<Dim, State>& by, FaceField<Dim, State>& result, Real kept) {
         const FaceField<Dim, State>* carrier = &by;
         if constexpr (Solids::present) {
-            if (kept > 0) mixture_ = by, solids_.mix(mixture_);
+            if (kept > 0) mix(by, [&] { solids_.mix(mixture_); });
             carrier = &mixture_;
         }
         Stage s{by, *carrier, velocity_, result, pressure_, dt, kept, -dt * (1 - kept), nu(), falls};
@@ -136,14 +147,11 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
     side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
     std::swap(velocity_, saved_velocity_);
     if (!params_.steady_sides) sides_.fill(velocity_);
-    if constexpr (Solids::present) solids_.force(velocity_, pressure_, {params_.density, dt, nu(), falls});
+    if constexpr (Solids::present)
+        solids_.force(velocity_, pressure_, {params_.density, dt, nu(), nullptr, true, falls});
     project({dt, params_.tolerance, false, nullptr, late_.pace(dt)});
     finish(velocity_);
-    if constexpr (Solids::present) {
-        mixture_ = velocity_;
-        solids_.settle(velocity_, pressure_);
-        finish(velocity_);
-    }
+    if constexpr (Solids::present) solids_.settle(velocity_, pressure_), sides_.fill(velocity_);
     if (late_.brief(dt)) pressure_ = saved_pressure_;  // what pushes so briefly is none to go on with
 }
 
@@ -153,7 +161,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     auto& water = *water_;
     if (record_.keep(velocity_, pressure_, water, late_, dt)) {
         finish(velocity_);
-        if (steps_ > 0 && !water.liquid().can_advance(velocity_, dt))  // too long a first one is told
+        if (steps_ > 0 && !water.liquid().can_advance(seeping(), dt))  // too long a first one is told
             record_.stay(velocity_), finish(velocity_);
     }
     if (late_.grows(dt)) {
@@ -161,7 +169,12 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
         record_.add_excess(pressure_, late_.last / dt);
     }
     sides_.join(pressure_);
-    water.move(velocity_, dt);
+    const FaceField<Dim>& moves = seeping();
+    if constexpr (Solids::present) {
+        solids_.place(*grid_, params_.sides, std::exchange(arriving_, {}), water.open_area());
+        water.set_solids(solids_.parts(), solids_.fluxes());
+    }
+    water.move(moves, dt);
     if (energy_) energy_->liquid_moved(energy_view());
     // The velocity goes from half a step before the new surface to half a step behind it.
     const Point<Dim> falls = params_.acceleration(time_ + dt);
@@ -185,22 +198,28 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     if (energy_) energy_->walls_took(taken);
     if (!params_.steady_sides) sides_.set_time(time_ + dt);
     sides_.fill(stage_, rows());
-    water.carry_by(stage_, dt);
+    if constexpr (Solids::present)
+        mix(stage_, [&] { solids_.mix(mixture_); }), water.carry_by(mixture_, dt);
+    else
+        water.carry_by(stage_, dt);
     // The old pressure is taken back: below the new surface it pushes anew.
     stage(stage_, velocity_, 0.5, 0.5 * dt);
     water.clear_surface_push(projection_.open_faces());
     water.friction().take(velocity_, &water.rows(), taken, 0.5);
     water.let_go(velocity_);
-    water.find(projection_, pressure_);
+    water.find(projection_, pressure_, solids_);
     water.load_carriers(velocity_, record_.wet());
     carry_weight(velocity_, dt * falls);
     for (const WaterFace& f : water.still()) velocity_[f.axis][f.face] = 0;
     outflows_.push(velocity_, pressure_, projection_, {dt, -falls[Dim - 1]});
     // Whole sides: where they change there may not have been water before.
     if (!params_.steady_sides) sides_.fill(velocity_);
+    if constexpr (Solids::present)
+        solids_.force(velocity_, pressure_, {params_.density, dt, nu(), &water.held(), false, falls});
     project({dt, params_.tolerance, true, surplus(), late_.pace(dt)});
     if constexpr (is_height) detail::slow_thin_water(velocity_, water.liquid(), dt, nu());
     finish(velocity_);
+    if constexpr (Solids::present) solids_.settle(velocity_, pressure_), sides_.fill(velocity_, rows());
 }
 
 /// What is left beyond `most_left` is solved for once more: single precision may have lost its way.
@@ -220,6 +239,7 @@ template <int Dim, class Surface, AdvectionScheme Scheme, class State, Turbulenc
           SolidsInFlow Solids>
 void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::restore() {
     if constexpr (has_surface) {
+        if constexpr (Solids::present) water_->take_back_solids();
         record_.restore(velocity_, pressure_, *water_);
         water_->find(projection_, pressure_);
     } else {

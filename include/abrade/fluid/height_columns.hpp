@@ -30,6 +30,7 @@ public:
         int level = 0;    ///< of the cell that holds it
         Real share = 0;   ///< of that cell's open volume below it [-]
         Real height = 0;  ///< [m]
+        Real beyond = 0;  ///< what stands above it for want of room, or lacks below [m3]
     };
 
     HeightColumns() = default;
@@ -101,6 +102,11 @@ public:
         return cut ? lower_part(*cut, open(cell), t) : t;
     }
 
+    /// Its inverse [m].
+    Real height_in(Offset cell, int level, Real share) const noexcept {
+        return grid_.face(vertical, level) + rise(cell, share) * grid_.size(vertical, level);
+    }
+
     /// V(z) of a column of the box [m3].
     Real volume_below(int plane, int j, Real height) const noexcept {
         Real sum = 0;
@@ -132,7 +138,7 @@ public:
             const Real room = open(c) * volume(k);
             if (left <= room && room > 0) {
                 const Real share = std::min(left / room, Real(1));
-                return {k, share, grid_.face(vertical, k) + rise(c, share) * grid_.size(vertical, k)};
+                return {k, share, height_in(c, k, share)};
             }
             left -= room;
         }

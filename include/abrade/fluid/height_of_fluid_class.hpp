@@ -4,6 +4,7 @@
 #include <abrade/fluid/height_columns.hpp>
 #include <abrade/fluid/height_fluxes.hpp>
 #include <abrade/fluid/side_ghosts.hpp>
+#include <abrade/fluid/solids_in_columns.hpp>
 #include <abrade/fluid/surface_marks.hpp>
 #include <abrade/fluid/volume_of_fluid_class.hpp>
 
@@ -123,21 +124,7 @@ public:
         gather();
     }
     /// The same, and what `surplus()` says.
-    void gather() {
-        brim_ = false;
-        for_each_column([&](int plane, int j, Index n) {
-            Real sum = 0;
-            for (int k = columns_.first(n); k < columns_.levels(); ++k) {
-                const Offset c = columns_.cell(plane, j, k);
-                sum += (fraction_[c] + surplus_[c]) * columns_.open(c) * columns_.volume(k);
-            }
-            for (int k = 0; k < columns_.levels(); ++k) fraction_[columns_.cell(plane, j, k)] = 0;
-            for (int k = 0; k < columns_.levels(); ++k) surplus_[columns_.cell(plane, j, k)] = 0;
-            set_fractions(plane, j, n, sum);
-        });
-        wet_.find(fraction_);
-        locate();
-    }
+    void gather();
 
     /// One step. Throws InputError beyond `courant_end`, and where too much of the surface wants to overturn.
     VolumeStep advance(const FaceField<Dim>& velocity, Real dt) {
@@ -153,6 +140,7 @@ public:
         fluxes_.find(flow);
         fluxes_.limit(flow);
         fluxes_.sum(flow, next_);
+        for (const SolidFlux& f : std::exchange(solid_fluxes_, {})) add_solid(f, dt);
         hold_slopes(dt);
         renew();
         ++steps_;
@@ -163,6 +151,22 @@ public:
         locate();
         return step;
     }
+
+    /// Solids that are among the water from the next step on, and what of them goes through upright faces in
+    /// it. Velocities are then those of the water times its share of a face. `moved()` holds both, and
+    /// fractions are those of both below the surface.
+    void set_solids(std::span<const SolidPart> parts, std::span<const SolidFlux> fluxes) {
+        std::swap(solids_, solids_before_);
+        solids_.set(parts, grid_, columns_);
+        solid_fluxes_ = fluxes;
+    }
+    /// Solids that the water has been given around, up to its surface as it stands.
+    void stand_solids(std::span<const SolidPart> parts) {
+        solids_.set(parts, grid_, columns_);
+        gather();
+    }
+    /// After a step that went wrong.
+    void take_back_solids() { solids_ = solids_before_; }
 
     bool can_advance(const FaceField<Dim>& u, Real dt) const { return dt * outflow_rate(u) <= courant_end; }
     Real stable_step(const FaceField<Dim>& velocity) const {
@@ -252,11 +256,14 @@ public:
             field("touched", &HeightOfFluid::touched_), field("volume", "m3", &HeightOfFluid::volume_),
             field("next", "m3", &HeightOfFluid::next_), field("height", "m", &HeightOfFluid::height_),
             field("top", &HeightOfFluid::top_), field("rises", "m3", &HeightOfFluid::rises_),
-            field("overturning", &HeightOfFluid::overturning_), field("steps", &HeightOfFluid::steps_),
-            field("brim", &HeightOfFluid::brim_), field("rose_far", &HeightOfFluid::rose_far_);
+            field("solids", &HeightOfFluid::solids_), field("overturning", &HeightOfFluid::overturning_),
+            field("steps", &HeightOfFluid::steps_), field("brim", &HeightOfFluid::brim_),
+            field("rose_far", &HeightOfFluid::rose_far_);
     }
 
 private:
+    using Surface = typename detail::HeightColumns<Dim>::Surface;
+
     static std::size_t at(auto i) noexcept { return static_cast<std::size_t>(i); }
     Real film_volume() const noexcept { return still_film * columns_.volume(0); }
     CellNumber<Dim> number(int plane, int j, int level) const noexcept {
@@ -272,9 +279,16 @@ private:
     }
 
     void begin_columns();
+    Real solid_in(Index n) const noexcept { return solids_.empty() ? 0 : solids_.volume(n); }
+    bool changes(Index n) const noexcept {
+        return next_[at(n)] != volume_[at(n)] || solids_.has(n) || solids_before_.has(n);
+    }
+    Surface surface_of(int plane, int j, Real liquid, int near) const noexcept;
+    Real level_around(Index n) const noexcept;
+    void add_solid(const SolidFlux& flux, Real dt);
     /// Of a column from empty cells.
     void set_fractions(int plane, int j, Index n, Real liquid) {
-        const auto surface = columns_.surface(plane, j, liquid, 0);
+        const auto surface = surface_of(plane, j, liquid, 0);
         for (int k = 0; k < columns_.levels(); ++k) {
             const Offset c = columns_.cell(plane, j, k);
             fraction_[c] = k < columns_.first(n) ? 0
@@ -284,17 +298,10 @@ private:
         }
         put(plane, j, n, liquid, surface);
     }
-    void put(int plane, int j, Index n, Real liquid,
-             const typename detail::HeightColumns<Dim>::Surface& surface) {
-        volume_[at(n)] = liquid, height_[at(n)] = surface.height, top_[at(n)] = surface.level;
-        const Real beyond = liquid - columns_.capacity(n);
-        if (beyond > 0 && !columns_.closed(n)) {  // a lid of the box: what the pressure is to drive out
-            brim_ = true;
-            const int top = columns_.levels() - 1;
-            const Offset c = columns_.cell(plane, j, top);
-            surplus_[c] = beyond / (columns_.open(c) * columns_.volume(top));
-        }
-    }
+    void put(int plane, int j, Index n, Real liquid, const Surface& surface);
+    /// What the pressure is to drive out [m3].
+    void owe(Offset cell, int level, Real beyond);
+    void owe_below(int plane, int j, const Surface& surface);
 
     /// Holds slopes that are too steep back from growing.
     void hold_slopes(Real dt);
@@ -373,7 +380,10 @@ private:
     std::vector<Real> volume_, next_, height_;  ///< [column] now, after the step [m3]; [m]
     std::vector<int> top_;                      ///< [column]
     std::vector<Real> rises_;                   ///< [column] what goes up through the level at work [m3]
+    std::vector<Surface> risen_;                ///< [column] where the step leads
     std::vector<std::uint8_t> near_solid_;      ///< [column]
+    detail::SolidsInColumns<Dim> solids_, solids_before_;
+    std::span<const SolidFlux> solid_fluxes_;  ///< of the step to come
     Overturning overturning_;
     Point<Dim> gravity_ = Point<Dim>::Zero();
     Index steps_ = 0;

@@ -52,7 +52,7 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     for (const Held& h : all) {  // through the topmost face
         const int plane = h.down || h.axis != 0 ? h.plane : h.plane - 1;
         const int j = h.down || h.axis == 0 ? h.j : h.j - 1;
-        const int level = columns_.surface(plane, j, next_[at(h.from)], top_[at(h.from)]).level;
+        const int level = surface_of(plane, j, next_[at(h.from)], top_[at(h.from)]).level;
         moved_[h.axis][columns_.cell(h.plane, h.j, level)] += h.down ? -h.amount : h.amount;
     }
     if (held.empty()) return;
@@ -76,20 +76,26 @@ void HeightOfFluid<Dim>::renew() {
     brim_ = false;
     std::vector<std::uint8_t> far(static_cast<std::size_t>(grid_.cells(0)), 0);
     touched_.for_each_plane([&](int plane) {
-        for (int j = 0; j < columns_.across(); ++j) rises_[at(columns_.column(plane, j))] = 0;
+        for (int j = 0; j < columns_.across(); ++j) {
+            const Index n = columns_.column(plane, j);
+            rises_[at(n)] = 0;
+            if (sides_[vertical][1] == Side::outflow) {  // over the top
+                const Real beyond = std::max(next_[at(n)] + solid_in(n) - columns_.capacity(n), Real(0));
+                moved_[vertical][columns_.cell(plane, j, columns_.levels())] = beyond;
+                next_[at(n)] -= beyond;
+            }
+            if (changes(n)) risen_[at(n)] = surface_of(plane, j, next_[at(n)], top_[at(n)]);
+        }
+    });
+    touched_.for_each_plane([&](int plane) {
         renew_plane(plane);
         for (int j = 0; j < columns_.across(); ++j) {
             const Index n = columns_.column(plane, j);
-            if (next_[at(n)] == volume_[at(n)]) continue;
-            const auto surface = columns_.surface(plane, j, next_[at(n)], top_[at(n)]);
-            if (surface.level > top_[at(n)] + 1) far[at(plane)] = 1;
-            height_[at(n)] = surface.height, top_[at(n)] = surface.level;
+            if (changes(n) && risen_[at(n)].level > top_[at(n)] + 1) far[at(plane)] = 1;
         }
     });
     for_each_column([&](int plane, int j, Index n) {
-        volume_[at(n)] = next_[at(n)];
-        if (volume_[at(n)] > columns_.capacity(n) && !columns_.closed(n))
-            put(plane, j, n, volume_[at(n)], {top_[at(n)], 1, height_[at(n)]});
+        if (changes(n)) put(plane, j, n, next_[at(n)], risen_[at(n)]);
     });
     rose_far_ = std::ranges::any_of(far, [](std::uint8_t f) { return f != 0; });
 }
@@ -107,14 +113,9 @@ void HeightOfFluid<Dim>::renew_plane(int plane) {
     for (int j = 0; j < columns_.across(); ++j) {
         const Index n = columns_.column(plane, j);
         Change& c = change[at(j)];
-        if (sides_[vertical][1] == Side::outflow) {  // over the top
-            const Real beyond = std::max(next_[at(n)] - columns_.capacity(n), Real(0));
-            moved_[vertical][columns_.cell(plane, j, columns_.levels())] = beyond;
-            next_[at(n)] -= beyond;
-        }
         c.surface = {top_[at(n)], 0, height_[at(n)]}, c.low = columns_.levels(), c.high = -1;
-        if (next_[at(n)] == volume_[at(n)] || columns_.closed(n)) continue;
-        c.surface = columns_.surface(plane, j, next_[at(n)], top_[at(n)]);
+        if (!changes(n) || columns_.closed(n)) continue;
+        c.surface = risen_[at(n)];
         c.low = std::min(c.surface.level, top_[at(n)]), c.high = std::max(c.surface.level, top_[at(n)]);
         low = std::min(low, c.low), high = std::max(high, c.high);
     }
@@ -218,7 +219,7 @@ template <int Dim>
 void HeightOfFluid<Dim>::begin_columns() {
     const std::size_t count = columns_.count();
     volume_.assign(count, 0), next_.assign(count, 0), height_.assign(count, 0), top_.assign(count, 0);
-    rises_.assign(count, 0);
+    rises_.assign(count, 0), risen_.assign(count, {});
     near_solid_.assign(count, 0);
     // Solids that pierce the surface, closed sides of the box among them: within two cells of them it is
     // no error that water wants to overturn.

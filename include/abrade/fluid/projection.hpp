@@ -72,9 +72,12 @@ public:
         water.rows.for_each_plane([&](int plane) {
             for (int row = 0; row < l.rows_per_plane(); ++row) conduct(water, plane, row);
         });
-        for (const OpenFace& open : open_)
-            m.dirichlet[open.cell] += static_cast<float>(face_area(open) * std::abs(open.slope));
-        if constexpr (Solids::present) solids.close(m);
+        if constexpr (Solids::present) solids.close(m, open_faces());
+        for (const OpenFace& open : open_) {
+            Real area = face_area(open);
+            if constexpr (Solids::present) area *= solids.water_share(open);
+            m.dirichlet[open.cell] += static_cast<float>(area * std::abs(open.slope));
+        }
         multigrid_.build();
         if constexpr (Solids::present) solids.keep_wet(m);
         find_faces();

@@ -5,25 +5,46 @@
 #include <abrade/fluid/flow_body.hpp>
 #include <abrade/fluid/poisson.hpp>
 #include <abrade/fluid/sides.hpp>
+#include <abrade/fluid/water_cells.hpp>
 
 #include <concepts>
 #include <string_view>
 
 namespace abrade {
 
+/// What a solid covers of a cell.
+struct SolidPart {
+    Offset cell = 0;
+    Real volume = 0;  ///< [m3]
+};
+
+/// Solid that goes through a face.
+struct SolidFlux {
+    Offset face = 0;
+    int axis = 0;
+    Real speed = 0;  ///< of the solid, times its share of what walls leave open [m/s]
+};
+
 /// One step of the water's.
 struct FlowStage {
-    Real density = 1;           ///< [kg/m3]
-    Real dt = 1;                ///< [s]
-    Real viscosity = 0;         ///< kinematic [m2/s]
+    Real density = 1;    ///< [kg/m3]
+    Real dt = 1;         ///< [s]
+    Real viscosity = 0;  ///< kinematic [m2/s]
+    const Field<Real>* held =
+        nullptr;                ///< water and solid in each cell, as a share of it [-]; none: all full
+    bool pushed = false;        ///< the old pressure has acted on velocities already
     Vec3 falls = Vec3::Zero();  ///< what the water's weight accelerates it by [m/s2]
 };
 
 /// Solids that move in water on a grid. There are two velocities at a face: the water's, which momentum is
 /// reckoned with, and that of the mixture of water and solid, which carries and has no divergence. A step
 /// asks
-/// - `place`: where they stand at its end;
-/// - `close`, `keep_wet`: what they take from what faces conduct, before the operator is built and after it;
+/// - `mix_last`, `seep`: from the water's velocity that of the mixture, or that of water times the share it
+/// has of
+///   faces, as the last step left them; `fluxes`: the rest;
+/// - `place`: where they stand at its end, and `parts`, what they cover of cells there;
+/// - `close`, `keep_wet`: what they take from what faces conduct, those at the surface among them, before the
+///   operator is built and after it;
 /// - `mix`: the mixture's velocity from a water's that is not known to the end yet;
 /// - `force`, once the water has been moved on by all but the new pressure: a force per volume on it, and
 /// from
@@ -32,7 +53,10 @@ struct FlowStage {
 ///   mixture on a plane of faces that has lost the whole gradient of phi moves instead: their share is a
 ///   source of divergence;
 /// - within the search for phi `add_product`, the same for the operator, which must stay symmetric;
-/// - `settle`: the water's velocity from the mixture's, and what is to be remembered.
+/// - `settle`: the water's velocity from the mixture's, and what is to be remembered; cells within solids get
+/// the
+///   pressure that goes on from around them;
+/// - `hand_over`, once the solids have taken their loads: they act from here on.
 /// A body's velocity is part of the solution, so it is that of the water's and the contacts' work together.
 // clang-format off
 template <class S>
@@ -40,14 +64,19 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
                                                Field<float>& e, const Grid<3>& grid, const Sides<3>& sides,
                                                std::span<const FlowBody> bodies, const FaceField<3>* open) {
     s.place(grid, sides, bodies, open);
-    s.close(m);
+    s.close(m, std::span<const OpenFace>{});
+    { still.water_share(OpenFace{}) } -> std::same_as<Real>;
     s.keep_wet(m);
     still.mix(u);
+    still.mix_last(u), still.seep(u);
+    { still.parts() } -> std::convertible_to<std::span<const SolidPart>>;
+    { still.fluxes() } -> std::convertible_to<std::span<const SolidFlux>>;
     s.force(u, p, FlowStage{});
     s.push(p, Real{}), s.push(e, Real{});
     still.correct(u, p, Real{}, int{}), still.correct(u, e, Real{}, int{});
     { s.add_product(e, e) } -> std::same_as<Real>;
-    s.settle(u, p);
+    s.settle(u, p), s.hand_over();
+    { still.fastest() } -> std::same_as<Real>;
     { still.bodies() } -> std::same_as<std::span<const FlowBody>>;
 };
 // clang-format on

@@ -78,6 +78,16 @@ public:
     /// Copies to beyond periodic sides.
     void join(auto& field) const noexcept { fill_periodic(field, layout(), sides_); }
 
+    /// As HeightOfFluid's.
+    void set_solids(std::span<const SolidPart> parts, std::span<const SolidFlux> fluxes) requires is_height {
+        liquid_.set_solids(parts, fluxes);
+    }
+    void stand_solids(std::span<const SolidPart> parts) requires is_height {
+        liquid_.stand_solids(parts);
+        find_rows(), find_held();
+    }
+    void take_back_solids() requires is_height { liquid_.take_back_solids(); }
+
     /// Moves the liquid with the velocity over a step.
     void move(const FaceField<Dim>& velocity, Real step) {
         rows_.copy(held(), before_);
@@ -98,7 +108,8 @@ public:
 
     /// Which cells are wet below the present surface and where it crosses the lines between centres; takes
     /// the pressure from dry cells.
-    void find(Projection<Dim, Real>& projection, Field<Real>& pressure) {
+    template <class Solids = const NoSolids>
+    void find(Projection<Dim, Real>& projection, Field<Real>& pressure, Solids& solids = no_solids) {
         WetRows<Dim> rows = rows_;
         rows.include(rows_before_);
         const Field<Real>& f = liquid_.fraction();
@@ -124,7 +135,7 @@ public:
             });
         join(wet_);
         find_open_faces(projection);
-        projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
+        projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()}, solids);
         find_air();
     }
 

@@ -58,8 +58,7 @@ public:
         else
             return detail::AfterRejectedLaw{};
     }
-    template <class L, class Drag = std::conditional_t<std::same_as<L, NoFluid> || ResolvedFluid<L>, NoDrag,
-                                                       CliftGauvin>>
+    template <class L, class Drag = UsualDrag<L>>
     auto fluid(L law, Drag drag = Drag{}) && {
         check_not_run();
         static_assert(FluidModel<L>, "Simulation::fluid(law): the fluid misses what the notes below name");

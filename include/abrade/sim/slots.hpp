@@ -1,9 +1,16 @@
 #pragma once
 // What stands in the slots of a simulation while they are empty, or filled by what cannot be used.
 
+#include <abrade/coupling/drag.hpp>
 #include <abrade/sim/run_options.hpp>
 
+#include <type_traits>
+
 namespace abrade {
+
+/// What goes with a fluid where nothing is said; one that resolves bodies knows its forces.
+template <class F>
+using UsualDrag = std::conditional_t<std::same_as<F, NoFluid> || ResolvedFluid<F>, NoDrag, CliftGauvin>;
 
 /// Stands in the contact slot until `.contact(law)` fills it.
 struct ContactLawIsMissing {};

@@ -1,0 +1,155 @@
+#pragma once
+// All faces of a grid that bodies cover some of, and what is left of them to the water.
+
+#include <abrade/core/parallel.hpp>
+#include <abrade/coupling/solid_shares.hpp>
+
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace abrade {
+
+/// A face and one of the bodies that cover it.
+struct CoveredFace : SolidFace {
+    std::size_t body = 0;
+    Real open = 0;     ///< share of the face that walls leave open; 0: no water passes [-]
+    Real water = 0;    ///< share that bodies leave to the water, too [-]
+    Real covered = 0;  ///< by the one body, of what is open [-]
+    Real per_gap = 0;  ///< 1 over the distance of the pressures to both sides [1/m]
+    bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
+    Real held = 0;      ///< share of the way to the body's velocity that friction takes the water [-]
+    Real velocity = 0;  ///< of the water, before a pressure acts [m/s]
+
+    bool at_surface() const noexcept { return high_wet != low_wet; }
+    /// Of a pressure over density [m/s2].
+    template <class Number>
+    Real gradient(const Field<Number>& of) const noexcept {
+        const auto above = high_wet ? static_cast<Real>(of[face]) : 0;
+        const auto below = low_wet ? static_cast<Real>(of[low]) : 0;
+        return (above - below) * per_gap;
+    }
+};
+
+class CoveredFaces {
+public:
+    /// Bodies as they stand. `open_area`: shares that walls leave open; none: all is.
+    void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
+               const FaceField<3>* open_area) {
+        covers_.resize(bodies.size());
+        const auto closed = [open_area](int axis, Offset face) {
+            return open_area && (*open_area)[axis][face] == 0;
+        };
+        parallel_blocks(
+            static_cast<Index>(bodies.size()),
+            [&](Index, Index first, Index last) {
+                detail::SolidCoverFinder finder(grid, sides, closed);
+                for (Index b = first; b < last; ++b) finder.find(bodies[at(b)], covers_[at(b)]);
+            },
+            block_of_bodies);
+        faces_.clear(), first_.assign(1, 0);
+        for (std::size_t b = 0; b < covers_.size(); ++b) {
+            for (const SolidFace& f : covers_[b].faces) {
+                faces_.push_back({f});
+                faces_.back().body = b;
+            }
+            first_.push_back(faces_.size());
+        }
+        sort_by_plane(grid.layout().planes());
+    }
+
+    std::span<CoveredFace> all() noexcept { return faces_; }
+    std::span<const CoveredFace> all() const noexcept { return faces_; }
+    std::span<CoveredFace> of(std::size_t body) noexcept {
+        return std::span(faces_).subspan(first_[body], first_[body + 1] - first_[body]);
+    }
+    const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }
+    std::span<const SolidCover> covers() const noexcept { return covers_; }
+    /// Volume in cells, of all bodies.
+    std::vector<SolidPart> parts() const {
+        std::vector<SolidPart> parts;
+        for (const SolidCover& cover : covers_)
+            parts.insert(parts.end(), cover.parts.begin(), cover.parts.end());
+        return parts;
+    }
+    /// In an order that does not depend on threads.
+    void on_plane(int plane, auto&& visit) const {
+        if (by_plane_.empty()) return;
+        for (std::size_t i = plane_start_[at(plane)]; i < plane_start_[at(plane + 1)]; ++i)
+            visit(faces_[by_plane_[i]]);
+    }
+
+    /// Takes from what faces conduct what bodies cover. `surface`: faces at which the pressure is 0.
+    void close(Poisson<3>& m, std::span<const OpenFace> surface) {
+        const auto share = [&](const SolidFace& f) {
+            return static_cast<Real>(m.face[f.axis][f.face]) * f.gap / f.area;
+        };
+        for (CoveredFace& f : faces_) f.open = share(f), f.per_gap = 1 / f.gap;
+        for (const CoveredFace& f : faces_) {
+            const Real left = share(f) - f.share;
+            m.face[f.axis][f.face] = left > least ? static_cast<float>(left * f.area / f.gap) : 0.0f;
+        }
+        for (CoveredFace& f : faces_) {
+            f.water = share(f);
+            f.covered = f.open > 0 ? std::min(f.share / f.open, 1.0) : 0;
+        }
+        close_surface(surface);
+    }
+    /// What is left of a face at the surface [-].
+    Real water_share(const OpenFace& open) const noexcept {
+        const auto found = surface_.find(key(open.axis, open.face));
+        return found == surface_.end() ? 1 : found->second;
+    }
+    /// Only cells that take part have a pressure.
+    void keep_wet(const Poisson<3>& m) {
+        for (SolidCover& cover : covers_)
+            std::erase_if(cover.cells, [&](const SolidCell& c) { return !(m.inverse_diagonal[c.cell] > 0); });
+    }
+
+private:
+    static constexpr Real least = 1e-6;  ///< of a face: less conducts nothing
+
+    static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
+    static Offset key(int axis, Offset face) noexcept { return 4 * face + axis; }
+
+    void sort_by_plane(int planes) {
+        plane_start_.assign(at(planes) + 1, 0);
+        for (const SolidFace& f : faces_) ++plane_start_[at(f.plane) + 1];
+        for (std::size_t p = 1; p < plane_start_.size(); ++p) plane_start_[p] += plane_start_[p - 1];
+        by_plane_.resize(faces_.size());
+        std::vector<std::size_t> next = plane_start_;
+        for (std::size_t i = 0; i < faces_.size(); ++i) by_plane_[next[at(faces_[i].plane)]++] = i;
+    }
+
+    /// What of a face between water and air is solid pushes on no water.
+    void close_surface(std::span<const OpenFace> surface) {
+        surface_.clear();
+        std::unordered_multimap<Offset, std::size_t> dry;
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            if (faces_[i].open == 0) dry.insert({key(faces_[i].axis, faces_[i].face), i});
+        if (dry.empty()) return;
+        for (const OpenFace& open : surface) {
+            const auto [first, last] = dry.equal_range(key(open.axis, open.face));
+            if (first == last) continue;
+            Real left = 1;
+            for (auto i = first; i != last; ++i) left -= faces_[i->second].share;
+            if (left < least) left = 0;
+            for (auto i = first; i != last; ++i) {
+                CoveredFace& f = faces_[i->second];
+                f.open = 1, f.water = left, f.covered = f.share, f.per_gap = std::abs(open.slope);
+                f.high_wet = open.cell == f.face, f.low_wet = open.cell == f.low;
+            }
+            surface_[key(open.axis, open.face)] = left;
+        }
+    }
+
+    std::vector<SolidCover> covers_;        ///< [body]
+    std::vector<CoveredFace> faces_;        ///< body by body
+    std::vector<std::size_t> first_;        ///< [body] in `faces_`
+    std::vector<std::size_t> by_plane_;     ///< `faces_` in the order of their planes
+    std::vector<std::size_t> plane_start_;  ///< [plane] in `by_plane_`
+    std::unordered_map<Offset, Real> surface_;
+};
+
+}  // namespace abrade

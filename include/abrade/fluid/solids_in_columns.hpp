@@ -1,0 +1,104 @@
+#pragma once
+// Solids that stand and move in columns of liquid.
+
+#include <abrade/fluid/height_columns.hpp>
+#include <abrade/fluid/solids_in_flow.hpp>
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace abrade {
+
+namespace detail {
+
+/// Solids among the water of a HeightOfFluid. A column's volume is its water; its surface stands where that
+/// has room beside the solid, which is taken to be spread evenly over each cell.
+template <int Dim>
+class SolidsInColumns {
+    static constexpr int vertical = Grid<Dim>::vertical;
+
+public:
+    void set(std::span<const SolidPart> parts, const Grid<Dim>& grid, const HeightColumns<Dim>& columns) {
+        parts_.clear();
+        for (const SolidPart& part : parts) {
+            const CellNumber<Dim> number = grid.layout().number(part.cell);
+            parts_.push_back({columns.column(number), number[vertical], part.volume});
+        }
+        const auto before = [](const Part& a, const Part& b) {
+            return a.column != b.column ? a.column < b.column : a.level < b.level;
+        };
+        std::stable_sort(parts_.begin(), parts_.end(), before);
+        std::size_t last = 0;
+        for (std::size_t i = 1; i < parts_.size(); ++i)
+            if (before(parts_[last], parts_[i]))
+                parts_[++last] = parts_[i];
+            else
+                parts_[last].volume += parts_[i].volume;
+        if (!parts_.empty()) parts_.resize(last + 1);
+    }
+
+    bool empty() const noexcept { return parts_.empty(); }
+    bool has(Index column) const noexcept { return !parts_.empty() && !of(column).empty(); }
+    /// In a cell [m3].
+    Real volume(Index column, int level) const noexcept {
+        for (const Part& part : of(column))
+            if (part.level == level) return part.volume;
+        return 0;
+    }
+    Real volume(Index column) const noexcept {
+        Real sum = 0;
+        for (const Part& part : of(column)) sum += part.volume;
+        return sum;
+    }
+
+    /// How high a volume of water stands in a column with solids [m3]. Where they cover the most of its area
+    /// at the level `around` [m] of the columns beside it, it stands at that level, inside the solid: so the
+    /// water below a solid that pierces the surface has the pressure of its depth, and what it has too much
+    /// or too little is the pressure's to drive out.
+    typename HeightColumns<Dim>::Surface surface(const HeightColumns<Dim>& columns, int plane, int j,
+                                                 Real liquid, Real around) const noexcept {
+        constexpr Real covers = 0.75;
+        const Index n = columns.column(plane, j);
+        const auto open = [&](int k) { return columns.open(columns.cell(plane, j, k)) * columns.volume(k); };
+        const auto room = [&](int k) { return std::max(open(k) - volume(n, k), Real(0)); };
+        const auto share_below = [&](int k) {
+            return columns.share_below(columns.cell(plane, j, k), k, around);
+        };
+        int k = columns.first(n);
+        Real left = liquid;
+        for (; k < columns.levels() && share_below(k) == 1; ++k) left -= room(k);
+        if (k < columns.levels() && volume(n, k) > covers * open(k)) {
+            const Real share = share_below(k);
+            const Real height = columns.height_in(columns.cell(plane, j, k), k, share);
+            return {k, share, height, left - share * room(k)};
+        }
+        left = liquid;
+        for (k = columns.first(n); k < columns.levels(); left -= room(k++))
+            if (left <= room(k) && room(k) > 0) {
+                const Real share = left / room(k);
+                return {k, share, columns.height_in(columns.cell(plane, j, k), k, share)};
+            }
+        return columns.surface(plane, j, columns.capacity(n), 0);
+    }
+
+    static void fields(auto&& field) { field.bytes("parts", &SolidsInColumns::parts_); }
+
+private:
+    struct Part {
+        Index column = 0;
+        int level = 0;
+        Real volume = 0;
+    };
+    std::span<const Part> of(Index column) const noexcept {
+        const auto [first, last] =
+            std::equal_range(parts_.begin(), parts_.end(), Part{column},
+                             [](const Part& a, const Part& b) { return a.column < b.column; });
+        return {first, last};
+    }
+
+    std::vector<Part> parts_;  ///< by column and level
+};
+
+}  // namespace detail
+}  // namespace abrade

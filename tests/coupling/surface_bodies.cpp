@@ -1,0 +1,119 @@
+// Bodies below, in and above the surface of water: rest, draft, what is displaced, what falls in.
+#include "resolved_bodies.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace resolved;
+
+namespace {
+
+using Pool = GridFluid<3, HeightSurface, Limited, Real, NoTurbulence, MonolithicSolids>;
+
+constexpr Real g = 9.81, h = 0.05, level = 0.613;
+
+/// A box of 1 m x 1 m, filled up to `level`.
+Pool pool() {
+    return Pool({.grid = {.cells = {20, 20, 24}, .spacing = Vec3::Constant(h)},
+                 .sides = Sides<3>::all(Side::slip),
+                 .water = [](const Vec3& x) { return level - x.z(); },
+                 .gravity = {0, 0, -g},
+                 .density = 1000,
+                 .viscosity = 1e-3,
+                 .tolerance = 1e-8});
+}
+Real fastest(const Pool& water) {
+    Real most = 0;
+    for (int a = 0; a < 3; ++a)
+        water.grid().for_each([&](const auto&, Offset c) {
+            if (water.liquid().fraction()[c] == 1) most = std::max(most, std::abs(water.velocity()[a][c]));
+        });
+    return most;
+}
+/// Up and down alone, onto the floor; returns how high the ball was in the mean.
+Real advance(Pool& water, Ball& ball, Real end) {
+    std::vector<Ball> balls{ball};
+    balls[0].floor = 0;
+    const Vec3 place = ball.body.position;
+    Real sum = 0, time = 0;
+    while (water.time() < end - 1e-9) {
+        FlowBody& body = balls[0].body;
+        body.velocity.head<2>().setZero(), body.load.force.head<2>().setZero();
+        body.position.head<2>() = place.head<2>();
+        const Real dt = std::min(water.stable_step().seconds, end - water.time());
+        step(water, balls, dt);
+        sum += dt * body.position.z(), time += dt;
+    }
+    ball = balls[0];
+    return sum / time;
+}
+/// Of a ball whose lowest point lies `depth` below the surface.
+Real cap(Real radius, Real depth) { return pi * square(depth) * (radius - depth / 3); }
+
+}  // namespace
+
+TEST_CASE("a fixed ball below the surface: all stays at rest, what it pushes up is its volume") {
+    Pool water = pool();
+    Ball ball({0.515, 0.49, 0.3}, 0.1, 0);
+    advance(water, ball, 1);
+    CHECK(fastest(water) < 1e-6 * std::sqrt(g * level));
+    CHECK(ball.body.load.force.z() == doctest::Approx(1000 * g * ball.body.volume).epsilon(1e-7));
+    CHECK(ball.body.load.force.head<2>().norm() < 1e-7 * 1000 * g * ball.body.volume);
+    CHECK(water.liquid().volume() == doctest::Approx(level - ball.body.volume).epsilon(1e-12));
+}
+
+TEST_CASE("a fixed ball that pierces the surface has the buoyancy of what is below it") {
+    for (const Real z : {0.56, 0.6, 0.66}) {
+        Pool water = pool();
+        Ball ball({0.515, 0.49, z}, 0.1, 0);
+        advance(water, ball, 1);
+        const Real below = cap(0.1, level - (z - 0.1));
+        CAPTURE(z);
+        MESSAGE("buoyancy " << ball.body.load.force.z() / (1000 * g * below) << ", fastest "
+                            << fastest(water));
+        CHECK(std::abs(ball.body.load.force.z() - 1000 * g * below) < 0.025 * 1000 * g * ball.body.volume);
+        CHECK(fastest(water) < 0.02 * std::sqrt(g * level));
+        CHECK(water.liquid().volume() == doctest::Approx(level - below).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a ball that rises swims as deep as Archimedes has it; no water is lost") {
+    for (const Real ratio : {0.3, 0.5}) {
+        Pool water = pool();
+        Ball ball({0.515, 0.49, 0.5}, 0.1, 1000 * ratio);
+        advance(water, ball, 0.05);
+        const Real volume = water.liquid().volume();
+        advance(water, ball, 3);
+        const Real middle = advance(water, ball, 7);
+        Real low = 0, high = 0.2;
+        for (int k = 0; k < 60; ++k) {
+            const Real depth = 0.5 * (low + high);
+            (cap(0.1, depth) < ratio * ball.body.volume ? low : high) = depth;
+        }
+        const Real draft = volume + ratio * ball.body.volume - (middle - 0.1);
+        CAPTURE(ratio);
+        MESSAGE("draft " << draft << " m, exact " << low << " m");
+        CHECK(std::abs(draft - low) < 0.2 * h);  // a fifth of a cell, waves included
+        CHECK(water.liquid().volume() == doctest::Approx(volume).epsilon(1e-13));
+    }
+}
+
+TEST_CASE("a stone dropped into the pool goes through the surface to the floor; no void, no water lost") {
+    for (const Real cells : {2.0, 4.0}) {
+        Pool water = pool();
+        Ball ball({0.515, 0.49, 0.85}, 0.5 * cells * h, 2650);
+        advance(water, ball, 2.5);
+        CAPTURE(cells);
+        CHECK(ball.body.position.z() < 0.5 * cells * h + 1e-3);
+        CHECK(ball.body.load.force.z() == doctest::Approx(1000 * g * ball.body.volume).epsilon(0.1));
+        CHECK(water.liquid().volume() == doctest::Approx(level).epsilon(1e-12));
+        const auto& liquid = water.liquid();
+        Real low = 1, high = 0;
+        for (int i = 0; i < 20; ++i)
+            for (int j = 0; j < 20; ++j) {
+                const Real height = liquid.height(liquid.columns().column(i, j));
+                low = std::min(low, height), high = std::max(high, height);
+            }
+        CHECK(low > level - 0.5 * h);
+        CHECK(high < level + 0.7 * h);
+    }
+}
