@@ -13,12 +13,12 @@ namespace {
 
 Real fastest(const Channel<>& flow) { return detail::FastFace<3>(flow.grid(), flow.velocity()).speed; }
 
-/// As far as possible until each multiple of `every`, and `more` beyond it.
+/// As far as possible until each multiple of `every`, and `more` beyond it, if that is stable.
 template <class Fluid>
 void go(Fluid& flow, Real end, Real every, Real more) {
     for (Real until = every; until < end + 0.5 * every; until += every) {
         while (flow.time() < until) flow.step(std::min(flow.stable_step().seconds, until - flow.time()));
-        if (more > 0) flow.step(more);
+        if (more > 0) flow.step(std::min(more, flow.stable_step().seconds));
     }
 }
 

@@ -21,7 +21,7 @@ inline constexpr int dimensions =
 /// says which cells are liquid; one without `liquid()` is full.
 // clang-format off
 template <class Flow>
-concept GridFlow = requires(const Flow& flow) {
+concept GridFlow = requires(const Flow& flow) { flow.grid(), flow.params(), flow.time(); } && requires(const Flow& flow) {
     { flow.params().acceleration(flow.time()) } -> std::convertible_to<Point<dimensions<Flow>>>;
     { flow.params().density } -> std::convertible_to<Real>;
     { flow.pressure()[Offset{}] } -> std::convertible_to<Real>;

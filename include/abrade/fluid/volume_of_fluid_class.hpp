@@ -343,7 +343,7 @@ private:
     void fluxes_of_band(int axis);
     void fluxes_of_planes(int axis);
     void join_periodic(int axis);
-    Real stray(int axis, Offset c, int way, Real volume) const noexcept;
+    bool is_stray(int axis, Offset c, int way) const noexcept;
     void even_out_rims(int axis);
     void settle(VolumeStep& step);
     Real share_out(Offset c, Index level, Real amount);

@@ -305,6 +305,7 @@ void VolumeOfFluid<Dim>::fluxes_of_band(int axis) {
 /// Faces through which cells that the surface cuts give liquid.
 template <int Dim>
 void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
+    constexpr Real next_to_nothing = 0.01;  // what round-off of a normal makes of nothing is far below it
     const Offset step = layout_.stride[index(axis)];
     const auto& u = (*velocity_)[index(axis)];
     auto& moved = moved_[index(axis)];
@@ -339,8 +340,8 @@ void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
             for (int l = 0; l < lanes; ++l) {
                 const Offset c = planes_.cell[static_cast<std::size_t>(item[index(l)])];
                 const auto or_stray = [&](Real from_slab, int way, Real volume) {
-                    return from_slab == 0 && volume > 0 ? stray(axis, c, way, std::min(volume, room[l]))
-                                                        : from_slab;
+                    const Real even = fraction_[c] * std::min(volume, room[l]);
+                    return from_slab < next_to_nothing * even && is_stray(axis, c, way) ? even : from_slab;
                 };
                 if (up[l] > 0) moved[c + step] = or_stray(once[l], 1, up[l]);
                 if (u[c] < 0) moved[c] = -or_stray(up[l] > 0 ? again[l] : once[l], -1, down[l]);
@@ -369,19 +370,19 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
     });
 }
 
-/// A film thinner than its cell whose plane lies at the end that it comes from: a slab of the other end would
-/// find nothing, for ever. Unless the cell behind is at least as full, a closed face that gravity does not
-/// pull it off holds it, or it is part of a surface that its neighbours tell, it leaves as if it filled the
-/// cell evenly. A wall that cuts the cell holds nothing back: what moves there moves along it.
+/// A film or a drop whose plane lies at the end that it comes from: a slab of the
+/// other end would find next to nothing, for ever, while its weight makes it faster. Unless the cell behind
+/// is at least as full, a closed face that gravity does not pull it off holds it, or it is part of a surface
+/// that its neighbours tell, it leaves as if it filled the cell evenly. A wall that cuts the cell holds
+/// nothing back: what moves there moves along it.
 template <int Dim>
-Real VolumeOfFluid<Dim>::stray(int axis, Offset c, int way, Real volume) const noexcept {
-    if (fraction_[c] >= 0.5 || planes_.told[index(plane_of_[c])] != 0) return 0;
+bool VolumeOfFluid<Dim>::is_stray(int axis, Offset c, int way) const noexcept {
+    if (planes_.told[index(plane_of_[c])] != 0) return false;
     const bool whole = !open_volumes_ || (*open_volumes_)[c] == 1;
     const Offset behind = c - way * layout_.stride[index(axis)];
     const bool open_behind = (marks_[behind] & cell_mark::open) != 0 &&
                              ((marks_[behind] & cell_mark::inside) != 0 || sides_.periodic(axis));
-    const bool held = open_behind ? fraction_[behind] >= fraction_[c] : whole && !(gravity_[axis] * way > 0);
-    return held ? 0 : fraction_[c] * volume;
+    return open_behind ? fraction_[behind] < fraction_[c] : !whole || gravity_[axis] * way > 0;
 }
 
 }  // namespace abrade
