@@ -120,3 +120,19 @@ TEST_CASE("observing changes no bit") {
     CHECK(once.particles().angular_momentum[0] == watched.particles().angular_momentum[0]);
     CHECK(once.ledger().flow_work == watched.ledger().flow_work);
 }
+
+TEST_CASE("a fluid that begins earlier settles alone; between two runs it waits for the solids") {
+    Pusher fluid;
+    fluid.force = {0.3, 0, 0}, fluid.now = -0.2;
+    auto sim = pushed(false, fluid);
+    sim.run({.end_time = 0.05});
+    const Index exchanges = sim.fluid_model().exchanges;
+    CHECK(exchanges >= 4);
+    CHECK(exchanges <= 6);  // none while it settled
+    const Real mass = sim.particles().mass[0], between = sim.fluid_model().time();
+    CHECK(between < sim.time());
+    sim.run({.end_time = 0.1});
+    CHECK(sim.fluid_model().longest <= 1e-2);  // nothing was passed over
+    CHECK(sim.particles().velocity[0].x() == doctest::Approx(0.3 * 0.1 / mass).epsilon(1e-12));
+    CHECK(sim.ledger().residual_relative() < 1e-13);
+}

@@ -296,11 +296,11 @@ private:
         limits_.emplace(*world_);
     }
 
-    /// One that begins earlier than the solids comes up to them, unless it is stopped on its way.
+    /// One that begins earlier than the solids comes up to them, unless it is stopped; later it may follow.
     void settle_fluid(const RunOptions& options) {
         if constexpr (AdvancingFluid<F>) {
             const auto start = Clock::now();
-            while (!stopped_ && fluid_model().time() < time_) {
+            while (!stopped_ && fluid_model().time() < time_ && !(ResolvedFluid<F> && opened_)) {
                 const Real some = steps_between_checks * fluid_model().stable_step().seconds;
                 advance_fluid(std::min(time_, fluid_model().time() + some));
                 stopped_ = options.stop && options.stop();

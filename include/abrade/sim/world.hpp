@@ -24,10 +24,10 @@ public:
     void advance_fluid(Real t) {
         if constexpr (P::fluid_advances) {
             Stopwatch watch{state_.policies.fluid.time() < t};
-            if constexpr (P::fluid_resolves)
-                exchange_before(t);
-            else
+            if (!P::fluid_resolves || t <= now_)  // to settle, nobody is in it yet
                 bring_fluid_to(state_.policies.fluid, t);
+            else if constexpr (P::fluid_resolves)
+                exchange_before(t);
             watch.lap(fluid_seconds_);
         }
     }
