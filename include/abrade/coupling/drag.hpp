@@ -71,12 +71,11 @@ static_assert(!DragLaw<NoParams>);
 struct FluidLoad {
     Vec3 drag = Vec3::Zero();            ///< [N]
     Vec3 buoyancy = Vec3::Zero();        ///< [N]
-    Vec3 flow = Vec3::Zero();            ///< all at once, by a fluid that resolves the body [N]
-    Vec3 torque = Vec3::Zero();          ///< about the centroid, by such a fluid [N m]
     Vec3 fluid_velocity = Vec3::Zero();  ///< that the drag was reckoned with [m/s]
-
-    Vec3 force() const noexcept { return drag + buoyancy + flow; }
 };
+
+inline Vec3 force_of(const FluidLoad& load) noexcept { return load.drag + load.buoyancy; }
+inline Vec3 force_of(const FlowLoad& load) noexcept { return load.force; }
 
 /// The share of a sphere's volume below the surface when its centre is `depth` below it: a spherical cap.
 inline Real submerged_share(Real depth, Real radius) noexcept {

@@ -33,7 +33,7 @@ template <class P>
         SpherePlace& place = lines.place[slot];
         const Real mass = load.mass;
         if (motion.inverse_mass > 0) {
-            FluidLoad fluid;
+            typename P::OnBody fluid{};
             if constexpr (P::has_fluid) {
                 const auto sphere = static_cast<std::size_t>(state.store.sphere_of(static_cast<Index>(slot)));
                 if (const Index body = state.particles.body[sphere]; state.feels_fluid(body)) {
@@ -72,7 +72,7 @@ template <class P>
                    last = first + static_cast<std::size_t>(clump.count);
         if (state.pace[first] > Pace::beside_sleeper) continue;
         if (clump.inverse_mass > 0) {
-            FluidLoad fluid;
+            typename P::OnBody fluid{};
             if constexpr (P::has_fluid)
                 if (state.feels_fluid(clump.body)) {
                     fluid = state.fluid_on(clump.body, clump.position, clump.velocity, move.time,
@@ -135,7 +135,7 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         for (auto* column : {&p.velocity, &p.angular_momentum, &p.force, &p.torque}) (*column)[b].setZero();
         return true;
     };
-    FluidLoad fluid;
+    typename P::OnBody fluid{};
     const auto sample = [&](const Vec3& position, const Vec3& velocity) {
         if constexpr (P::has_fluid)
             if (state.feels_fluid(body))
@@ -153,8 +153,9 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         sample(clump.position, clump.velocity);
         const KickedClump after = kick(clump, load, fluid, state.scene.gravity, move.kick);
         p.velocity[b] = after.velocity, p.angular_momentum[b] = after.angular_momentum;
-        p.force[b] = load.force + p.mass[b] * state.scene.gravity + fluid.force();
-        p.torque[b] = load.torque + fluid.torque;
+        p.force[b] = load.force + p.mass[b] * state.scene.gravity + force_of(fluid);
+        p.torque[b] = load.torque;
+        if constexpr (P::fluid_resolves) p.torque[b] += fluid.torque;
         sums.interaction.value[0] += after.interaction;
         sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
         sums.add(fluid, after.path, after.turn, move.kick);
@@ -183,8 +184,9 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
     const KickedSphere after = kick(motion, load, fluid, detail::quad(state.scene.gravity), move.kick);
     p.velocity[b] = detail::first_three(after.velocity);
     p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * detail::first_three(after.rim);
-    p.force[b] = load.force + p.mass[b] * state.scene.gravity + fluid.force();
-    p.torque[b] = place.radius * load.lever + fluid.torque;
+    p.force[b] = load.force + p.mass[b] * state.scene.gravity + force_of(fluid);
+    p.torque[b] = place.radius * load.lever;
+    if constexpr (P::fluid_resolves) p.torque[b] += fluid.torque;
     sums.interaction = sums.interaction + after.interaction;
     sums.path = sums.path + after.path;
     sums.add(fluid, 0.5 * move.kick * (motion.velocity + p.velocity[b]),

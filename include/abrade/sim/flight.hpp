@@ -21,16 +21,16 @@ FlightLoad flight_load(const State<P>& state, Index body, const Vec3& position, 
                        const FreeFlight& flight) noexcept {
     FlightLoad found;
     found.acceleration = state.scene.gravity;
-    if constexpr (P::has_fluid)
+    if constexpr (P::has_fluid && !P::fluid_resolves)  // which lets nobody fly
         if (state.feels_fluid(body)) {
             const Real inverse_mass = state.particles.inverse_mass[static_cast<std::size_t>(body)];
             const FluidLoad first = state.fluid_on(body, position, velocity, flight.start, 0);
             const Vec3 half =
-                velocity + 0.5 * flight.kicks * (state.scene.gravity + inverse_mass * first.force());
+                velocity + 0.5 * flight.kicks * (state.scene.gravity + inverse_mass * force_of(first));
             const Real to_middle = 0.5 * (flight.drifts - flight.last);
             found.fluid =
                 state.fluid_on(body, position + to_middle * half, half, flight.start + to_middle, 0);
-            found.acceleration += inverse_mass * found.fluid.force();
+            found.acceleration += inverse_mass * force_of(found.fluid);
         }
     return found;
 }
@@ -168,7 +168,7 @@ template <class P>
 std::optional<Real> hardest_in_flight(const State<P>& state, Index body, const Vec3& position,
                                       const Vec3& velocity) noexcept {
     Real hardest = state.scene.gravity.norm();
-    if constexpr (P::has_fluid)
+    if constexpr (P::has_fluid && !P::fluid_resolves)
         if (state.feels_fluid(body)) {
             const Real inverse_mass = state.particles.inverse_mass[static_cast<std::size_t>(body)],
                        horizon = state.flight.horizon;

@@ -20,11 +20,14 @@ struct MotionSums {
     Quad finite{};       ///< sum of velocities: not finite where one is not
     bool stirs = false;  ///< one beside a sleeper has become fast
 
-    /// What the fluid did over a `way` [m] and a `turn` [rad], and for `time` [s].
-    void add(const FluidLoad& fluid, const Vec3& way, const Vec3& turn, Real time) noexcept {
+    /// What the fluid did over a `way` [m] and for `time` [s]; one that resolves bodies turns them, too
+    /// [rad].
+    void add(const FluidLoad& fluid, const Vec3& way, const Vec3& /*turn*/, Real time) noexcept {
         drag += fluid.drag.dot(way), drag_input += time * fluid.drag.dot(fluid.fluid_velocity);
         buoyancy += fluid.buoyancy.dot(way);
-        flow += fluid.flow.dot(way) + fluid.torque.dot(turn);
+    }
+    void add(const FlowLoad& fluid, const Vec3& way, const Vec3& turn, Real /*time*/) noexcept {
+        flow += fluid.force.dot(way) + fluid.torque.dot(turn);
     }
     /// A sphere that has moved: where it is, its velocity, and the speed of its rim.
     void notice(const Quad& place, const Quad& velocity, const Quad& rim) noexcept {
@@ -64,17 +67,20 @@ struct KickedSphere {
 };
 
 /// v += dt (f/m + g), r omega += dt 5/2 lever/m: a solid sphere has I = 2/5 m r^2.
-inline KickedSphere kick(const SphereMotion& motion, const SphereLoad& load, const FluidLoad& fluid,
-                         const Quad& gravity, Real dt) noexcept {
+template <class OnBody>
+KickedSphere kick(const SphereMotion& motion, const SphereLoad& load, const OnBody& fluid,
+                  const Quad& gravity, Real dt) noexcept {
     const Quad& before = detail::quad(motion, 0);
     const Quad& rim = detail::quad(motion, 1);
     const Quad force = detail::three_ones * detail::quad(load, 0),
                lever = detail::three_ones * detail::quad(load, 1);
     const Quad mass = detail::same(load.mass), per_mass = detail::same(dt * motion.inverse_mass);
     KickedSphere after;
-    after.velocity = before + per_mass * (force + mass * gravity + detail::quad(Vec3(fluid.force())));
-    after.rim =
-        rim + detail::same(2.5) * per_mass * (lever + detail::quad(Vec3(motion.curvature * fluid.torque)));
+    after.velocity = before + per_mass * (force + mass * gravity + detail::quad(force_of(fluid)));
+    Quad turning = lever;
+    if constexpr (std::same_as<OnBody, FlowLoad>)
+        turning = turning + detail::quad(Vec3(motion.curvature * fluid.torque));
+    after.rim = rim + detail::same(2.5) * per_mass * turning;
     const Quad way = detail::same(0.5 * dt) * (before + after.velocity);
     after.interaction = force * way + lever * (detail::same(0.5 * dt) * (rim + after.rim));
     after.path = detail::three_ones * mass * way;
@@ -106,11 +112,13 @@ struct KickedClump {
     Real interaction;  ///< [J]
 };
 
-inline KickedClump kick(const MovingClump& clump, const ClumpLoad& load, const FluidLoad& fluid,
-                        const Vec3& gravity, Real dt) noexcept {
+template <class OnBody>
+KickedClump kick(const MovingClump& clump, const ClumpLoad& load, const OnBody& fluid, const Vec3& gravity,
+                 Real dt) noexcept {
     const Vec3 velocity =
-        clump.velocity + dt * clump.inverse_mass * (load.force + clump.mass * gravity + fluid.force());
-    const Vec3 momentum = clump.angular_momentum + dt * (load.torque + fluid.torque);
+        clump.velocity + dt * clump.inverse_mass * (load.force + clump.mass * gravity + force_of(fluid));
+    Vec3 momentum = clump.angular_momentum + dt * load.torque;
+    if constexpr (std::same_as<OnBody, FlowLoad>) momentum += dt * fluid.torque;
     const Vec3 path = 0.5 * dt * (clump.velocity + velocity);
     const Vec3 turn = 0.5 * dt * clump.angular_velocity(clump.angular_momentum + momentum);
     return {velocity, momentum, path, turn, load.force.dot(path) + load.torque.dot(turn)};

@@ -17,6 +17,7 @@ struct Policies {
     static constexpr bool has_fluid = !std::same_as<F, NoFluid>;
     static constexpr bool fluid_advances = AdvancingFluid<F>;
     static constexpr bool fluid_resolves = ResolvedFluid<F>;
+    using OnBody = std::conditional_t<fluid_resolves, FlowLoad, FluidLoad>;  ///< what the fluid does to one
 
     C contact;
     [[no_unique_address]] B bond;

@@ -59,9 +59,9 @@ std::vector<Support> supports(const State<P>& state, const std::vector<char>& wa
         own.strongest = std::max(own.strongest, state.particles.mass[at(b)] * state.scene.gravity.norm());
         if constexpr (P::has_fluid)
             if (state.feels_fluid(b)) {
-                const FluidLoad fluid =
+                const typename P::OnBody fluid =
                     state.fluid_on(b, state.store.position_of(state.particles, b), Vec3::Zero(), time, 0);
-                own.sum += fluid.force();
+                own.sum += force_of(fluid);
             }
     }
     return all;

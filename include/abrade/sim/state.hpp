@@ -136,13 +136,15 @@ struct State {
         return P::has_fluid && (kind == Kind::stone || kind == Kind::grain);
     }
     /// What the fluid does to a body at time t; `ahead` as in ContactStep.
-    FluidLoad fluid_on(Index body, const Vec3& position, const Vec3& velocity, Real t,
-                       Real ahead) const noexcept {
-        if constexpr (P::fluid_resolves)
-            return {.flow = flow_load[at(body)].force, .torque = flow_load[at(body)].torque};
-        const Vec3 now = velocity + ahead * (velocity - velocity_in_fluid[at(body)]);
-        return fluid_load(policies.drag, policies.fluid.sample(position, t),
-                          {position, now, particles.volume[at(body)]}, scene.gravity);
+    auto fluid_on(Index body, [[maybe_unused]] const Vec3& position, [[maybe_unused]] const Vec3& velocity,
+                  [[maybe_unused]] Real t, [[maybe_unused]] Real ahead) const noexcept {
+        if constexpr (P::fluid_resolves) {
+            return flow_load[at(body)];
+        } else {
+            const Vec3 now = velocity + ahead * (velocity - velocity_in_fluid[at(body)]);
+            return fluid_load(policies.drag, policies.fluid.sample(position, t),
+                              {position, now, particles.volume[at(body)]}, scene.gravity);
+        }
     }
 
     /// Lets concrete go whose last bond to the ground broke.
