@@ -135,20 +135,7 @@ TEST_CASE("a ball that contacts hold on the floor feels no kick at the exchange"
 TEST_CASE("drag of a fixed sphere at Re 100, 3 and 4 cells to a diameter, in a stream 8 wide") {
     for (const Real cells : {3.0, 4.0})
         for (const Real off : {0.0, 0.5}) {
-            const Real h = 1 / cells;
-            const int across = static_cast<int>(8 * cells), along = static_cast<int>(12 * cells);
-            Water::Params params{.grid = {.cells = {along, across, across}, .spacing = Vec3::Constant(h)},
-                                 .sides = Sides<3>::all(Side::slip),
-                                 .density = 1,
-                                 .viscosity = 0.01,
-                                 .tolerance = 1e-5};
-            params.sides[0] = {Side::inflow, Side::outflow};
-            params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
-            params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
-            Water water(params);
-            std::vector<Ball> balls{{Vec3(4 + off * h, 4 + 0.37 * off * h, 4 + 0.71 * off * h), 0.5, 0}};
-            while (water.time() < 10) step(water, balls, water.stable_step().seconds);
-            const Real drag = balls[0].body.load.force.x() / (pi / 8);
+            const Real drag = drag_in({.cells = cells, .off = off}, 10).mean;
             MESSAGE(cells << " cells, " << off << " off: " << drag);
             // Schiller and Naumann 1.092, and 2 % for the walls of the stream.
             CHECK(drag == doctest::Approx(1.11).epsilon(0.08));

@@ -5,6 +5,7 @@
 #include <abrade/fluid/grid_fluid.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace resolved {
@@ -48,6 +49,43 @@ void step(Flow& water, std::vector<Ball>& balls, Real dt) {
     }
     water.advance(water.time() + dt, bodies);
     for (std::size_t b = 0; b < balls.size(); ++b) balls[b].body = bodies[b];
+}
+
+/// A sphere of diameter 1 in a stream of speed 1 that is 8 wide, fixed or led along it.
+struct Stream {
+    Real cells = 4;       ///< to its diameter
+    Real reynolds = 100;  ///< of the stream
+    Real off = 0;         ///< of the sphere's centre from a corner of cells [cell]
+    Real led = 0;         ///< its speed
+};
+struct Drag {
+    Real mean = 0;    ///< C_d against the speed that meets it [-]
+    Real varies = 0;  ///< root mean square of its change as the sphere crosses the grid, over the mean [-]
+};
+/// Means over the last quarter of `end`.
+inline Drag drag_in(const Stream& stream, Real end) {
+    const Real h = 1 / stream.cells;
+    const int across = static_cast<int>(8 * stream.cells), along = static_cast<int>(12 * stream.cells);
+    Water::Params params{.grid = {.cells = {along, across, across}, .spacing = Vec3::Constant(h)},
+                         .sides = Sides<3>::all(Side::slip),
+                         .density = 1,
+                         .viscosity = 1 / stream.reynolds,
+                         .tolerance = 1e-5};
+    params.sides[0] = {Side::inflow, Side::outflow};
+    params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
+    params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
+    Water water(params);
+    std::vector<Ball> balls{{Vec3(4, 4, 4) + stream.off * h * Vec3(1, 0.37, 0.71), 0.5, 0}};
+    Real sum = 0, squares = 0, count = 0;
+    while (water.time() < end) {
+        balls[0].body.velocity.x() = stream.led;
+        step(water, balls, water.stable_step().seconds);
+        if (water.time() < 0.75 * end) continue;
+        const Real drag = balls[0].body.load.force.x() / (pi / 8 * square(1 - stream.led));
+        sum += drag, squares += square(drag), ++count;
+    }
+    const Real mean = sum / count;
+    return {mean, std::sqrt(std::max(squares / count - square(mean), 0.0)) / mean};
 }
 
 }  // namespace resolved

@@ -32,6 +32,7 @@ struct CoveredFace : SolidFace {
     }
 };
 
+/// Of all bodies, body by body and in the order of their planes; what walls and the surface leave of them.
 class CoveredFaces {
 public:
     /// Bodies as they stand. `open_area`: shares that walls leave open; none: all is.

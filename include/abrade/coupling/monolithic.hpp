@@ -17,14 +17,14 @@ namespace abrade {
 /// and this mixture has no divergence. Pressure and rigid velocities q = (V, W) minimise
 ///   1/2 sum rho (1 - sigma) |u - u*|^2 + 1/2 sum (q - q*)^T M (q - q*)  under that:
 ///   [D (1 - sigma) rho^-1 D^T + sum over bodies J M^-1 J^T] p = -D ((1 - sigma) u* + sigma v*),
-/// so any ratio of densities and any step are stable. J^T p is the force of the pressure.
+/// so the pressure is stable for any ratio of densities and any step. J^T p is its force.
 ///
 /// Before that comes friction: in a control volume covered by sigma water is held back, implicitly in time,
 ///   du/dt = C nu / h^2 sigma / (1 - sigma) (v - u),  h^3 the volume,
-/// and its body takes the impulse. Nothing else makes water stick; C is calibrated on the drag of a sphere.
-/// What friction and advection bring to a control volume and its water does not keep, the body gets: momentum
-/// is conserved. All of it acts upon velocities that the last pressure and the body's last load have acted on
-/// already: where all is at rest, nothing is exchanged.
+/// and its body takes the impulse; C is calibrated on the drag of a sphere. Where bodies leave less than a
+/// tenth of a face the water sticks. What friction and advection bring to a control volume and its water does
+/// not keep, the body gets: momentum is conserved. All of it acts upon velocities that the last pressure and
+/// the body's last load have acted on already: where all is at rest, nothing is exchanged.
 class MonolithicSolids {
     using Six = Eigen::Matrix<Real, 6, 1>;  ///< of a force and a torque, or a velocity and a spin
     using Matrix6 = Eigen::Matrix<Real, 6, 6>;

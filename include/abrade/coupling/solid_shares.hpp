@@ -2,6 +2,7 @@
 // Which parts of the faces of a staggered grid a rigid body covers.
 
 #include <abrade/fluid/cut_cell.hpp>
+#include <abrade/fluid/grid_place.hpp>
 #include <abrade/fluid/solids_in_flow.hpp>
 
 #include <Eigen/Cholesky>
@@ -102,12 +103,8 @@ private:
         const int n = grid_.cells(a);
         if (x < grid_.low(a)) return static_cast<int>(std::floor((x - grid_.low(a)) / size(a, 0)));
         if (x >= grid_.high(a)) return n + static_cast<int>((x - grid_.high(a)) / size(a, n - 1));
-        int low = 0;
-        for (int end = n; end - low > 1;) {
-            const int middle = (low + end) / 2;
-            (grid_.face(a, middle) <= x ? low : end) = middle;
-        }
-        return low;
+        const bool even = a != Grid<3>::vertical || grid_.uniform();
+        return detail::place_between(x, 0, n, size(a, 0), even, [&](int i) { return grid_.face(a, i); }).low;
     }
     int wrapped(int a, int i) const noexcept {
         const int n = grid_.cells(a);

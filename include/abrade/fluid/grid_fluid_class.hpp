@@ -91,10 +91,8 @@ public:
         } else {
             saved_velocity_ = velocity_;
         }
-        if constexpr (Solids::present) {
-            mixture_ = velocity_;
-            if constexpr (!has_surface) find_pressure_of_weight(1e-12);  // what bodies feel first
-        }
+        if constexpr (Solids::present && !has_surface)
+            find_pressure_of_weight(1e-12);  // bodies feel it first
     }
 
     const Params& params() const noexcept { return params_; }
@@ -353,9 +351,12 @@ private:
 
     /// What moves the water alone.
     const FaceField<Dim, State>& seeping() {
-        if constexpr (!Solids::present) return velocity_;
-        if constexpr (Solids::present) mix(velocity_, [&] { solids_.seep(mixture_); });
-        if constexpr (Solids::present) return mixture_;
+        if constexpr (Solids::present) {
+            mix(velocity_, [&] { solids_.seep(mixture_); });
+            return mixture_;
+        } else {
+            return velocity_;
+        }
     }
 
     /// Air beside the water, ghosts.

@@ -148,7 +148,9 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
     std::swap(velocity_, saved_velocity_);
     if (!params_.steady_sides) sides_.fill(velocity_);
     if constexpr (Solids::present)
-        solids_.force(velocity_, pressure_, {params_.density, dt, nu(), nullptr, true, falls});
+        solids_.force(
+            velocity_, pressure_,
+            {.density = params_.density, .dt = dt, .viscosity = nu(), .pushed = true, .falls = falls});
     project({dt, params_.tolerance, false, nullptr, late_.pace(dt)});
     finish(velocity_);
     if constexpr (Solids::present) solids_.settle(velocity_, pressure_), sides_.fill(velocity_);
@@ -159,6 +161,10 @@ template <int Dim, class Surface, AdvectionScheme Scheme, class State, Turbulenc
           SolidsInFlow Solids>
 void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surface(Real dt) {
     auto& water = *water_;
+    if constexpr (Solids::present) {  // first, since a step that goes wrong takes it back
+        solids_.place(*grid_, params_.sides, std::exchange(arriving_, {}), water.open_area());
+        water.set_solids(solids_.parts(), solids_.fluxes());
+    }
     if (record_.keep(velocity_, pressure_, water, late_, dt)) {
         finish(velocity_);
         if (steps_ > 0 && !water.liquid().can_advance(seeping(), dt))  // too long a first one is told
@@ -169,12 +175,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
         record_.add_excess(pressure_, late_.last / dt);
     }
     sides_.join(pressure_);
-    const FaceField<Dim>& moves = seeping();
-    if constexpr (Solids::present) {
-        solids_.place(*grid_, params_.sides, std::exchange(arriving_, {}), water.open_area());
-        water.set_solids(solids_.parts(), solids_.fluxes());
-    }
-    water.move(moves, dt);
+    water.move(seeping(), dt);
     if (energy_) energy_->liquid_moved(energy_view());
     // The velocity goes from half a step before the new surface to half a step behind it.
     const Point<Dim> falls = params_.acceleration(time_ + dt);
@@ -215,7 +216,9 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     // Whole sides: where they change there may not have been water before.
     if (!params_.steady_sides) sides_.fill(velocity_);
     if constexpr (Solids::present)
-        solids_.force(velocity_, pressure_, {params_.density, dt, nu(), &water.held(), false, falls});
+        solids_.force(
+            velocity_, pressure_,
+            {.density = params_.density, .dt = dt, .viscosity = nu(), .held = &water.held(), .falls = falls});
     project({dt, params_.tolerance, true, surplus(), late_.pace(dt)});
     if constexpr (is_height) detail::slow_thin_water(velocity_, water.liquid(), dt, nu());
     finish(velocity_);

@@ -8,9 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace abrade {
-
-namespace detail {
+namespace abrade::detail {
 
 /// Solids among the water of a HeightOfFluid. A column's volume is its water; its surface stands where that
 /// has room beside the solid, which is taken to be spread evenly over each cell.
@@ -100,5 +98,4 @@ private:
     std::vector<Part> parts_;  ///< by column and level
 };
 
-}  // namespace detail
-}  // namespace abrade
+}  // namespace abrade::detail

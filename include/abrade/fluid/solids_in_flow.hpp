@@ -36,29 +36,24 @@ struct FlowStage {
     Vec3 falls = Vec3::Zero();  ///< what the water's weight accelerates it by [m/s2]
 };
 
-/// Solids that move in water on a grid. There are two velocities at a face: the water's, which momentum is
-/// reckoned with, and that of the mixture of water and solid, which carries and has no divergence. A step
-/// asks
-/// - `mix_last`, `seep`: from the water's velocity that of the mixture, or that of water times the share it
-/// has of
-///   faces, as the last step left them; `fluxes`: the rest;
+// clang-format off
+/// Solids that move in water on a grid. There are two velocities at a face: the water's, which momentum is reckoned
+/// with, and that of the mixture of water and solid, which carries and has no divergence. A step asks
+/// - `mix_last`, `seep`: from the water's velocity that of the mixture, or that of the water times its share of a face,
+///   as the last step left them; `fluxes`: the solids' part of it;
 /// - `place`: where they stand at its end, and `parts`, what they cover of cells there;
-/// - `close`, `keep_wet`: what they take from what faces conduct, those at the surface among them, before the
-///   operator is built and after it;
+/// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface among them,
+///   before the operator is built and after it;
 /// - `mix`: the mixture's velocity from a water's that is not known to the end yet;
-/// - `force`, once the water has been moved on by all but the new pressure: a force per volume on it, and
-/// from
-///   there on the mixture's velocity;
-/// - for each solution phi = p dt / rho of the pressure `push`, what it does to them, and `correct`, how the
-///   mixture on a plane of faces that has lost the whole gradient of phi moves instead: their share is a
-///   source of divergence;
+/// - `force`, once the water has been moved on by all but the new pressure: a force per volume on it, and from there
+///   on the mixture's velocity;
+/// - for each solution phi = p dt / rho of the pressure `push`, what it does to them, and `correct`, how the mixture
+///   on a plane of faces that has lost the whole gradient of phi moves instead: their share is a source of divergence;
 /// - within the search for phi `add_product`, the same for the operator, which must stay symmetric;
-/// - `settle`: the water's velocity from the mixture's, and what is to be remembered; cells within solids get
-/// the
+/// - `settle`: the water's velocity from the mixture's, and what is to be remembered; cells within solids get the
 ///   pressure that goes on from around them;
 /// - `hand_over`, once the solids have taken their loads: they act from here on.
 /// A body's velocity is part of the solution, so it is that of the water's and the contacts' work together.
-// clang-format off
 template <class S>
 concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3>& u, Field<Real>& p, Poisson<3>& m,
                                                Field<float>& e, const Grid<3>& grid, const Sides<3>& sides,
