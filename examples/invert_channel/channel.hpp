@@ -48,6 +48,15 @@ auto make_contact(const ChannelConfig& c) {
     }
 }
 
+/// Of a fluid that does not know its forces.
+template <class Fluid>
+UsualDrag<Fluid> usual_drag(const ChannelConfig& c) {
+    if constexpr (std::same_as<UsualDrag<Fluid>, CliftGauvin>)
+        return CliftGauvin{c.drag};
+    else
+        return {};
+}
+
 /// One engine is compiled for each line of `channel_engines`.
 template <ContactLaw Contact, FluidModel Fluid>
 auto make_simulation(const ChannelConfig& c, Fluid fluid) {
@@ -56,7 +65,7 @@ auto make_simulation(const ChannelConfig& c, Fluid fluid) {
     if constexpr (std::same_as<Fluid, NoFluid>)
         return dry;
     else
-        return std::move(dry).fluid(std::move(fluid), CliftGauvin{c.drag});
+        return std::move(dry).fluid(std::move(fluid), usual_drag<Fluid>(c));
 }
 
 /// Of the middle class of stones on concrete at 1 m/s [-].

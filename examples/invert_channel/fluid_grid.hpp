@@ -9,9 +9,9 @@
 
 namespace abrade::examples {
 
-/// Below a FreeSurface or a HeightSurface.
-template <class Surface>
-using ChannelFlow = GridFluid<3, Surface, Limited, Real, MixingLength>;
+/// Below a FreeSurface or a HeightSurface, among stones that it resolves or not.
+template <class Surface, class Solids = NoSolids>
+using ChannelFlow = GridFluid<3, Surface, Limited, Real, MixingLength, Solids>;
 
 template <class Flow>
 Flow grid_channel(const ChannelConfig& c) {
@@ -43,7 +43,7 @@ Flow grid_channel(const ChannelConfig& c) {
                                 .roughness = roughness});
         stream.give_to(params);
         Flow flow(std::move(params), {.depth = start.uniform.depth()});
-        if (c.fluid.energy) flow.open_energy_account();
+        if (c.fluid.energy && !ResolvedFluid<Flow>) flow.open_energy_account();
         return flow;
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());
@@ -126,15 +126,16 @@ inline void look_at_the_end(const auto& flow, ChannelWater& water) {
     water.figures.push_back({"water_energy_residual_relative", energy.residual_relative()});
 }
 
-template <class Surface>
+template <class Surface, class Solids = NoSolids>
 ChannelRun run_below(const ChannelConfig& config, const ChannelFiles& files) {
     const UniformFlow uniform{config.water};
     ChannelWater water;
     water.manning_depth_m = uniform.depth(), water.manning_speed_m_per_s = uniform.mean_velocity();
-    ChannelRun run = run_channel<LinearHysteretic>(
-        config, files, grid_channel<ChannelFlow<Surface>>(config), water, [&](const auto& flow, bool first) {
-            first ? measure(config, flow, water) : look_at_the_end(flow, water);
-        });
+    ChannelRun run =
+        run_channel<LinearHysteretic>(config, files, grid_channel<ChannelFlow<Surface, Solids>>(config),
+                                      water, [&](const auto& flow, bool first) {
+                                          first ? measure(config, flow, water) : look_at_the_end(flow, water);
+                                      });
     run.results.water = std::move(water);
     return run;
 }

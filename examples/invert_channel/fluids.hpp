@@ -38,20 +38,22 @@ ChannelRun run_in_uniform_flow_elastic_plastic(const ChannelConfig& config, cons
 ChannelRun run_in_shallow_water(const ChannelConfig& config, const ChannelFiles& files);
 ChannelRun run_in_grid_water(const ChannelConfig& config, const ChannelFiles& files);
 ChannelRun run_in_grid_water_below_height(const ChannelConfig& config, const ChannelFiles& files);
+ChannelRun run_in_resolved_water(const ChannelConfig& config, const ChannelFiles& files);
 
 struct ChannelEngine {
     std::string_view fluid, contact;  ///< in the TOML file
     ChannelRun (*run)(const ChannelConfig&, const ChannelFiles&);
     std::string_view surface = "";  ///< of a grid's water
 };
-inline constexpr std::array<ChannelEngine, 7> channel_engines{
+inline constexpr std::array<ChannelEngine, 8> channel_engines{
     {{"none", "hysteretic", run_without_fluid},
      {"uniform", "hysteretic", run_in_uniform_flow},
      {"uniform", "linear", run_in_uniform_flow_linear},
      {"uniform", "elastic_plastic", run_in_uniform_flow_elastic_plastic},
      {"shallow", "hysteretic", run_in_shallow_water},
      {"grid", "hysteretic", run_in_grid_water, "volume"},
-     {"grid", "hysteretic", run_in_grid_water_below_height, "height"}}};
+     {"grid", "hysteretic", run_in_grid_water_below_height, "height"},
+     {"resolved", "hysteretic", run_in_resolved_water, "height"}}};
 
 /// Throws InputError where none was compiled for these; the surface counts where a fluid has one.
 inline const ChannelEngine& find_engine(std::string_view fluid, std::string_view contact,

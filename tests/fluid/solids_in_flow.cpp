@@ -21,7 +21,7 @@ struct Idle {
     void mix(FaceField<3>&) const {}
     void force(FaceField<3>&, const Field<Real>&, const FlowStage&) {}
     void push(const auto&, Real) {}
-    void correct(FaceField<3>&, const auto&, Real, int) const {}
+    void correct(FaceField<3>&, const auto&, Real, int, bool) const {}
     Real add_product(const Field<float>&, Field<float>&) { return 0; }
     void settle(FaceField<3>&, Field<Real>&) {}
     void hand_over() {}

@@ -19,8 +19,9 @@ struct CoveredFace : SolidFace {
     Real covered = 0;  ///< by the one body, of what is open [-]
     Real per_gap = 0;  ///< 1 over the distance of the pressures to both sides [1/m]
     bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
-    Real held = 0;      ///< share of the way to the body's velocity that friction takes the water [-]
-    Real velocity = 0;  ///< of the water, before a pressure acts [m/s]
+    bool leaves = false;  ///< at a side where water leaves: only what is added to a pressure pushes there
+    Real held = 0;        ///< share of the way to the body's velocity that friction takes the water [-]
+    Real velocity = 0;    ///< of the water, before a pressure acts [m/s]
 
     bool at_surface() const noexcept { return high_wet != low_wet; }
     /// Of a pressure over density [m/s2].
@@ -140,6 +141,7 @@ private:
                 CoveredFace& f = faces_[i->second];
                 f.open = 1, f.water = left, f.covered = f.share, f.per_gap = std::abs(open.slope);
                 f.high_wet = open.cell == f.face, f.low_wet = open.cell == f.low;
+                f.leaves = open.plain == 0;
             }
             surface_[key(open.axis, open.face)] = left;
         }

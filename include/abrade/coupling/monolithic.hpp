@@ -55,6 +55,8 @@ public:
                const FaceField<3>* open_area) {
         bodies_.assign(bodies.begin(), bodies.end()), motion_.assign(bodies.size(), {});
         faces_.place(grid, sides, bodies, open_area);
+        for (std::size_t b = 0; b < bodies_.size(); ++b)
+            if (faces_.cover(b).cut) bodies_[b].inverse_mass = 0, bodies_[b].inverse_inertia.setZero();
     }
     std::vector<SolidPart> parts() const { return faces_.parts(); }
     std::span<const SolidFlux> fluxes() const noexcept { return fluxes_; }
@@ -85,7 +87,7 @@ public:
         for (CoveredFace& f : faces_.all()) f.velocity = u[f.axis][f.face];
         for (CoveredFace& f : faces_.all()) {
             u[f.axis][f.face] += f.covered * (along(f, motion_[f.body].q) - f.velocity);
-            if (stage_.pushed) f.velocity += stage_.dt * f.gradient(pressure);
+            if (stage_.pushed || f.leaves) f.velocity += stage_.dt * f.gradient(pressure);
         }
     }
 
@@ -98,10 +100,11 @@ public:
         });
     }
     template <class Number>
-    void correct(FaceField<3>& u, const Field<Number>& of, Real factor, int plane) const {
+    void correct(FaceField<3>& u, const Field<Number>& of, Real factor, int plane, bool old) const {
         faces_.on_plane(plane, [&](const CoveredFace& f) {
             // A closed face has lost none, but at the surface.
-            const Real back = f.water > 0 || f.at_surface() ? factor * f.gradient(of) : 0;
+            const bool lost = f.leaves ? !old : f.water > 0 || f.at_surface();
+            const Real back = lost ? factor * f.gradient(of) : 0;
             u[f.axis][f.face] += f.covered * (back + along(f, motion_[f.body].push));
         });
     }
@@ -142,7 +145,7 @@ public:
             const Six by_pressure = stage_.density * pressed(faces_.cover(b), pressure);
             const Six load = by_pressure + motion.by_friction;
             body.velocity = motion.q.template head<3>(), body.angular_velocity = motion.q.template tail<3>();
-            body.load = {load.template head<3>(), load.template tail<3>()};
+            if (!faces_.cover(b).cut) body.load = {load.template head<3>(), load.template tail<3>()};
             fastest_ = std::max(fastest_, body.velocity.norm());
             fill_inside(b, by_pressure.template head<3>(), pressure);
             const Memory* const before = memory_of(body.id);

@@ -21,7 +21,7 @@ struct SolidFace {
     Offset face = 0;  ///< of the velocity component
     Offset low = 0;   ///< of the cell below it, across a periodic side where there is one
     int axis = 0;
-    int plane = 0;            ///< of the face, across the longest axis
+    int plane = 0;            ///< of the face, across the longest axis; the last of the upper side's, too
     Real share = 0;           ///< sigma, of the control volume [-]
     Real area = 0, gap = 0;   ///< of the face [m2]; between the centres of its cells [m]
     Vec3 arm = Vec3::Zero();  ///< from the body's centroid to the face's centre [m]
@@ -46,6 +46,7 @@ struct SolidCover {
     std::vector<SolidCell> cells;   ///< that it covers in part
     std::vector<SolidCell> inside;  ///< and as a whole
     std::vector<SolidPart> parts;   ///< its volume in cells
+    bool cut = false;               ///< some of it lies beyond a side where water flows in or out
 };
 
 namespace detail {
@@ -71,6 +72,7 @@ public:
         cover.faces.clear(), cover.cells.clear(), cover.inside.clear(), cover.parts.clear();
         body_ = &body;
         find_box();
+        cover.cut = is_cut();
         for (int a = 0; a < 3; ++a) find_shares(a), list_faces(a, cover);
         list_cells(cover);
         find_shares(of_cells);
@@ -158,13 +160,24 @@ private:
         return inside;
     }
 
+    bool is_cut() const noexcept {
+        for (int a = 0; a < 3; ++a)
+            for (const Sphere& s : body_->spheres) {
+                const Real reach = s.radius + grown_;
+                if (sides_.periodic(a)) continue;
+                if (!is_closed(sides_[a][0]) && s.centre[a] - reach < grid_.low(a)) return true;
+                if (!is_closed(sides_[a][1]) && s.centre[a] + reach > grid_.high(a)) return true;
+            }
+        return false;
+    }
+
     Kind kind(int axis, const Number& n) const noexcept {
         bool beyond = false;
         for (int a = 0; a < 3; ++a) {
-            const bool low = n[a] < (a == axis ? 1 : 0), high = n[a] >= grid_.cells(a);
-            if (sides_.periodic(a) || (!low && !high)) continue;
-            if (is_closed(sides_[a][low ? 0 : 1])) return Kind::closed;
-            beyond = true;
+            const int first = a == axis ? 1 : 0, end = grid_.cells(a);
+            if (sides_.periodic(a) || (n[a] >= first && n[a] < end)) continue;
+            if (is_closed(sides_[a][n[a] < first ? 0 : 1])) return Kind::closed;
+            beyond |= a != axis || (n[a] != 0 && n[a] != end);  // and not the side itself
         }
         if (beyond) return Kind::beyond;
         return axis < 3 && closed_(axis, grid_.layout().at(inside_box(n))) ? Kind::closed : Kind::open;
@@ -243,7 +256,7 @@ private:
             cover.faces.push_back({.face = l.at(inside),
                                    .low = l.at(below),
                                    .axis = axis,
-                                   .plane = inside[Layout<3>::outer],
+                                   .plane = std::min(inside[Layout<3>::outer], l.planes() - 1),
                                    .share = share_[axis][k],
                                    .area = s.prod() / s[axis],
                                    .gap = s[axis],

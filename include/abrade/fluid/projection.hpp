@@ -259,7 +259,7 @@ private:
             for (int row = 0; row < m.layout.rows_per_plane(); ++row)
                 push ? take_gradient(u, pressure, dt, plane, row) : take_gradient(u, e, State(1), plane, row);
             if constexpr (Solids::present)
-                push ? solids.correct(u, pressure, step_, plane) : solids.correct(u, e, 1, plane);
+                push ? solids.correct(u, pressure, step_, plane, true) : solids.correct(u, e, 1, plane, false);
             for (int row = 0; row < m.layout.rows_per_plane() && !push; ++row) {
                 const RowRange r = m.range(plane, row);
                 const Offset start = m.layout.row_start(plane, row);

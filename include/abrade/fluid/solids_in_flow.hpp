@@ -48,7 +48,8 @@ struct FlowStage {
 /// - `force`, once the water has been moved on by all but the new pressure: a force per volume on it, and from there
 ///   on the mixture's velocity;
 /// - for each solution phi = p dt / rho of the pressure `push`, what it does to them, and `correct`, how the mixture
-///   on a plane of faces that has lost the whole gradient of phi moves instead: their share is a source of divergence;
+///   on a plane of faces that has lost the whole gradient of phi moves instead: their share is a source of divergence.
+///   The `old` pressure does not push at sides where water leaves;
 /// - within the search for phi `add_product`, the same for the operator, which must stay symmetric;
 /// - `settle`: the water's velocity from the mixture's, and what is to be remembered; cells within solids get the
 ///   pressure that goes on from around them;
@@ -68,7 +69,7 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     { still.fluxes() } -> std::convertible_to<std::span<const SolidFlux>>;
     s.force(u, p, FlowStage{});
     s.push(p, Real{}), s.push(e, Real{});
-    still.correct(u, p, Real{}, int{}), still.correct(u, e, Real{}, int{});
+    still.correct(u, p, Real{}, int{}, true), still.correct(u, e, Real{}, int{}, false);
     { s.add_product(e, e) } -> std::same_as<Real>;
     s.settle(u, p), s.hand_over();
     { still.fastest() } -> std::same_as<Real>;
