@@ -7,7 +7,7 @@
 namespace abrade::examples {
 
 ChannelRun run_in_resolved_water(const ChannelConfig& config, const ChannelFiles& files) {
-    return run_below<HeightSurface, MonolithicSolids>(config, files);
+    return run_below<HeightSurface, MonolithicSolids<>>(config, files);
 }
 
 }  // namespace abrade::examples

@@ -81,7 +81,7 @@ TEST_CASE("momentum of water and balls: kept to the pressure's tolerance while t
     auto params = box(16, 0.1, Side::periodic);
     params.gravity.setZero(), params.viscosity = 2, params.tolerance = 1e-9;
     Water water(params);
-    std::vector<Ball> balls{{Vec3(0.63, 0.8, 0.78), 0.2, 2650, 0}, {Vec3(1.1, 0.81, 1.15), 0.15, 500, 1}};
+    std::vector<Ball> balls{{Vec3(0.63, 0.8, 0.78), 0.2, 2650, 0}, {Vec3(1.1, 0.81, 1.15), 0.16, 500, 1}};
     balls[0].body.velocity = {0.9, 0.2, 0}, balls[0].body.angular_velocity = {0, 3, 0};
     const auto momentum = [&] {
         Vec3 sum = Vec3::Zero();
@@ -142,4 +142,4 @@ TEST_CASE("drag of a fixed sphere at Re 100, 3 and 4 cells to a diameter, in a s
         }
 }
 
-TEST_CASE("bad input is refused") { CHECK_THROWS_AS(MonolithicSolids({.friction = -1}), InputError); }
+TEST_CASE("bad input is refused") { CHECK_THROWS_AS(MonolithicSolids<>({.friction = -1}), InputError); }

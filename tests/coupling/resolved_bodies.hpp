@@ -12,7 +12,7 @@ namespace resolved {
 
 using namespace abrade;
 
-using Water = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids>;
+using Water = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids<>>;
 
 /// A sphere that is free, or fixed where its density is 0 [kg/m3].
 struct Ball {

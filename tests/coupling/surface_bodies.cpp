@@ -7,7 +7,7 @@ using namespace resolved;
 
 namespace {
 
-using Pool = GridFluid<3, HeightSurface, Limited, Real, NoTurbulence, MonolithicSolids>;
+using Pool = GridFluid<3, HeightSurface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
 
 constexpr Real g = 9.81, h = 0.05, level = 0.613;
 

@@ -24,7 +24,6 @@ struct Idle {
     void correct(FaceField<3>&, const auto&, Real, int, bool) const {}
     Real add_product(const Field<float>&, Field<float>&) { return 0; }
     void settle(FaceField<3>&, Field<Real>&) {}
-    void hand_over() {}
     Real fastest() const { return 0; }
     std::span<const FlowBody> bodies() const { return {}; }
     static void fields(auto&&) {}

@@ -15,7 +15,7 @@ namespace {
 
 template <class Surface>
 auto stones_in_water() {
-    using Water = GridFluid<3, Surface, Limited, Real, NoTurbulence, MonolithicSolids>;
+    using Water = GridFluid<3, Surface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
     GridFluidParams<3> params{.grid = {.cells = {14, 12, 14}, .spacing = Vec3::Constant(0.05)},
                               .sides = Sides<3>::all(Side::slip),
                               .gravity = {0, 0, -9.81}};

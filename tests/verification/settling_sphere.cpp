@@ -17,7 +17,7 @@ struct Peak {
     Real speed = 0, residual = 0;
 };
 Peak settle(const ReferenceRow& row, Real cells, Real end) {
-    using Oil = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids>;
+    using Oil = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids<>>;
     const Real diameter = 0.015, h = diameter / cells;
     const int across = static_cast<int>(std::ceil(0.1 / h)), up = static_cast<int>(std::ceil(0.16 / h));
     const Oil oil(

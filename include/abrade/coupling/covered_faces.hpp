@@ -36,17 +36,18 @@ struct CoveredFace : SolidFace {
 /// Of all bodies, body by body and in the order of their planes; what walls and the surface leave of them.
 class CoveredFaces {
 public:
-    /// Bodies as they stand. `open_area`: shares that walls leave open; none: all is.
+    /// Bodies as they stand, averaged below `resolved_from` cells to a diameter. `open_area`: shares that
+    /// walls leave open; none: all is.
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
-               const FaceField<3>* open_area) {
+               Real resolved_from, const FaceField<3>* open_area) {
         covers_.resize(bodies.size());
-        const auto closed = [open_area](int axis, Offset face) {
-            return open_area && (*open_area)[axis][face] == 0;
+        const auto open = [open_area](int axis, Offset face) {
+            return open_area ? (*open_area)[axis][face] : Real(1);
         };
         parallel_blocks(
             static_cast<Index>(bodies.size()),
             [&](Index, Index first, Index last) {
-                detail::SolidCoverFinder finder(grid, sides, closed);
+                detail::SolidCoverFinder finder(grid, sides, resolved_from, open);
                 for (Index b = first; b < last; ++b) finder.find(bodies[at(b)], covers_[at(b)]);
             },
             block_of_bodies);
@@ -64,6 +65,9 @@ public:
     std::span<CoveredFace> all() noexcept { return faces_; }
     std::span<const CoveredFace> all() const noexcept { return faces_; }
     std::span<CoveredFace> of(std::size_t body) noexcept {
+        return std::span(faces_).subspan(first_[body], first_[body + 1] - first_[body]);
+    }
+    std::span<const CoveredFace> of(std::size_t body) const noexcept {
         return std::span(faces_).subspan(first_[body], first_[body + 1] - first_[body]);
     }
     const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }

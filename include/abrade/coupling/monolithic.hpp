@@ -3,6 +3,8 @@
 
 #include <abrade/core/fields.hpp>
 #include <abrade/coupling/covered_faces.hpp>
+#include <abrade/coupling/dense_drag.hpp>
+#include <abrade/coupling/rigid_six.hpp>
 
 #include <algorithm>
 #include <span>
@@ -24,9 +26,20 @@ namespace abrade {
 /// and its body takes the impulse; C is calibrated on the drag of a sphere. Where bodies leave less than a
 /// tenth of a face the water sticks. What friction and advection bring to a control volume and its water does
 /// not keep, the body gets: momentum is conserved. All of it acts upon velocities that the last pressure and
-/// the body's last load have acted on already: where all is at rest, nothing is exchanged.
+/// the body's last load have acted on already: where all is at rest, nothing is exchanged. How fast a body
+/// is when friction acts tells what its added mass lets it have of its forces: the pressure comes later.
+///
+/// Bodies of less than `resolved_from` cells to a diameter are averaged (SolidCoverFinder): in the same
+/// equations, with the share sigma that they are spread over, and
+/// - instead of friction the drag of a law, F = beta (u - v) (SpreadBody), u the mean over the spread, the
+/// law's
+///   porosity what other bodies leave: du/dt = beta / (rho V) sigma / (1 - sigma) (v - u);
+/// - added mass C_m rho V, for which water is accelerated by g - grad p / rho; the water has its part a step
+///   later.
+/// They are not turned.
+template <DenseDragLaw DragOfSmall = DiFelice>
 class MonolithicSolids {
-    using Six = Eigen::Matrix<Real, 6, 1>;  ///< of a force and a torque, or a velocity and a spin
+    using Six = detail::Six;
     using Matrix6 = Eigen::Matrix<Real, 6, 6>;
 
 public:
@@ -34,18 +47,29 @@ public:
     static constexpr bool present = true;
 
     struct Params {
-        Real friction = 12;  ///< C [-]
+        Real friction = 12;                   ///< C [-]
+        Real resolved_from = 3;               ///< diameter of bodies that are not averaged [cell]
+        Real added_mass = 0.5;                ///< C_m of those that are [-]
+        typename DragOfSmall::Params drag{};  ///< theirs
         void validate() const {
             require(
                 friction >= 0 && std::isfinite(friction),
                 {"MonolithicSolids.friction", ">= 0 and finite", "", "12 is calibrated, 0 lets water glide"},
                 friction);
+            require(resolved_from >= 0,
+                    {"MonolithicSolids.resolved_from", ">= 0", "cells", "0 resolves all, infinity none"},
+                    resolved_from);
+            require_not_negative(added_mass, "MonolithicSolids.added_mass", "");
+            drag.validate();
         }
-        void visit(auto&& f) const { f("friction", friction, "-"); }
+        void visit(auto&& f) const {
+            f("friction", friction, "-"), f("resolved_from", resolved_from, "cell");
+            f("added_mass", added_mass, "-"), drag.visit(f);
+        }
     };
 
     MonolithicSolids() = default;
-    explicit MonolithicSolids(Params params) : params_(params) { params_.validate(); }
+    explicit MonolithicSolids(Params params) : params_(params), drag_(params.drag) { params_.validate(); }
     const Params& params() const noexcept { return params_; }
     std::span<const FlowBody> bodies() const noexcept { return bodies_; }
     std::span<const SolidCover> covers() const noexcept { return faces_.covers(); }  ///< [body]
@@ -54,7 +78,7 @@ public:
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                const FaceField<3>* open_area) {
         bodies_.assign(bodies.begin(), bodies.end()), motion_.assign(bodies.size(), {});
-        faces_.place(grid, sides, bodies, open_area);
+        faces_.place(grid, sides, bodies, params_.resolved_from, open_area);
         for (std::size_t b = 0; b < bodies_.size(); ++b)
             if (faces_.cover(b).cut) bodies_[b].inverse_mass = 0, bodies_[b].inverse_inertia.setZero();
     }
@@ -75,18 +99,21 @@ public:
     void mix(FaceField<3>& u) const {
         for (const CoveredFace& f : faces_.all()) {
             Real& value = u[f.axis][f.face];
-            value += f.covered * (along(f, velocity_of(bodies_[f.body])) - value);
+            value += f.covered * (detail::along(f, detail::velocity_of(bodies_[f.body])) - value);
         }
     }
 
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         stage_ = stage;
         parallel_for_bodies([&](std::size_t b) { find_motion(b, u, pressure); });
-        for (const CoveredFace& f : faces_.all())
-            u[f.axis][f.face] += f.held * (along(f, motion_[f.body].held) - f.velocity);
+        for (const CoveredFace& f : faces_.all()) {
+            Real& value = u[f.axis][f.face];
+            value += f.held * (detail::along(f, motion_[f.body].held) - f.velocity);
+            if (f.water > 0) value += f.share / f.water * motion_[f.body].handed[f.axis];
+        }
         for (CoveredFace& f : faces_.all()) f.velocity = u[f.axis][f.face];
         for (CoveredFace& f : faces_.all()) {
-            u[f.axis][f.face] += f.covered * (along(f, motion_[f.body].q) - f.velocity);
+            u[f.axis][f.face] += f.covered * (detail::along(f, motion_[f.body].q) - f.velocity);
             if (stage_.pushed || f.leaves) f.velocity += stage_.dt * f.gradient(pressure);
         }
     }
@@ -95,7 +122,7 @@ public:
     void push(const Field<Number>& of, Real factor) {
         parallel_for_bodies([&](std::size_t b) {
             Motion& motion = motion_[b];
-            motion.push = accelerated(bodies_[b], stage_.density * factor * pressed(faces_.cover(b), of));
+            motion.push = pushed(b, stage_.density * factor * detail::pressed(faces_.cover(b), of));
             motion.q += motion.push;
         });
     }
@@ -105,14 +132,14 @@ public:
             // A closed face has lost none, but at the surface.
             const bool lost = f.leaves ? !old : f.water > 0 || f.at_surface();
             const Real back = lost ? factor * f.gradient(of) : 0;
-            u[f.axis][f.face] += f.covered * (back + along(f, motion_[f.body].push));
+            u[f.axis][f.face] += f.covered * (back + detail::along(f, motion_[f.body].push));
         });
     }
     Real add_product(const Field<float>& p, Field<float>& product) {
         parallel_for_bodies([&](std::size_t b) {
             Motion& motion = motion_[b];
-            const Six sum = pressed(faces_.cover(b), p);
-            motion.push = accelerated(bodies_[b], stage_.density * sum);
+            const Six sum = detail::pressed(faces_.cover(b), p);
+            motion.push = pushed(b, stage_.density * sum);
             motion.curvature = sum.dot(motion.push);
         });
         Real sum = 0;
@@ -132,7 +159,7 @@ public:
         fluxes_.clear(), beyond_.clear();
         for (const CoveredFace& f : faces_.all()) {
             if (f.covered == 0) continue;
-            const Real solid = f.covered * along(f, motion_[f.body].q);
+            const Real solid = f.covered * detail::along(f, motion_[f.body].q);
             fluxes_.push_back({f.face, f.axis, solid});
             beyond_.push_back(solid - f.covered * u[f.axis][f.face]);
         }
@@ -142,23 +169,27 @@ public:
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
             FlowBody& body = bodies_[b];
             const Motion& motion = motion_[b];
-            const Six by_pressure = stage_.density * pressed(faces_.cover(b), pressure);
-            const Six load = by_pressure + motion.by_friction;
+            const Six by_pressure = stage_.density * detail::pressed(faces_.cover(b), pressure);
+            Six by_added = Six::Zero();
+            if (motion.added > 0)
+                by_added = params_.added_mass * by_pressure + motion.lead / stage_.dt,
+                by_added.template head<3>() -= motion.added / stage_.dt * motion.q.template head<3>();
+            const Six load = by_pressure + motion.by_friction + by_added;
             body.velocity = motion.q.template head<3>(), body.angular_velocity = motion.q.template tail<3>();
             if (!faces_.cover(b).cut) body.load = {load.template head<3>(), load.template tail<3>()};
             fastest_ = std::max(fastest_, body.velocity.norm());
             fill_inside(b, by_pressure.template head<3>(), pressure);
             const Memory* const before = memory_of(body.id);
-            next.push_back({body.id, motion.q, motion.covers, slip_of(b, u),
-                            before ? before->acting : Six(Six::Zero()), motion.by_friction});
+            next.push_back({.id = body.id,
+                            .q = motion.q,
+                            .gained = before ? Six(motion.q - before->q) / stage_.dt : Six(Six::Zero()),
+                            .covers = motion.covers,
+                            .slip = slip_of(b, u),
+                            .owed = stage_.dt * by_added.template head<3>() - motion.owed});
         }
         std::sort(next.begin(), next.end(), [](const Memory& a, const Memory& b) { return a.id < b.id; });
         memory_ = std::move(next);
     }
-    void hand_over() noexcept {
-        for (Memory& memory : memory_) memory.acting = memory.friction;
-    }
-
     static void fields(auto&& field) {
         field("memory", &MonolithicSolids::memory_), field.bytes("fluxes", &MonolithicSolids::fluxes_);
         field("beyond", "m/s", &MonolithicSolids::beyond_);
@@ -171,53 +202,39 @@ private:
         Six held = Six::Zero();         ///< the same while friction acts
         Six push = Six::Zero();         ///< its change by the last pressure
         Six by_friction = Six::Zero();  ///< [N], [N m]
+        Six lead = Six::Zero();         ///< what added mass had, and its weight gives [kg m/s]
+        Vec3 owed = Vec3::Zero();       ///< by the water to its added mass [kg m/s]
+        Vec3 handed = Vec3::Zero();     ///< to the water in its place for that [m/s]
         Real curvature = 0;
         Real covers = 0;  ///< mass of water in the body's place [kg]
+        Real added = 0;   ///< mass, of those averaged [kg]
     };
     /// What is known of a body from the last step.
     struct Memory {
         Index id = 0;
-        Six q = Six::Zero();     ///< velocity and spin that it left [m/s], [rad/s]
-        Real covers = 0;         ///< mass of water in the body's place [kg]
-        Six slip = Six::Zero();  ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
-        Six acting = Six::Zero(), friction = Six::Zero();  ///< by friction: until now, from now on [N], [N m]
+        Six q = Six::Zero();       ///< velocity and spin that it left [m/s], [rad/s]
+        Six gained = Six::Zero();  ///< by these in the step [m/s2], [rad/s2]
+        Real covers = 0;           ///< mass of water in the body's place [kg]
+        Six slip = Six::Zero();    ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
+        Vec3 owed = Vec3::Zero();  ///< what its added mass was given [kg m/s]
 
         static void fields(auto&& field) {
-            field("id", &Memory::id), field.bytes("q", &Memory::q), field("covers", "kg", &Memory::covers);
-            field.bytes("slip", &Memory::slip), field.bytes("acting", &Memory::acting);
-            field.bytes("friction", &Memory::friction);
+            field("id", &Memory::id), field.bytes("q", &Memory::q), field.bytes("gained", &Memory::gained);
+            field("covers", "kg", &Memory::covers), field.bytes("slip", &Memory::slip);
+            field.bytes("owed", &Memory::owed);
         }
     };
+    static constexpr Real tiny = 1e-300, of_a_sphere = 0.5;  ///< added mass over that of its place [-]
     static constexpr Real sliver = 0.1;  ///< of a face: less water has no velocity of its own [-]
 
     Index count() const noexcept { return static_cast<Index>(bodies_.size()); }
 
-    static Six coefficient(const SolidFace& f) noexcept {
-        Six c = Six::Zero();
-        c[f.axis] = 1, c.template tail<3>() = f.lever();
-        return c;
-    }
-    static Real along(const SolidFace& f, const Six& q) noexcept {
-        return q[f.axis] + q.template tail<3>().dot(f.lever());
-    }
-    static Six velocity_of(const FlowBody& body) noexcept {
-        return (Six() << body.velocity, body.angular_velocity).finished();
-    }
-    static Six accelerated(const FlowBody& body, const Six& impulse) noexcept {
-        Six q;
-        q.template head<3>() = body.inverse_mass * impulse.template head<3>();
-        q.template tail<3>() = body.inverse_inertia * impulse.template tail<3>();
-        return q;
-    }
-    /// J^T of a pressure.
-    template <class Number>
-    static Six pressed(const SolidCover& cover, const Field<Number>& of) noexcept {
-        Six sum = Six::Zero();
-        for (const SolidCell& c : cover.cells) {
-            const auto p = static_cast<Real>(of[c.cell]);
-            sum.template head<3>() += p * c.way, sum.template tail<3>() += p * c.turn;
-        }
-        return sum;
+    /// By an impulse of the pressure, which acts on added mass, too.
+    Six pushed(std::size_t b, const Six& impulse) const noexcept {
+        const FlowBody& body = bodies_[b];
+        if (!faces_.cover(b).averaged) return detail::accelerated(body, impulse);
+        const Real more = 1 + params_.added_mass, with = 1 + body.inverse_mass * motion_[b].added;
+        return detail::accelerated(body, more / with * impulse);
     }
     /// Of the control volume of a face, as far as walls leave it open and it lies below the surface [kg].
     Real mass_of(const CoveredFace& f) const noexcept {
@@ -229,7 +246,8 @@ private:
     Six slip_of(std::size_t b, const FaceField<3>& u) noexcept {
         Six sum = Six::Zero();
         for (const CoveredFace& f : faces_.of(b))
-            sum += mass_of(f) * f.share * (u[f.axis][f.face] - along(f, motion_[b].q)) * coefficient(f);
+            sum += mass_of(f) * f.share * (u[f.axis][f.face] - detail::along(f, motion_[b].q)) *
+                   detail::coefficient(f);
         return sum;
     }
 
@@ -250,43 +268,90 @@ private:
     /// The body's velocity with friction, and with the old pressure as it acts on it where it is now.
     void find_motion(std::size_t b, const FaceField<3>& u, const Field<Real>& pressure) {
         const FlowBody& body = bodies_[b];
+        const bool averaged = faces_.cover(b).averaged;
         Motion& motion = motion_[b];
         const Memory* const before = memory_of(body.id);
         const Real dt = stage_.dt;
-        Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
-        Six brought = Six::Zero(), within = Six::Zero();
+        Six within = Six::Zero();
+        Vec3 weight = Vec3::Zero(), flow = Vec3::Zero();
         for (CoveredFace& f : faces_.of(b)) {
             const Real gradient = f.gradient(pressure), now = u[f.axis][f.face];
             f.velocity = stage_.pushed ? now : now - dt * gradient;
-            const Real unpushed = f.velocity + dt * gradient;
-            const Real rate = params_.friction * stage_.viscosity * dt / std::pow(f.volume(), 2.0 / 3);
-            const Real stiff = rate * f.share, left = 1 - f.share;
+            const Real unpushed = f.velocity + dt * gradient, covers = mass_of(f) * f.share;
+            weight[f.axis] += covers, flow[f.axis] += covers * f.velocity;
+            if (before)
+                within += covers * (unpushed - dt * stage_.falls[f.axis] - detail::along(f, before->q)) *
+                          detail::coefficient(f);
+        }
+        motion.covers = weight.mean();
+        const Real small = averaged ? drag_rate(b, flow.cwiseQuotient(weight.cwiseMax(tiny))) : 0;
+        Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
+        Six brought = Six::Zero();
+        for (CoveredFace& f : faces_.of(b)) {
+            const Real rate =
+                averaged ? small : params_.friction * stage_.viscosity / std::pow(f.volume(), 2.0 / 3);
+            const Real stiff = rate * dt * f.share, left = 1 - f.share;
             f.held = stiff > 0 ? stiff / (left + stiff) : 0;
-            if (f.open > 0) f.held = std::max(f.held, 1 - f.water / (sliver * f.open));
-            const Real mass = mass_of(f), held = mass * f.water * f.held;
-            const Six c = coefficient(f);
+            if (f.open > 0 && !averaged) f.held = std::max(f.held, 1 - f.water / (sliver * f.open));
+            const Real held = mass_of(f) * f.water * f.held;
+            const Six c = detail::coefficient(f);
             drag += held * c * c.transpose();
             brought += held * f.velocity * c;
-            motion.covers += mass * f.share / 3;
-            if (before)
-                within += mass * f.share * (unpushed - dt * stage_.falls[f.axis] - along(f, before->q)) * c;
         }
         // What has left through the surface has taken its part along.
         if (before && before->covers > 0)
             brought += within - std::min(1.0, motion.covers / before->covers) * before->slip;
-        const Six acting = before ? before->acting : Six(Six::Zero());
-        motion.held = velocity_of(body);
-        if (body.inverse_mass > 0) {
-            Matrix6 inertia = Matrix6::Zero();
-            inertia.template topLeftCorner<3, 3>() = Mat3::Identity() / body.inverse_mass;
-            inertia.template bottomRightCorner<3, 3>() = body.inverse_inertia.inverse();
-            motion.held = (inertia + drag).ldlt().solve(inertia * motion.held - dt * acting + brought);
+        const Six now = detail::velocity_of(body);
+        if (body.inverse_mass == 0) {
+            motion.held = motion.q = now;
+            motion.by_friction = (brought - drag * now) / dt;
+            return;
         }
+        Matrix6 inertia = Matrix6::Zero();
+        inertia.template topLeftCorner<3, 3>() = Mat3::Identity() / body.inverse_mass;
+        inertia.template bottomRightCorner<3, 3>() = body.inverse_inertia.inverse();
+        const Six begun = inertia * now - dt * (Six() << body.load.force, body.load.torque).finished();
+        const Real more = averaged ? 1 + params_.added_mass : 1;
+        const Six pressure_gives = dt * more * stage_.density * detail::pressed(faces_.cover(b), pressure);
+        // Of a resolved body the pressure knows the added mass: then it is guessed for friction alone.
+        const Real added = (averaged ? params_.added_mass : of_a_sphere) * motion.covers;
+        const Vec3 goes_on = averaged ? stage_.falls
+                             : before ? Vec3(before->gained.template head<3>())
+                                      : Vec3(Vec3::Zero());
+        const Vec3 had =
+            before ? Vec3(before->q.template head<3>()) : Vec3(body.velocity - dt * stage_.falls);
+        Six lead = Six::Zero();
+        lead.template head<3>() = added * (had + dt * goes_on);
+        Matrix6 heavier = inertia;
+        heavier.template topLeftCorner<3, 3>().diagonal().array() += added;
+        motion.held = (heavier + drag).ldlt().solve(begun + pressure_gives + lead + brought);
         motion.by_friction = (brought - drag * motion.held) / dt;
-        // The old pressure acts where the body is now, at once or by the `push` to come.
-        Six more = acting - (Six() << body.load.force, body.load.torque).finished();
-        if (stage_.pushed) more += stage_.density * pressed(faces_.cover(b), pressure);
-        motion.q = motion.held + accelerated(body, dt * more);
+        Six momentum = begun + dt * motion.by_friction;
+        if (stage_.pushed) momentum += pressure_gives;  // or by the `push` to come
+        if (averaged) {
+            momentum += lead, motion.lead = lead, motion.added = added;
+            // The water has its part at once, but for what the pressure is yet to change.
+            motion.owed = params_.added_mass / more * pressure_gives.template head<3>() +
+                          lead.template head<3>() - added * motion.held.template head<3>();
+            const Vec3 due = before ? Vec3(motion.owed + before->owed) : motion.owed;
+            motion.handed = -due.cwiseQuotient(weight.cwiseMax(tiny));
+        }
+        motion.q = (averaged ? heavier : inertia).ldlt().solve(momentum);
+    }
+
+    /// beta / (rho V) [1/s] of one that is averaged, in water that flows with `flow` [m/s].
+    Real drag_rate(std::size_t b, const Vec3& flow) const noexcept {
+        const FlowBody& body = bodies_[b];
+        Real shares = 0, water = 0;
+        for (const CoveredFace& f : faces_.of(b))
+            if (f.open > 0) shares += f.share, water += f.share * std::min((f.water + f.share) / f.open, 1.0);
+        if (shares == 0) return 0;
+        const SpreadBody spread{.diameter = std::cbrt(6 / pi * body.volume),
+                                .reach = faces_.cover(b).reach,
+                                .slip = (flow - body.velocity).norm(),
+                                .viscosity = stage_.viscosity,
+                                .porosity = water / shares};
+        return spread.drag(drag_) / body.volume;
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.
@@ -304,6 +369,7 @@ private:
     }
 
     Params params_;
+    DragOfSmall drag_;
     std::vector<FlowBody> bodies_;
     std::vector<Motion> motion_;  ///< [body]
     CoveredFaces faces_;
@@ -314,6 +380,6 @@ private:
     Real fastest_ = 0;
 };
 
-static_assert(SolidsInFlow<MonolithicSolids>);
+static_assert(SolidsInFlow<MonolithicSolids<>>);
 
 }  // namespace abrade

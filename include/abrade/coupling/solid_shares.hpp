@@ -47,6 +47,8 @@ struct SolidCover {
     std::vector<SolidCell> inside;  ///< and as a whole
     std::vector<SolidPart> parts;   ///< its volume in cells
     bool cut = false;               ///< some of it lies beyond a side where water flows in or out
+    bool averaged = false;          ///< too small for its shape to count: spread, and not turned
+    Real reach = 0;                 ///< then, of a ball as wide as what it is spread over [m]
 };
 
 namespace detail {
@@ -59,23 +61,33 @@ namespace detail {
 /// space (that of water at rest) pushes with rho g V and does not turn the body, wherever it stands. The
 /// correction is
 ///   sigma (1 - sigma) (a + b . arm), a and b from linear equations, at most sigma (1 - sigma).
-/// What is closed (walls, what lies beyond them) holds nothing, and the rest takes it over. A body that is
-/// hardly larger than a cell is spread: its spheres grow, and cover a share.
-template <class Closed>
+/// What is closed (walls, what lies beyond them) holds nothing, and the rest takes it over.
+///
+/// A body of less than `resolved_from` cells to a diameter D = (6 V / pi)^(1/3) is averaged: each of its
+/// spheres is spread by a triangle of as much variance along each axis as a ball of 3 D has, or of 3 cells,
+/// and its faces have no lever.
+template <class Open>
 class SolidCoverFinder {
 public:
-    /// `closed(axis, face)`: faces that walls close.
-    SolidCoverFinder(const Grid<3>& grid, const Sides<3>& sides, Closed closed)
-        : grid_(grid), sides_(sides), closed_(std::move(closed)) {}
+    /// `open(axis, face)`: share that walls leave of a face.
+    SolidCoverFinder(const Grid<3>& grid, const Sides<3>& sides, Real resolved_from, Open open)
+        : grid_(grid), sides_(sides), resolved_from_(resolved_from), open_(std::move(open)) {}
 
     void find(const FlowBody& body, SolidCover& cover) {
         cover.faces.clear(), cover.cells.clear(), cover.inside.clear(), cover.parts.clear();
         body_ = &body;
+        Real cell = 1;
+        for (int a = 0; a < 3; ++a) cell *= size(a, cell_at(a, body.position[a]));
+        const Real diameter = std::cbrt(6 / pi * body.volume), width = std::cbrt(cell);
+        cover.averaged = averaged_ = diameter < resolved_from_ * width;
+        cover.reach = averaged_ ? 1.5 * std::max(diameter, width) : 0;
+        grown_ = averaged_ ? std::sqrt(6.0 / 5) * cover.reach : std::max(0.9 * width - 0.5 * diameter, 0.0);
+        scale_ = grown_ > 0 ? cube(0.5 * diameter / (0.9 * width)) : 1;
         find_box();
         cover.cut = is_cut();
-        for (int a = 0; a < 3; ++a) find_shares(a), list_faces(a, cover);
+        for (int a = 0; a < 3; ++a) find(a), list_faces(a, cover);
         list_cells(cover);
-        find_shares(of_cells);
+        find(of_cells);
         for_each([&](const Number& n, std::size_t k) {
             if (kind_[of_cells][k] == Kind::open && share_[of_cells][k] > 0)
                 cover.parts.push_back(
@@ -116,18 +128,11 @@ private:
     /// The cells about the body, one more on either side than it reaches: the control volumes of their
     /// outermost faces hold nothing.
     void find_box() {
-        Real cell = 1;
-        for (int a = 0; a < 3; ++a) cell *= size(a, cell_at(a, body_->position[a]));
-        const Real radius = std::cbrt(0.75 / pi * body_->volume), least = 0.9 * std::cbrt(cell);
-        grown_ = std::max(least - radius, 0.0);
-        scale_ = grown_ > 0 ? cube(radius / least) : 1;
         std::size_t count = 1;
         for (int a = 0; a < 3; ++a) {
             Real low = std::numeric_limits<Real>::infinity(), high = -low;
-            for (const Sphere& s : body_->spheres) {
-                low = std::min(low, s.centre[a] - s.radius - grown_);
-                high = std::max(high, s.centre[a] + s.radius + grown_);
-            }
+            for (const Sphere& s : body_->spheres)
+                low = std::min(low, s.centre[a] - reach(s)), high = std::max(high, s.centre[a] + reach(s));
             first_[a] = cell_at(a, low) - 1;
             length_[a] = cell_at(a, high) + 3 - first_[a];
             stride_[a] = count;
@@ -160,13 +165,15 @@ private:
         return inside;
     }
 
+    Real reach(const Sphere& s) const noexcept { return averaged_ ? grown_ : s.radius + grown_; }
+    /// What is averaged counts as a whole.
     bool is_cut() const noexcept {
         for (int a = 0; a < 3; ++a)
             for (const Sphere& s : body_->spheres) {
-                const Real reach = s.radius + grown_;
+                const Real way = averaged_ ? 0 : reach(s);
                 if (sides_.periodic(a)) continue;
-                if (!is_closed(sides_[a][0]) && s.centre[a] - reach < grid_.low(a)) return true;
-                if (!is_closed(sides_[a][1]) && s.centre[a] + reach > grid_.high(a)) return true;
+                if (!is_closed(sides_[a][0]) && s.centre[a] - way < grid_.low(a)) return true;
+                if (!is_closed(sides_[a][1]) && s.centre[a] + way > grid_.high(a)) return true;
             }
         return false;
     }
@@ -176,11 +183,59 @@ private:
         for (int a = 0; a < 3; ++a) {
             const int first = a == axis ? 1 : 0, end = grid_.cells(a);
             if (sides_.periodic(a) || (n[a] >= first && n[a] < end)) continue;
-            if (is_closed(sides_[a][n[a] < first ? 0 : 1])) return Kind::closed;
+            if (averaged_ || is_closed(sides_[a][n[a] < first ? 0 : 1])) return Kind::closed;
             beyond |= a != axis || (n[a] != 0 && n[a] != end);  // and not the side itself
         }
         if (beyond) return Kind::beyond;
-        return axis < 3 && closed_(axis, grid_.layout().at(inside_box(n))) ? Kind::closed : Kind::open;
+        return axis < 3 && open_(axis, grid_.layout().at(inside_box(n))) == 0 ? Kind::closed : Kind::open;
+    }
+    /// Of a control volume [-].
+    Real open(int axis, const Number& n) const noexcept {
+        const Offset c = grid_.layout().at(inside_box(n));
+        if (axis < 3) return open_(axis, c);
+        Real sum = 0;
+        for (int a = 0; a < 3; ++a) sum += open_(a, c) + open_(a, c + grid_.layout().stride[a]);
+        return sum / 6;
+    }
+
+    void find(int axis) { averaged_ ? find_averaged(axis) : find_shares(axis); }
+
+    /// Each axis has its own share of a sphere in each layer of the box.
+    void find_averaged(int axis) {
+        auto& share = share_[axis];
+        for (const Sphere& s : body_->spheres) {
+            PerAxis<std::vector<Real>, 3> part;
+            for (int a = 0; a < 3; ++a)
+                for (int i = first_[a]; i < first_[a] + length_[a]; ++i) {
+                    const Real low = a == axis ? centre(a, i - 1) : face(a, i);
+                    const Real high = a == axis ? centre(a, i) : face(a, i + 1);
+                    part[a].push_back(below(high - s.centre[a]) - below(low - s.centre[a]));
+                }
+            const Real volume = body_->spheres.size() > 1 ? cube(s.radius) : 1;
+            for_each([&](const Number& n, std::size_t k) {
+                Real all = volume;
+                for (int a = 0; a < 3; ++a) all *= part[a][static_cast<std::size_t>(n[a] - first_[a])];
+                share[k] += all;
+            });
+        }
+        Real sum = 0;
+        for_each([&](const Number& n, std::size_t k) {
+            if (share[k] == 0) return;
+            kind_[axis][k] = kind(axis, n);
+            share[k] *= kind_[axis][k] == Kind::open ? open(axis, n) : 0;
+            sum += share[k];
+        });
+        constexpr Real most = 0.9;
+        if (sum > 0)
+            for_each([&](const Number& n, std::size_t k) {
+                if (share[k] > 0)
+                    share[k] = std::min(share[k] * body_->volume / (sum * extent(axis, n).prod()), most);
+            });
+    }
+    /// Part of a triangle that is `grown_` wide to either side, below a place x from its middle [-].
+    Real below(Real x) const noexcept {
+        const Real t = std::clamp(x / grown_, -1.0, 1.0);
+        return t < 0 ? 0.5 * square(1 + t) : 1 - 0.5 * square(1 - t);
     }
 
     struct Near {
@@ -253,14 +308,15 @@ private:
             Number below = inside;
             below[axis] = wrapped(axis, inside[axis] - 1);
             const Vec3 s = extent(axis, n);
-            cover.faces.push_back({.face = l.at(inside),
-                                   .low = l.at(below),
-                                   .axis = axis,
-                                   .plane = std::min(inside[Layout<3>::outer], l.planes() - 1),
-                                   .share = share_[axis][k],
-                                   .area = s.prod() / s[axis],
-                                   .gap = s[axis],
-                                   .arm = place(axis, n) - body_->position});
+            cover.faces.push_back(
+                {.face = l.at(inside),
+                 .low = l.at(below),
+                 .axis = axis,
+                 .plane = std::min(inside[Layout<3>::outer], l.planes() - 1),
+                 .share = share_[axis][k],
+                 .area = s.prod() / s[axis],
+                 .gap = s[axis],
+                 .arm = averaged_ ? Vec3(Vec3::Zero()) : Vec3(place(axis, n) - body_->position)});
         });
     }
 
@@ -281,7 +337,7 @@ private:
                     const Vec3 s = extent(a, of);
                     const Real out = (up == 1 ? share : -share) * s.prod() / s[a];
                     cell.way[a] += out;
-                    cell.turn += out * (place(a, of) - body_->position).cross(Vec3::Unit(a));
+                    if (!averaged_) cell.turn += out * (place(a, of) - body_->position).cross(Vec3::Unit(a));
                 }
             if (!none) (all ? cover.inside : cover.cells).push_back(cell);
         });
@@ -289,8 +345,10 @@ private:
 
     const Grid<3>& grid_;
     const Sides<3>& sides_;
-    Closed closed_;
+    Real resolved_from_;  ///< [cell]
+    Open open_;
     const FlowBody* body_ = nullptr;
+    bool averaged_ = false;
     Real grown_ = 0, scale_ = 1;  ///< of a small body's spheres [m], of its shares [-]
     Number first_{}, length_{};
     PerAxis<std::size_t, 3> stride_{};
@@ -300,11 +358,12 @@ private:
 
 }  // namespace detail
 
-/// The parts of the faces of `grid` that `body` covers; `closed(axis, face)`: faces that walls close.
-template <class Closed>
-SolidCover cover_of(const Grid<3>& grid, const Sides<3>& sides, const FlowBody& body, Closed closed) {
+/// The parts of the faces of `grid` that `body` covers; `open(axis, face)`: share that walls leave of one.
+template <class Open>
+SolidCover cover_of(const Grid<3>& grid, const Sides<3>& sides, const FlowBody& body, Open open,
+                    Real resolved_from = 0) {
     SolidCover cover;
-    detail::SolidCoverFinder<Closed>(grid, sides, std::move(closed)).find(body, cover);
+    detail::SolidCoverFinder<Open>(grid, sides, resolved_from, std::move(open)).find(body, cover);
     return cover;
 }
 

@@ -69,7 +69,6 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
         }
         if (steps <= 1) time_ = to_time;
     }
-    solids_.hand_over();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         bodies[b].velocity = now[b].velocity, bodies[b].angular_velocity = now[b].angular_velocity;
         bodies[b].load = solids_.bodies()[b].load;

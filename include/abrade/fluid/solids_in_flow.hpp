@@ -52,8 +52,7 @@ struct FlowStage {
 ///   The `old` pressure does not push at sides where water leaves;
 /// - within the search for phi `add_product`, the same for the operator, which must stay symmetric;
 /// - `settle`: the water's velocity from the mixture's, and what is to be remembered; cells within solids get the
-///   pressure that goes on from around them;
-/// - `hand_over`, once the solids have taken their loads: they act from here on.
+///   pressure that goes on from around them.
 /// A body's velocity is part of the solution, so it is that of the water's and the contacts' work together.
 template <class S>
 concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3>& u, Field<Real>& p, Poisson<3>& m,
@@ -71,7 +70,7 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     s.push(p, Real{}), s.push(e, Real{});
     still.correct(u, p, Real{}, int{}, true), still.correct(u, e, Real{}, int{}, false);
     { s.add_product(e, e) } -> std::same_as<Real>;
-    s.settle(u, p), s.hand_over();
+    s.settle(u, p);
     { still.fastest() } -> std::same_as<Real>;
     { still.bodies() } -> std::same_as<std::span<const FlowBody>>;
 };
