@@ -288,14 +288,23 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
     c.fluid.model = in.choice(
         "fluid.model", names,
         {.fallback = "uniform",
-         .help = "uniform: prescribed, shallow: depth-averaged, grid: with a free surface, resolved: that "
-                 "flows around stones, or none"});
-    const bool has_stones = c.fluid.model == "resolved";
+         .help = "uniform: prescribed, shallow: depth-averaged, grid: with a free surface, unresolved and "
+                 "resolved: with one that feels the stones, or none"});
+    const bool feels_stones = c.fluid.model == "unresolved" || c.fluid.model == "resolved";
     constexpr std::array<std::string_view, 2> surfaces{"volume", "height"};
     c.fluid.surface = in.choice(
         "fluid.surface", surfaces,
-        {.fallback = has_stones ? "height" : "volume",
+        {.fallback = feels_stones ? "height" : "volume",
          .help = "of the grid's water, volume: of any shape, height: one over each place, which is faster"});
+    c.fluid.resolved_from = std::numeric_limits<Real>::infinity();
+    if (c.fluid.model == "resolved")
+        c.fluid.resolved_from =
+            in.number("fluid.resolved_from",
+                      {.unit = "cells",
+                       .fallback = 3,
+                       .help = "diameter from which on the water flows around a stone; smaller "
+                               "ones are spread over the flow, as all are where it is unresolved",
+                       .bound = Bound::not_negative});
     c.fluid.energy = in.flag("fluid.energy", {.fallback = true,
                                               .help = "whether the grid's water keeps its energy account, "
                                                       "which costs a quarter of a step"});
@@ -314,7 +323,7 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
                                    .help = "that water runs before the stones begin, 0: three "
                                            "times what uniform flow takes down the channel, and 1 s",
                                    .bound = Bound::not_negative});
-    const bool on_a_grid = c.fluid.model == "shallow" || c.fluid.model == "grid" || has_stones;
+    const bool on_a_grid = c.fluid.model == "shallow" || c.fluid.model == "grid" || feels_stones;
     require(!on_a_grid || c.fluid.spacing <= 0.25 * c.invert.width,
             {in.where("fluid.spacing") + ": fluid.spacing",
              "at most a quarter of the channel's width of " + to_text(c.invert.width) + " m", "m"},

@@ -14,7 +14,7 @@ template <class Surface, class Solids = NoSolids>
 using ChannelFlow = GridFluid<3, Surface, Limited, Real, MixingLength, Solids>;
 
 template <class Flow>
-Flow grid_channel(const ChannelConfig& c) {
+Flow grid_channel(const ChannelConfig& c, auto solids) {
     const WaterStart start(c);
     const Real depth = start.depth;
     const Real half = 0.5 * c.invert.width, roughness = std::pow(26 * c.water.manning, 6);
@@ -42,7 +42,7 @@ Flow grid_channel(const ChannelConfig& c) {
                                 .profile = InflowProfile::logarithmic,
                                 .roughness = roughness});
         stream.give_to(params);
-        Flow flow(std::move(params), {.depth = start.uniform.depth()});
+        Flow flow(std::move(params), {.depth = start.uniform.depth()}, std::move(solids));
         if (c.fluid.energy && !ResolvedFluid<Flow>) flow.open_energy_account();
         return flow;
     } catch (const InputError& error) {
@@ -127,15 +127,15 @@ inline void look_at_the_end(const auto& flow, ChannelWater& water) {
 }
 
 template <class Surface, class Solids = NoSolids>
-ChannelRun run_below(const ChannelConfig& config, const ChannelFiles& files) {
+ChannelRun run_below(const ChannelConfig& config, const ChannelFiles& files, Solids solids = {}) {
     const UniformFlow uniform{config.water};
     ChannelWater water;
     water.manning_depth_m = uniform.depth(), water.manning_speed_m_per_s = uniform.mean_velocity();
-    ChannelRun run =
-        run_channel<LinearHysteretic>(config, files, grid_channel<ChannelFlow<Surface, Solids>>(config),
-                                      water, [&](const auto& flow, bool first) {
-                                          first ? measure(config, flow, water) : look_at_the_end(flow, water);
-                                      });
+    ChannelRun run = run_channel<LinearHysteretic>(
+        config, files, grid_channel<ChannelFlow<Surface, Solids>>(config, std::move(solids)), water,
+        [&](const auto& flow, bool first) {
+            first ? measure(config, flow, water) : look_at_the_end(flow, water);
+        });
     run.results.water = std::move(water);
     return run;
 }

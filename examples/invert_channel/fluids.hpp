@@ -45,7 +45,7 @@ struct ChannelEngine {
     ChannelRun (*run)(const ChannelConfig&, const ChannelFiles&);
     std::string_view surface = "";  ///< of a grid's water
 };
-inline constexpr std::array<ChannelEngine, 8> channel_engines{
+inline constexpr std::array<ChannelEngine, 9> channel_engines{
     {{"none", "hysteretic", run_without_fluid},
      {"uniform", "hysteretic", run_in_uniform_flow},
      {"uniform", "linear", run_in_uniform_flow_linear},
@@ -53,6 +53,7 @@ inline constexpr std::array<ChannelEngine, 8> channel_engines{
      {"shallow", "hysteretic", run_in_shallow_water},
      {"grid", "hysteretic", run_in_grid_water, "volume"},
      {"grid", "hysteretic", run_in_grid_water_below_height, "height"},
+     {"unresolved", "hysteretic", run_in_resolved_water, "height"},
      {"resolved", "hysteretic", run_in_resolved_water, "height"}}};
 
 /// Throws InputError where none was compiled for these; the surface counts where a fluid has one.

@@ -226,7 +226,7 @@ int main(int argc, char** argv) {
     app.add_option("file", options.file, "TOML file; quick.toml and paper.toml come with the program")
         ->capture_default_str();
     app.add_option("--fluid", options.fluid,
-                   "none, uniform, shallow, grid or resolved; as fluid.model in the file");
+                   "none, uniform, shallow, grid, unresolved or resolved; as fluid.model in the file");
     app.add_option("--set", options.overrides, "section.key=value, overrides the file")
         ->allow_extra_args(false)
         ->take_all();

@@ -41,16 +41,40 @@ public:
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                Real resolved_from, const FaceField<3>* open_area) {
         covers_.resize(bodies.size());
-        const auto open = [open_area](int axis, Offset face) {
+        const auto find = [&](bool averaged, auto open) {
+            parallel_blocks(
+                static_cast<Index>(bodies.size()),
+                [&](Index, Index first, Index last) {
+                    detail::SolidCoverFinder finder(grid, sides, resolved_from, open);
+                    for (Index b = first; b < last; ++b)
+                        if (covers_[at(b)].averaged == averaged) finder.find(bodies[at(b)], covers_[at(b)]);
+                },
+                block_of_bodies);
+        };
+        bool some = false, all = true;
+        for (std::size_t b = 0; b < bodies.size(); ++b) {
+            const bool averaged = covers_[b].averaged = is_averaged(grid, bodies[b], resolved_from);
+            some |= averaged, all &= averaged;
+        }
+        const auto walls_leave = [open_area](int axis, Offset face) {
             return open_area ? (*open_area)[axis][face] : Real(1);
         };
-        parallel_blocks(
-            static_cast<Index>(bodies.size()),
-            [&](Index, Index first, Index last) {
-                detail::SolidCoverFinder finder(grid, sides, resolved_from, open);
-                for (Index b = first; b < last; ++b) finder.find(bodies[at(b)], covers_[at(b)]);
-            },
-            block_of_bodies);
+        find(false, walls_leave);
+        if (some && !all) {  // resolved ones leave no room for others
+            if (taken_[0].size() == 0) taken_ = face_field<3>(grid.layout());
+            const auto at_resolved = [&](auto&& visit) {
+                for (const SolidCover& cover : covers_)
+                    for (const SolidFace& f : cover.faces)
+                        if (!cover.averaged) visit(taken_[f.axis][f.face], f.share);
+            };
+            at_resolved([](Real& taken, Real share) { taken += share; });
+            find(true, [&](int axis, Offset face) {
+                return std::max(walls_leave(axis, face) - taken_[axis][face], Real(0));
+            });
+            at_resolved([](Real& taken, Real) { taken = 0; });
+        } else if (some) {
+            find(true, walls_leave);
+        }
         faces_.clear(), first_.assign(1, 0);
         for (std::size_t b = 0; b < covers_.size(); ++b) {
             for (const SolidFace& f : covers_[b].faces) {
@@ -157,6 +181,7 @@ private:
     std::vector<std::size_t> by_plane_;     ///< `faces_` in the order of their planes
     std::vector<std::size_t> plane_start_;  ///< [plane] in `by_plane_`
     std::unordered_map<Offset, Real> surface_;
+    FaceField<3> taken_;  ///< by resolved bodies, while the others are placed; 0 else [-]
 };
 
 }  // namespace abrade

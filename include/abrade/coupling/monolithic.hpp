@@ -109,7 +109,7 @@ public:
         for (const CoveredFace& f : faces_.all()) {
             Real& value = u[f.axis][f.face];
             value += f.held * (detail::along(f, motion_[f.body].held) - f.velocity);
-            if (f.water > 0) value += f.share / f.water * motion_[f.body].handed[f.axis];
+            value += f.share * motion_[f.body].handed[f.axis];
         }
         for (CoveredFace& f : faces_.all()) f.velocity = u[f.axis][f.face];
         for (CoveredFace& f : faces_.all()) {
@@ -185,6 +185,7 @@ public:
                             .gained = before ? Six(motion.q - before->q) / stage_.dt : Six(Six::Zero()),
                             .covers = motion.covers,
                             .slip = slip_of(b, u),
+                            .pressed = by_pressure,
                             .owed = stage_.dt * by_added.template head<3>() - motion.owed});
         }
         std::sort(next.begin(), next.end(), [](const Memory& a, const Memory& b) { return a.id < b.id; });
@@ -212,16 +213,17 @@ private:
     /// What is known of a body from the last step.
     struct Memory {
         Index id = 0;
-        Six q = Six::Zero();       ///< velocity and spin that it left [m/s], [rad/s]
-        Six gained = Six::Zero();  ///< by these in the step [m/s2], [rad/s2]
-        Real covers = 0;           ///< mass of water in the body's place [kg]
-        Six slip = Six::Zero();    ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
-        Vec3 owed = Vec3::Zero();  ///< what its added mass was given [kg m/s]
+        Six q = Six::Zero();        ///< velocity and spin that it left [m/s], [rad/s]
+        Six gained = Six::Zero();   ///< by these in the step [m/s2], [rad/s2]
+        Real covers = 0;            ///< mass of water in the body's place [kg]
+        Six slip = Six::Zero();     ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
+        Six pressed = Six::Zero();  ///< force and torque of the pressure [N], [N m]
+        Vec3 owed = Vec3::Zero();   ///< what its added mass was given [kg m/s]
 
         static void fields(auto&& field) {
             field("id", &Memory::id), field.bytes("q", &Memory::q), field.bytes("gained", &Memory::gained);
             field("covers", "kg", &Memory::covers), field.bytes("slip", &Memory::slip);
-            field.bytes("owed", &Memory::owed);
+            field.bytes("pressed", &Memory::pressed), field.bytes("owed", &Memory::owed);
         }
     };
     static constexpr Real tiny = 1e-300, of_a_sphere = 0.5;  ///< added mass over that of its place [-]
@@ -266,19 +268,19 @@ private:
     }
 
     /// The body's velocity with friction, and with the old pressure as it acts on it where it is now.
-    void find_motion(std::size_t b, const FaceField<3>& u, const Field<Real>& pressure) {
+    void find_motion(std::size_t b, const FaceField<3>& u, const Field<Real>& old) {
         const FlowBody& body = bodies_[b];
         const bool averaged = faces_.cover(b).averaged;
         Motion& motion = motion_[b];
         const Memory* const before = memory_of(body.id);
         const Real dt = stage_.dt;
         Six within = Six::Zero();
-        Vec3 weight = Vec3::Zero(), flow = Vec3::Zero();
+        Vec3 weight = Vec3::Zero(), among = Vec3::Zero(), flow = Vec3::Zero();
         for (CoveredFace& f : faces_.of(b)) {
-            const Real gradient = f.gradient(pressure), now = u[f.axis][f.face];
+            const Real gradient = f.gradient(old), now = u[f.axis][f.face];
             f.velocity = stage_.pushed ? now : now - dt * gradient;
             const Real unpushed = f.velocity + dt * gradient, covers = mass_of(f) * f.share;
-            weight[f.axis] += covers, flow[f.axis] += covers * f.velocity;
+            weight[f.axis] += covers, among[f.axis] += covers * f.water, flow[f.axis] += covers * f.velocity;
             if (before)
                 within += covers * (unpushed - dt * stage_.falls[f.axis] - detail::along(f, before->q)) *
                           detail::coefficient(f);
@@ -312,7 +314,9 @@ private:
         inertia.template bottomRightCorner<3, 3>() = body.inverse_inertia.inverse();
         const Six begun = inertia * now - dt * (Six() << body.load.force, body.load.torque).finished();
         const Real more = averaged ? 1 + params_.added_mass : 1;
-        const Six pressure_gives = dt * more * stage_.density * detail::pressed(faces_.cover(b), pressure);
+        // Friction meets the last force of the pressure, whatever cells have become wet or dry since.
+        const Six pressure = stage_.density * detail::pressed(faces_.cover(b), old);
+        const Six last = dt * more * (before ? before->pressed : pressure);
         // Of a resolved body the pressure knows the added mass: then it is guessed for friction alone.
         const Real added = (averaged ? params_.added_mass : of_a_sphere) * motion.covers;
         const Vec3 goes_on = averaged ? stage_.falls
@@ -324,17 +328,17 @@ private:
         lead.template head<3>() = added * (had + dt * goes_on);
         Matrix6 heavier = inertia;
         heavier.template topLeftCorner<3, 3>().diagonal().array() += added;
-        motion.held = (heavier + drag).ldlt().solve(begun + pressure_gives + lead + brought);
+        motion.held = (heavier + drag).ldlt().solve(begun + last + lead + brought);
         motion.by_friction = (brought - drag * motion.held) / dt;
         Six momentum = begun + dt * motion.by_friction;
-        if (stage_.pushed) momentum += pressure_gives;  // or by the `push` to come
+        if (stage_.pushed) momentum += dt * more * pressure;  // or by the `push` to come
         if (averaged) {
             momentum += lead, motion.lead = lead, motion.added = added;
             // The water has its part at once, but for what the pressure is yet to change.
-            motion.owed = params_.added_mass / more * pressure_gives.template head<3>() +
-                          lead.template head<3>() - added * motion.held.template head<3>();
+            motion.owed = params_.added_mass / more * last.template head<3>() + lead.template head<3>() -
+                          added * motion.held.template head<3>();
             const Vec3 due = before ? Vec3(motion.owed + before->owed) : motion.owed;
-            motion.handed = -due.cwiseQuotient(weight.cwiseMax(tiny));
+            motion.handed = -due.cwiseQuotient(among.cwiseMax(tiny));
         }
         motion.q = (averaged ? heavier : inertia).ldlt().solve(momentum);
     }
@@ -346,7 +350,7 @@ private:
         for (const CoveredFace& f : faces_.of(b))
             if (f.open > 0) shares += f.share, water += f.share * std::min((f.water + f.share) / f.open, 1.0);
         if (shares == 0) return 0;
-        const SpreadBody spread{.diameter = std::cbrt(6 / pi * body.volume),
+        const SpreadBody spread{.diameter = body.diameter(),
                                 .reach = faces_.cover(b).reach,
                                 .slip = (flow - body.velocity).norm(),
                                 .viscosity = stage_.viscosity,

@@ -53,6 +53,27 @@ struct SolidCover {
 
 namespace detail {
 
+/// Of a cube as large as the cell about a point [m].
+inline Real cell_width(const Grid<3>& grid, const Vec3& x) noexcept {
+    Real volume = 1;
+    for (int a = 0; a < 3; ++a) {
+        const GridPlace place = detail::place_between(
+            std::clamp(x[a], grid.low(a), grid.high(a)), 0, grid.cells(a), grid.size(a, 0),
+            a != Grid<3>::vertical || grid.uniform(), [&](int i) { return grid.face(a, i); });
+        volume *= grid.size(a, std::min(place.low, grid.cells(a) - 1));
+    }
+    return std::cbrt(volume);
+}
+
+}  // namespace detail
+
+/// Whether a body has less than `resolved_from` cells to a diameter.
+inline bool is_averaged(const Grid<3>& grid, const FlowBody& body, Real resolved_from) noexcept {
+    return body.diameter() < resolved_from * detail::cell_width(grid, body.position);
+}
+
+namespace detail {
+
 /// Shares of a body that is a union of spheres, in the control volumes of the faces about it.
 ///
 /// Within a volume the surface is taken for a plane across the line to the nearest sphere's centre, moved by
@@ -76,10 +97,8 @@ public:
     void find(const FlowBody& body, SolidCover& cover) {
         cover.faces.clear(), cover.cells.clear(), cover.inside.clear(), cover.parts.clear();
         body_ = &body;
-        Real cell = 1;
-        for (int a = 0; a < 3; ++a) cell *= size(a, cell_at(a, body.position[a]));
-        const Real diameter = std::cbrt(6 / pi * body.volume), width = std::cbrt(cell);
-        cover.averaged = averaged_ = diameter < resolved_from_ * width;
+        const Real diameter = body.diameter(), width = detail::cell_width(grid_, body.position);
+        cover.averaged = averaged_ = is_averaged(grid_, body, resolved_from_);
         cover.reach = averaged_ ? 1.5 * std::max(diameter, width) : 0;
         grown_ = averaged_ ? std::sqrt(6.0 / 5) * cover.reach : std::max(0.9 * width - 0.5 * diameter, 0.0);
         scale_ = grown_ > 0 ? cube(0.5 * diameter / (0.9 * width)) : 1;

@@ -4,6 +4,7 @@
 #include <abrade/core/types.hpp>
 #include <abrade/geometry/solid_moments.hpp>
 
+#include <cmath>
 #include <span>
 
 namespace abrade {
@@ -35,6 +36,8 @@ struct FlowBody {
     Mat3 inverse_inertia = Mat3::Zero();   ///< about the centroid, along the axes of the box [1/(kg m2)]
     std::span<const Sphere> spheres{};     ///< whose union it is [m]
     FlowLoad load{};                       ///< mean over the water's step
+
+    Real diameter() const noexcept { return std::cbrt(6 / pi * volume); }  ///< of a sphere as large [m]
 };
 
 }  // namespace abrade
