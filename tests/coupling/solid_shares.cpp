@@ -28,7 +28,7 @@ Held held(const SolidCover& cover) {
     sum.out = way.norm(), sum.turned = turn.norm();
     return sum;
 }
-const auto all_open = [](int, Offset) { return 1.0; };
+const auto nothing_closed = [](int, Offset) { return false; };
 
 FlowBody body_of(const std::vector<Sphere>& spheres, const Vec3& centre, Real volume) {
     FlowBody body;
@@ -50,7 +50,7 @@ TEST_CASE(
                 Vec3(0.2, 0.2, 0) + Vec3(anywhere(random), anywhere(random), anywhere(random));
             const std::vector<Sphere> spheres{{centre, 0.05 * cells}};
             const Real volume = 4.0 / 3 * pi * cube(spheres[0].radius);
-            const Held sum = held(cover_of(grid, sides, body_of(spheres, centre, volume), all_open));
+            const Held sum = held(cover_of(grid, sides, body_of(spheres, centre, volume), nothing_closed));
             CAPTURE(cells);
             CHECK((sum.volume - Vec3::Constant(volume)).norm() < 1e-11 * volume);
             CHECK(sum.moment.norm() < 1e-11 * volume * spheres[0].radius);
@@ -73,7 +73,7 @@ TEST_CASE("a clump, across a periodic side and on a stretched grid") {
         std::vector<Sphere> spheres;
         for (const Sphere& member : clump.members) spheres.push_back({centre + member.centre, member.radius});
         const SolidCover cover =
-            cover_of(grid, sides, body_of(spheres, centre, clump.volume), all_open);
+            cover_of(grid, sides, body_of(spheres, centre, clump.volume), nothing_closed);
         const Held sum = held(cover);
         CHECK((sum.volume - Vec3::Constant(clump.volume)).norm() < 1e-10 * clump.volume);
         CHECK(sum.moment.norm() < 1e-10 * clump.volume * 0.25);
@@ -94,7 +94,7 @@ TEST_CASE("on a floor: what the floor takes of the shares, the rest has") {
         const Vec3 centre(0.81, 0.77, radius);
         const std::vector<Sphere> spheres{{centre, radius}};
         const Real volume = 4.0 / 3 * pi * cube(radius);
-        const Held sum = held(cover_of(grid, sides, body_of(spheres, centre, volume), all_open));
+        const Held sum = held(cover_of(grid, sides, body_of(spheres, centre, volume), nothing_closed));
         CAPTURE(cells);
         CHECK((sum.volume - Vec3::Constant(volume)).norm() < 1e-10 * volume);
     }
@@ -107,7 +107,7 @@ TEST_CASE("shares are those of the sphere: near the truth by counting points, 1 
     const std::vector<Sphere> spheres{{centre, radius}};
     const Real volume = 4.0 / 3 * pi * cube(radius);
     const SolidCover cover =
-        cover_of(grid, Sides<3>::all(Side::wall), body_of(spheres, centre, volume), all_open);
+        cover_of(grid, Sides<3>::all(Side::wall), body_of(spheres, centre, volume), nothing_closed);
     Real squares = 0, worst = 0;
     for (const SolidFace& f : cover.faces) {
         constexpr int points = 24;

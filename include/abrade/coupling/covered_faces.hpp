@@ -2,7 +2,7 @@
 // All faces of a grid that bodies cover some of, and what is left of them to the water.
 
 #include <abrade/core/parallel.hpp>
-#include <abrade/coupling/solid_shares.hpp>
+#include <abrade/coupling/spread_cloud.hpp>
 
 #include <span>
 #include <unordered_map>
@@ -20,8 +20,13 @@ struct CoveredFace : SolidFace {
     Real per_gap = 0;  ///< 1 over the distance of the pressures to both sides [1/m]
     bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
     bool leaves = false;  ///< at a side where water leaves: only what is added to a pressure pushes there
-    Real held = 0;        ///< share of the way to the body's velocity that friction takes the water [-]
+    Real mass = 0;        ///< of its control volume, as far as walls leave it open and it is wet [kg]
     Real velocity = 0;    ///< of the water, before a pressure acts [m/s]
+    Real solid = 0;       ///< velocity of what covers it [m/s]
+    Real held = 0;        ///< share of the way to `target` [m/s] that friction takes the water [-]
+    Real target = 0;
+    Real given = 0;  ///< to the water beside friction [m/s]
+    Real rate = 0;   ///< of friction [1/s]
 
     bool at_surface() const noexcept { return high_wet != low_wet; }
     /// Of a pressure over density [m/s2].
@@ -36,45 +41,29 @@ struct CoveredFace : SolidFace {
 /// Of all bodies, body by body and in the order of their planes; what walls and the surface leave of them.
 class CoveredFaces {
 public:
-    /// Bodies as they stand, averaged below `resolved_from` cells to a diameter. `open_area`: shares that
-    /// walls leave open; none: all is.
+    /// Bodies as they stand; those below `resolved_from` cells to a diameter make a cloud, which is one more
+    /// body behind the others. `open_area`: shares that walls leave open; none: all is.
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                Real resolved_from, const FaceField<3>* open_area) {
-        covers_.resize(bodies.size());
-        const auto find = [&](bool averaged, auto open) {
-            parallel_blocks(
-                static_cast<Index>(bodies.size()),
-                [&](Index, Index first, Index last) {
-                    detail::SolidCoverFinder finder(grid, sides, resolved_from, open);
-                    for (Index b = first; b < last; ++b)
-                        if (covers_[at(b)].averaged == averaged) finder.find(bodies[at(b)], covers_[at(b)]);
-                },
-                block_of_bodies);
-        };
-        bool some = false, all = true;
+        covers_.resize(bodies.size() + 1);
+        std::vector<std::size_t> small;
         for (std::size_t b = 0; b < bodies.size(); ++b) {
-            const bool averaged = covers_[b].averaged = is_averaged(grid, bodies[b], resolved_from);
-            some |= averaged, all &= averaged;
+            const Real width = detail::GridNumbers{grid, sides}.cell_width(bodies[b].position);
+            covers_[b].averaged = bodies[b].diameter() < resolved_from * width;
+            if (covers_[b].averaged) small.push_back(b);
         }
-        const auto walls_leave = [open_area](int axis, Offset face) {
-            return open_area ? (*open_area)[axis][face] : Real(1);
+        const auto closed = [open_area](int axis, Offset face) {
+            return open_area && (*open_area)[axis][face] == 0;
         };
-        find(false, walls_leave);
-        if (some && !all) {  // resolved ones leave no room for others
-            if (taken_[0].size() == 0) taken_ = face_field<3>(grid.layout());
-            const auto at_resolved = [&](auto&& visit) {
-                for (const SolidCover& cover : covers_)
-                    for (const SolidFace& f : cover.faces)
-                        if (!cover.averaged) visit(taken_[f.axis][f.face], f.share);
-            };
-            at_resolved([](Real& taken, Real share) { taken += share; });
-            find(true, [&](int axis, Offset face) {
-                return std::max(walls_leave(axis, face) - taken_[axis][face], Real(0));
-            });
-            at_resolved([](Real& taken, Real) { taken = 0; });
-        } else if (some) {
-            find(true, walls_leave);
-        }
+        parallel_blocks(
+            static_cast<Index>(bodies.size()),
+            [&](Index, Index first, Index last) {
+                detail::SolidCoverFinder finder(grid, sides, closed);
+                for (Index b = first; b < last; ++b)
+                    if (!covers_[at(b)].averaged) finder.find(bodies[at(b)], covers_[at(b)]);
+            },
+            block_of_bodies);
+        spread(grid, sides, bodies, std::move(small), open_area);
         faces_.clear(), first_.assign(1, 0);
         for (std::size_t b = 0; b < covers_.size(); ++b) {
             for (const SolidFace& f : covers_[b].faces) {
@@ -91,9 +80,8 @@ public:
     std::span<CoveredFace> of(std::size_t body) noexcept {
         return std::span(faces_).subspan(first_[body], first_[body + 1] - first_[body]);
     }
-    std::span<const CoveredFace> of(std::size_t body) const noexcept {
-        return std::span(faces_).subspan(first_[body], first_[body + 1] - first_[body]);
-    }
+    const SpreadCloud& cloud() const noexcept { return cloud_; }
+    std::span<CoveredFace> of_cloud() noexcept { return of(covers_.size() - 1); }
     const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }
     std::span<const SolidCover> covers() const noexcept { return covers_; }
     /// Volume in cells, of all bodies.
@@ -138,6 +126,28 @@ public:
     }
 
 private:
+    /// Resolved bodies leave no room for others.
+    void spread(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
+                std::vector<std::size_t> small, const FaceField<3>* open_area) {
+        if (!small.empty() && taken_[0].size() == 0) taken_ = face_field<3>(grid.layout());
+        for (const std::size_t b : small) {
+            covers_[b].clear();
+            for (int a = 0; a < 3; ++a) {
+                const Real x = bodies[b].position[a];
+                covers_[b].cut |= (!is_closed(sides[a][0]) && x < grid.low(a)) ||
+                                  (!is_closed(sides[a][1]) && x > grid.high(a));
+            }
+        }
+        for (std::size_t b = 0; b < bodies.size() && !small.empty(); ++b)
+            for (const SolidFace& f : covers_[b].faces) taken_[f.axis][f.face] += f.share;
+        const auto open = [&](int axis, Offset face) {
+            return std::max((open_area ? (*open_area)[axis][face] : 1) - taken_[axis][face], Real(0));
+        };
+        cloud_.place(grid, sides, bodies, std::move(small), open, covers_.back());
+        for (std::size_t b = 0; b < bodies.size() && taken_[0].size() > 0; ++b)
+            for (const SolidFace& f : covers_[b].faces) taken_[f.axis][f.face] = 0;
+    }
+
     static constexpr Real least = 1e-6;  ///< of a face: less conducts nothing
 
     static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
@@ -175,13 +185,14 @@ private:
         }
     }
 
-    std::vector<SolidCover> covers_;        ///< [body]
+    std::vector<SolidCover> covers_;  ///< [body], and of the cloud
+    SpreadCloud cloud_;
     std::vector<CoveredFace> faces_;        ///< body by body
     std::vector<std::size_t> first_;        ///< [body] in `faces_`
     std::vector<std::size_t> by_plane_;     ///< `faces_` in the order of their planes
     std::vector<std::size_t> plane_start_;  ///< [plane] in `by_plane_`
     std::unordered_map<Offset, Real> surface_;
-    FaceField<3> taken_;  ///< by resolved bodies, while the others are placed; 0 else [-]
+    FaceField<3> taken_;  ///< by resolved bodies, while the others are spread; 0 else [-]
 };
 
 }  // namespace abrade

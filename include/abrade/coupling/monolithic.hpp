@@ -2,8 +2,7 @@
 // Rigid bodies in water on a grid, whose velocities are found together with the pressure.
 
 #include <abrade/core/fields.hpp>
-#include <abrade/coupling/covered_faces.hpp>
-#include <abrade/coupling/dense_drag.hpp>
+#include <abrade/coupling/averaged.hpp>
 #include <abrade/coupling/rigid_six.hpp>
 
 #include <algorithm>
@@ -29,14 +28,7 @@ namespace abrade {
 /// the body's last load have acted on already: where all is at rest, nothing is exchanged. How fast a body
 /// is when friction acts tells what its added mass lets it have of its forces: the pressure comes later.
 ///
-/// Bodies of less than `resolved_from` cells to a diameter are averaged (SolidCoverFinder): in the same
-/// equations, with the share sigma that they are spread over, and
-/// - instead of friction the drag of a law, F = beta (u - v) (SpreadBody), u the mean over the spread, the
-/// law's
-///   porosity what other bodies leave: du/dt = beta / (rho V) sigma / (1 - sigma) (v - u);
-/// - added mass C_m rho V, for which water is accelerated by g - grad p / rho; the water has its part a step
-///   later.
-/// They are not turned.
+/// Bodies of less than `resolved_from` cells to a diameter are averaged: AveragedBodies.
 template <DenseDragLaw DragOfSmall = DiFelice>
 class MonolithicSolids {
     using Six = detail::Six;
@@ -69,7 +61,9 @@ public:
     };
 
     MonolithicSolids() = default;
-    explicit MonolithicSolids(Params params) : params_(params), drag_(params.drag) { params_.validate(); }
+    explicit MonolithicSolids(Params params) : params_(params), averaged_(params.added_mass, params.drag) {
+        params_.validate();
+    }
     const Params& params() const noexcept { return params_; }
     std::span<const FlowBody> bodies() const noexcept { return bodies_; }
     std::span<const SolidCover> covers() const noexcept { return faces_.covers(); }  ///< [body]
@@ -77,10 +71,15 @@ public:
 
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                const FaceField<3>* open_area) {
-        bodies_.assign(bodies.begin(), bodies.end()), motion_.assign(bodies.size(), {});
+        bodies_.assign(bodies.begin(), bodies.end()), motion_.assign(bodies.size() + 1, {});
         faces_.place(grid, sides, bodies, params_.resolved_from, open_area);
-        for (std::size_t b = 0; b < bodies_.size(); ++b)
-            if (faces_.cover(b).cut) bodies_[b].inverse_mass = 0, bodies_[b].inverse_inertia.setZero();
+        cut_.assign(bodies_.size(), false);
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            cut_[b] = faces_.cover(b).cut;
+            if (cut_[b]) bodies_[b].inverse_mass = 0, bodies_[b].inverse_inertia.setZero();
+            for (CoveredFace& f : faces_.of(b)) f.solid = detail::along(f, detail::velocity_of(bodies_[b]));
+        }
+        averaged_.begin(faces_.of_cloud(), faces_.cloud(), bodies_);
     }
     std::vector<SolidPart> parts() const { return faces_.parts(); }
     std::span<const SolidFlux> fluxes() const noexcept { return fluxes_; }
@@ -99,30 +98,33 @@ public:
     void mix(FaceField<3>& u) const {
         for (const CoveredFace& f : faces_.all()) {
             Real& value = u[f.axis][f.face];
-            value += f.covered * (detail::along(f, detail::velocity_of(bodies_[f.body])) - value);
+            value += f.covered * (f.solid - value);
         }
     }
 
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         stage_ = stage;
-        parallel_for_bodies([&](std::size_t b) { find_motion(b, u, pressure); });
-        for (const CoveredFace& f : faces_.all()) {
-            Real& value = u[f.axis][f.face];
-            value += f.held * (detail::along(f, motion_[f.body].held) - f.velocity);
-            value += f.share * motion_[f.body].handed[f.axis];
+        for (CoveredFace& f : faces_.all()) {
+            f.velocity = u[f.axis][f.face] - (stage_.pushed ? 0 : stage_.dt * f.gradient(pressure));
+            f.mass = mass_of(f);
         }
+        parallel_for_resolved([&](std::size_t b) { find_motion(b, pressure); });
+        averaged_.force(faces_.of_cloud(), faces_.cloud(), bodies_, pressure, stage_);
+        for (const CoveredFace& f : faces_.all())
+            u[f.axis][f.face] += f.held * (f.target - f.velocity) + f.given;
         for (CoveredFace& f : faces_.all()) f.velocity = u[f.axis][f.face];
         for (CoveredFace& f : faces_.all()) {
-            u[f.axis][f.face] += f.covered * (detail::along(f, motion_[f.body].q) - f.velocity);
+            u[f.axis][f.face] += f.covered * (f.solid - f.velocity);
             if (stage_.pushed || f.leaves) f.velocity += stage_.dt * f.gradient(pressure);
         }
     }
 
     template <class Number>
     void push(const Field<Number>& of, Real factor) {
-        parallel_for_bodies([&](std::size_t b) {
+        parallel_for_resolved([&](std::size_t b) {
             Motion& motion = motion_[b];
-            motion.push = pushed(b, stage_.density * factor * detail::pressed(faces_.cover(b), of));
+            motion.push = detail::accelerated(bodies_[b],
+                                              stage_.density * factor * detail::pressed(faces_.cover(b), of));
             motion.q += motion.push;
         });
     }
@@ -136,10 +138,10 @@ public:
         });
     }
     Real add_product(const Field<float>& p, Field<float>& product) {
-        parallel_for_bodies([&](std::size_t b) {
+        parallel_for_resolved([&](std::size_t b) {
             Motion& motion = motion_[b];
             const Six sum = detail::pressed(faces_.cover(b), p);
-            motion.push = pushed(b, stage_.density * sum);
+            motion.push = detail::accelerated(bodies_[b], stage_.density * sum);
             motion.curvature = sum.dot(motion.push);
         });
         Real sum = 0;
@@ -156,43 +158,38 @@ public:
     void settle(FaceField<3>& u, Field<Real>& pressure) {
         for (const CoveredFace& f : faces_.all())
             if (f.water > 0) u[f.axis][f.face] = f.velocity - stage_.dt * f.gradient(pressure);
+        for (std::size_t b = 0; b < bodies_.size(); ++b)
+            for (CoveredFace& f : faces_.of(b)) f.solid = detail::along(f, motion_[b].q);
         fluxes_.clear(), beyond_.clear();
         for (const CoveredFace& f : faces_.all()) {
             if (f.covered == 0) continue;
-            const Real solid = f.covered * detail::along(f, motion_[f.body].q);
-            fluxes_.push_back({f.face, f.axis, solid});
-            beyond_.push_back(solid - f.covered * u[f.axis][f.face]);
+            fluxes_.push_back({f.face, f.axis, f.covered * f.solid});
+            beyond_.push_back(f.covered * (f.solid - u[f.axis][f.face]));
         }
         std::vector<Memory> next;
         next.reserve(bodies_.size());
-        fastest_ = 0;
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            if (faces_.cover(b).averaged) continue;
             FlowBody& body = bodies_[b];
             const Motion& motion = motion_[b];
             const Six by_pressure = stage_.density * detail::pressed(faces_.cover(b), pressure);
-            Six by_added = Six::Zero();
-            if (motion.added > 0)
-                by_added = params_.added_mass * by_pressure + motion.lead / stage_.dt,
-                by_added.template head<3>() -= motion.added / stage_.dt * motion.q.template head<3>();
-            const Six load = by_pressure + motion.by_friction + by_added;
+            const Six load = by_pressure + motion.by_friction;
             body.velocity = motion.q.template head<3>(), body.angular_velocity = motion.q.template tail<3>();
-            if (!faces_.cover(b).cut) body.load = {load.template head<3>(), load.template tail<3>()};
-            fastest_ = std::max(fastest_, body.velocity.norm());
+            if (!cut_[b]) body.load = {load.template head<3>(), load.template tail<3>()};
             fill_inside(b, by_pressure.template head<3>(), pressure);
             const Memory* const before = memory_of(body.id);
-            next.push_back({.id = body.id,
-                            .q = motion.q,
-                            .gained = before ? Six(motion.q - before->q) / stage_.dt : Six(Six::Zero()),
-                            .covers = motion.covers,
-                            .slip = slip_of(b, u),
-                            .pressed = by_pressure,
-                            .owed = stage_.dt * by_added.template head<3>() - motion.owed});
+            const Six gained = before ? Six(motion.q - before->q) / stage_.dt : Six(Six::Zero());
+            next.push_back({body.id, motion.q, gained, motion.covers, slip_of(b, u), by_pressure});
         }
         std::sort(next.begin(), next.end(), [](const Memory& a, const Memory& b) { return a.id < b.id; });
         memory_ = std::move(next);
+        averaged_.settle(faces_.of_cloud(), faces_.cloud(), bodies_, pressure, stage_, cut_);
+        fastest_ = 0;
+        for (const FlowBody& body : bodies_) fastest_ = std::max(fastest_, body.velocity.norm());
     }
     static void fields(auto&& field) {
-        field("memory", &MonolithicSolids::memory_), field.bytes("fluxes", &MonolithicSolids::fluxes_);
+        field("memory", &MonolithicSolids::memory_), field("averaged", &MonolithicSolids::averaged_);
+        field.bytes("fluxes", &MonolithicSolids::fluxes_);
         field("beyond", "m/s", &MonolithicSolids::beyond_);
         field("fastest", "m/s", &MonolithicSolids::fastest_);
     }
@@ -203,12 +200,8 @@ private:
         Six held = Six::Zero();         ///< the same while friction acts
         Six push = Six::Zero();         ///< its change by the last pressure
         Six by_friction = Six::Zero();  ///< [N], [N m]
-        Six lead = Six::Zero();         ///< what added mass had, and its weight gives [kg m/s]
-        Vec3 owed = Vec3::Zero();       ///< by the water to its added mass [kg m/s]
-        Vec3 handed = Vec3::Zero();     ///< to the water in its place for that [m/s]
         Real curvature = 0;
         Real covers = 0;  ///< mass of water in the body's place [kg]
-        Real added = 0;   ///< mass, of those averaged [kg]
     };
     /// What is known of a body from the last step.
     struct Memory {
@@ -218,26 +211,18 @@ private:
         Real covers = 0;            ///< mass of water in the body's place [kg]
         Six slip = Six::Zero();     ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
         Six pressed = Six::Zero();  ///< force and torque of the pressure [N], [N m]
-        Vec3 owed = Vec3::Zero();   ///< what its added mass was given [kg m/s]
 
         static void fields(auto&& field) {
             field("id", &Memory::id), field.bytes("q", &Memory::q), field.bytes("gained", &Memory::gained);
             field("covers", "kg", &Memory::covers), field.bytes("slip", &Memory::slip);
-            field.bytes("pressed", &Memory::pressed), field.bytes("owed", &Memory::owed);
+            field.bytes("pressed", &Memory::pressed);
         }
     };
-    static constexpr Real tiny = 1e-300, of_a_sphere = 0.5;  ///< added mass over that of its place [-]
-    static constexpr Real sliver = 0.1;  ///< of a face: less water has no velocity of its own [-]
+    static constexpr Real of_a_sphere = 0.5;  ///< added mass over that of its place [-]
+    static constexpr Real sliver = 0.1;       ///< of a face: less water has no velocity of its own [-]
 
     Index count() const noexcept { return static_cast<Index>(bodies_.size()); }
 
-    /// By an impulse of the pressure, which acts on added mass, too.
-    Six pushed(std::size_t b, const Six& impulse) const noexcept {
-        const FlowBody& body = bodies_[b];
-        if (!faces_.cover(b).averaged) return detail::accelerated(body, impulse);
-        const Real more = 1 + params_.added_mass, with = 1 + body.inverse_mass * motion_[b].added;
-        return detail::accelerated(body, more / with * impulse);
-    }
     /// Of the control volume of a face, as far as walls leave it open and it lies below the surface [kg].
     Real mass_of(const CoveredFace& f) const noexcept {
         if (f.open == 0) return 0;
@@ -248,16 +233,17 @@ private:
     Six slip_of(std::size_t b, const FaceField<3>& u) noexcept {
         Six sum = Six::Zero();
         for (const CoveredFace& f : faces_.of(b))
-            sum += mass_of(f) * f.share * (u[f.axis][f.face] - detail::along(f, motion_[b].q)) *
+            sum += f.mass * f.share * (u[f.axis][f.face] - detail::along(f, motion_[b].q)) *
                    detail::coefficient(f);
         return sum;
     }
 
-    void parallel_for_bodies(auto&& body) const {
+    void parallel_for_resolved(auto&& body) const {
         parallel_blocks(
             count(),
             [&](Index, Index first, Index last) {
-                for (Index b = first; b < last; ++b) body(static_cast<std::size_t>(b));
+                for (auto b = static_cast<std::size_t>(first); b < static_cast<std::size_t>(last); ++b)
+                    if (!faces_.cover(b).averaged) body(b);
             },
             block_of_bodies);
     }
@@ -268,94 +254,55 @@ private:
     }
 
     /// The body's velocity with friction, and with the old pressure as it acts on it where it is now.
-    void find_motion(std::size_t b, const FaceField<3>& u, const Field<Real>& old) {
+    void find_motion(std::size_t b, const Field<Real>& old) {
         const FlowBody& body = bodies_[b];
-        const bool averaged = faces_.cover(b).averaged;
         Motion& motion = motion_[b];
         const Memory* const before = memory_of(body.id);
         const Real dt = stage_.dt;
-        Six within = Six::Zero();
-        Vec3 weight = Vec3::Zero(), among = Vec3::Zero(), flow = Vec3::Zero();
-        for (CoveredFace& f : faces_.of(b)) {
-            const Real gradient = f.gradient(old), now = u[f.axis][f.face];
-            f.velocity = stage_.pushed ? now : now - dt * gradient;
-            const Real unpushed = f.velocity + dt * gradient, covers = mass_of(f) * f.share;
-            weight[f.axis] += covers, among[f.axis] += covers * f.water, flow[f.axis] += covers * f.velocity;
-            if (before)
-                within += covers * (unpushed - dt * stage_.falls[f.axis] - detail::along(f, before->q)) *
-                          detail::coefficient(f);
-        }
-        motion.covers = weight.mean();
-        const Real small = averaged ? drag_rate(b, flow.cwiseQuotient(weight.cwiseMax(tiny))) : 0;
         Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
-        Six brought = Six::Zero();
+        Six brought = Six::Zero(), within = Six::Zero();
         for (CoveredFace& f : faces_.of(b)) {
-            const Real rate =
-                averaged ? small : params_.friction * stage_.viscosity / std::pow(f.volume(), 2.0 / 3);
-            const Real stiff = rate * dt * f.share, left = 1 - f.share;
+            const Real rate = params_.friction * stage_.viscosity * dt / std::pow(f.volume(), 2.0 / 3);
+            const Real stiff = rate * f.share, left = 1 - f.share;
             f.held = stiff > 0 ? stiff / (left + stiff) : 0;
-            if (f.open > 0 && !averaged) f.held = std::max(f.held, 1 - f.water / (sliver * f.open));
-            const Real held = mass_of(f) * f.water * f.held;
+            if (f.open > 0) f.held = std::max(f.held, 1 - f.water / (sliver * f.open));
+            const Real held = f.mass * f.water * f.held, covers = f.mass * f.share;
             const Six c = detail::coefficient(f);
             drag += held * c * c.transpose();
             brought += held * f.velocity * c;
+            motion.covers += covers / 3;
+            if (!before) continue;
+            const Real unpushed = f.velocity + dt * (f.gradient(old) - stage_.falls[f.axis]);
+            within += covers * (unpushed - detail::along(f, before->q)) * c;
         }
         // What has left through the surface has taken its part along.
         if (before && before->covers > 0)
             brought += within - std::min(1.0, motion.covers / before->covers) * before->slip;
         const Six now = detail::velocity_of(body);
-        if (body.inverse_mass == 0) {
-            motion.held = motion.q = now;
-            motion.by_friction = (brought - drag * now) / dt;
-            return;
+        motion.held = motion.q = now;
+        if (body.inverse_mass > 0) {
+            Matrix6 inertia = Matrix6::Zero();
+            inertia.template topLeftCorner<3, 3>() = Mat3::Identity() / body.inverse_mass;
+            inertia.template bottomRightCorner<3, 3>() = body.inverse_inertia.inverse();
+            const Six begun = inertia * now - dt * (Six() << body.load.force, body.load.torque).finished();
+            const Six pressure = dt * stage_.density * detail::pressed(faces_.cover(b), old);
+            // Friction meets the last force of the pressure, whatever cells have become wet or dry since, and
+            // what added mass makes of the rest.
+            Matrix6 heavier = inertia;
+            Six lead = before ? Six(dt * before->pressed) : pressure;
+            const Real added = of_a_sphere * motion.covers;
+            heavier.template topLeftCorner<3, 3>().diagonal().array() += added;
+            if (before)
+                lead.template head<3>() += added * (before->q + dt * before->gained).template head<3>();
+            else
+                lead.template head<3>() += added * body.velocity;
+            motion.held = (heavier + drag).ldlt().solve(begun + lead + brought);
+            motion.q = inertia.ldlt().solve(begun + brought - drag * motion.held);
+            if (stage_.pushed) motion.q += detail::accelerated(body, pressure);  // or by the `push` to come
         }
-        Matrix6 inertia = Matrix6::Zero();
-        inertia.template topLeftCorner<3, 3>() = Mat3::Identity() / body.inverse_mass;
-        inertia.template bottomRightCorner<3, 3>() = body.inverse_inertia.inverse();
-        const Six begun = inertia * now - dt * (Six() << body.load.force, body.load.torque).finished();
-        const Real more = averaged ? 1 + params_.added_mass : 1;
-        // Friction meets the last force of the pressure, whatever cells have become wet or dry since.
-        const Six pressure = stage_.density * detail::pressed(faces_.cover(b), old);
-        const Six last = dt * more * (before ? before->pressed : pressure);
-        // Of a resolved body the pressure knows the added mass: then it is guessed for friction alone.
-        const Real added = (averaged ? params_.added_mass : of_a_sphere) * motion.covers;
-        const Vec3 goes_on = averaged ? stage_.falls
-                             : before ? Vec3(before->gained.template head<3>())
-                                      : Vec3(Vec3::Zero());
-        const Vec3 had =
-            before ? Vec3(before->q.template head<3>()) : Vec3(body.velocity - dt * stage_.falls);
-        Six lead = Six::Zero();
-        lead.template head<3>() = added * (had + dt * goes_on);
-        Matrix6 heavier = inertia;
-        heavier.template topLeftCorner<3, 3>().diagonal().array() += added;
-        motion.held = (heavier + drag).ldlt().solve(begun + last + lead + brought);
         motion.by_friction = (brought - drag * motion.held) / dt;
-        Six momentum = begun + dt * motion.by_friction;
-        if (stage_.pushed) momentum += dt * more * pressure;  // or by the `push` to come
-        if (averaged) {
-            momentum += lead, motion.lead = lead, motion.added = added;
-            // The water has its part at once, but for what the pressure is yet to change.
-            motion.owed = params_.added_mass / more * last.template head<3>() + lead.template head<3>() -
-                          added * motion.held.template head<3>();
-            const Vec3 due = before ? Vec3(motion.owed + before->owed) : motion.owed;
-            motion.handed = -due.cwiseQuotient(among.cwiseMax(tiny));
-        }
-        motion.q = (averaged ? heavier : inertia).ldlt().solve(momentum);
-    }
-
-    /// beta / (rho V) [1/s] of one that is averaged, in water that flows with `flow` [m/s].
-    Real drag_rate(std::size_t b, const Vec3& flow) const noexcept {
-        const FlowBody& body = bodies_[b];
-        Real shares = 0, water = 0;
-        for (const CoveredFace& f : faces_.of(b))
-            if (f.open > 0) shares += f.share, water += f.share * std::min((f.water + f.share) / f.open, 1.0);
-        if (shares == 0) return 0;
-        const SpreadBody spread{.diameter = body.diameter(),
-                                .reach = faces_.cover(b).reach,
-                                .slip = (flow - body.velocity).norm(),
-                                .viscosity = stage_.viscosity,
-                                .porosity = water / shares};
-        return spread.drag(drag_) / body.volume;
+        for (CoveredFace& f : faces_.of(b))
+            f.target = detail::along(f, motion.held), f.solid = detail::along(f, motion.q);
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.
@@ -373,10 +320,11 @@ private:
     }
 
     Params params_;
-    DragOfSmall drag_;
     std::vector<FlowBody> bodies_;
-    std::vector<Motion> motion_;  ///< [body]
+    std::vector<bool> cut_;       ///< [body] by an open side: it moves as it is told, with its last load
+    std::vector<Motion> motion_;  ///< [body], and 0 of the cloud
     CoveredFaces faces_;
+    AveragedBodies<DragOfSmall> averaged_;
     std::vector<Memory> memory_;     ///< by id
     std::vector<SolidFlux> fluxes_;  ///< as the last step left them
     std::vector<Real> beyond_;       ///< mixture's velocity beyond the water's at these faces [m/s]

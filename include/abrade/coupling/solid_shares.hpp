@@ -47,32 +47,45 @@ struct SolidCover {
     std::vector<SolidCell> inside;  ///< and as a whole
     std::vector<SolidPart> parts;   ///< its volume in cells
     bool cut = false;               ///< some of it lies beyond a side where water flows in or out
-    bool averaged = false;          ///< too small for its shape to count: spread, and not turned
-    Real reach = 0;                 ///< then, of a ball as wide as what it is spread over [m]
+    bool averaged = false;          ///< too small for its shape to count: it has its part in a cloud
+
+    void clear() noexcept { faces.clear(), cells.clear(), inside.clear(), parts.clear(), cut = false; }
 };
 
 namespace detail {
 
-/// Of a cube as large as the cell about a point [m].
-inline Real cell_width(const Grid<3>& grid, const Vec3& x) noexcept {
-    Real volume = 1;
-    for (int a = 0; a < 3; ++a) {
-        const GridPlace place = detail::place_between(
-            std::clamp(x[a], grid.low(a), grid.high(a)), 0, grid.cells(a), grid.size(a, 0),
-            a != Grid<3>::vertical || grid.uniform(), [&](int i) { return grid.face(a, i); });
-        volume *= grid.size(a, std::min(place.low, grid.cells(a) - 1));
+/// Numbers of cells and faces that go on beyond a box.
+struct GridNumbers {
+    const Grid<3>& grid;
+    const Sides<3>& sides;
+
+    Real size(int a, int i) const noexcept { return grid.size(a, std::clamp(i, 0, grid.cells(a) - 1)); }
+    /// Lower face of cell i, which may be one beyond the ghosts.
+    Real face(int a, int i) const noexcept {
+        const int n = grid.cells(a);
+        if (i < 0) return grid.low(a) + i * size(a, 0);
+        if (i > n) return grid.high(a) + (i - n) * size(a, n - 1);
+        return grid.face(a, i);
     }
-    return std::cbrt(volume);
-}
-
-}  // namespace detail
-
-/// Whether a body has less than `resolved_from` cells to a diameter.
-inline bool is_averaged(const Grid<3>& grid, const FlowBody& body, Real resolved_from) noexcept {
-    return body.diameter() < resolved_from * detail::cell_width(grid, body.position);
-}
-
-namespace detail {
+    Real centre(int a, int i) const noexcept { return face(a, i) + 0.5 * size(a, i); }
+    int cell_at(int a, Real x) const noexcept {
+        const int n = grid.cells(a);
+        if (x < grid.low(a)) return static_cast<int>(std::floor((x - grid.low(a)) / size(a, 0)));
+        if (x >= grid.high(a)) return n + static_cast<int>((x - grid.high(a)) / size(a, n - 1));
+        const bool even = a != Grid<3>::vertical || grid.uniform();
+        return detail::place_between(x, 0, n, size(a, 0), even, [&](int i) { return grid.face(a, i); }).low;
+    }
+    int wrapped(int a, int i) const noexcept {
+        const int n = grid.cells(a);
+        return sides.periodic(a) ? (i % n + n) % n : i;
+    }
+    /// Of a cube as large as the cell about a point [m].
+    Real cell_width(const Vec3& x) const noexcept {
+        Real volume = 1;
+        for (int a = 0; a < 3; ++a) volume *= size(a, cell_at(a, x[a]));
+        return std::cbrt(volume);
+    }
+};
 
 /// Shares of a body that is a union of spheres, in the control volumes of the faces about it.
 ///
@@ -82,35 +95,27 @@ namespace detail {
 /// space (that of water at rest) pushes with rho g V and does not turn the body, wherever it stands. The
 /// correction is
 ///   sigma (1 - sigma) (a + b . arm), a and b from linear equations, at most sigma (1 - sigma).
-/// What is closed (walls, what lies beyond them) holds nothing, and the rest takes it over.
-///
-/// A body of less than `resolved_from` cells to a diameter D = (6 V / pi)^(1/3) is averaged: each of its
-/// spheres is spread by a triangle of as much variance along each axis as a ball of 3 D has, or of 3 cells,
-/// and its faces have no lever.
-template <class Open>
-class SolidCoverFinder {
+/// What is closed (walls, what lies beyond them) holds nothing, and the rest takes it over. A body that is
+/// hardly larger than a cell is spread: its spheres grow, and cover a share.
+template <class Closed>
+class SolidCoverFinder : GridNumbers {
 public:
-    /// `open(axis, face)`: share that walls leave of a face.
-    SolidCoverFinder(const Grid<3>& grid, const Sides<3>& sides, Real resolved_from, Open open)
-        : grid_(grid), sides_(sides), resolved_from_(resolved_from), open_(std::move(open)) {}
+    /// `closed(axis, face)`: faces that walls close.
+    SolidCoverFinder(const Grid<3>& grid, const Sides<3>& sides, Closed closed)
+        : GridNumbers{grid, sides}, closed_(std::move(closed)) {}
 
     void find(const FlowBody& body, SolidCover& cover) {
-        cover.faces.clear(), cover.cells.clear(), cover.inside.clear(), cover.parts.clear();
+        cover.clear();
         body_ = &body;
-        const Real diameter = body.diameter(), width = detail::cell_width(grid_, body.position);
-        cover.averaged = averaged_ = is_averaged(grid_, body, resolved_from_);
-        cover.reach = averaged_ ? 1.5 * std::max(diameter, width) : 0;
-        grown_ = averaged_ ? std::sqrt(6.0 / 5) * cover.reach : std::max(0.9 * width - 0.5 * diameter, 0.0);
-        scale_ = grown_ > 0 ? cube(0.5 * diameter / (0.9 * width)) : 1;
         find_box();
         cover.cut = is_cut();
-        for (int a = 0; a < 3; ++a) find(a), list_faces(a, cover);
+        for (int a = 0; a < 3; ++a) find_shares(a), list_faces(a, cover);
         list_cells(cover);
-        find(of_cells);
+        find_shares(of_cells);
         for_each([&](const Number& n, std::size_t k) {
             if (kind_[of_cells][k] == Kind::open && share_[of_cells][k] > 0)
                 cover.parts.push_back(
-                    {grid_.layout().at(inside_box(n)), share_[of_cells][k] * extent(of_cells, n).prod()});
+                    {grid.layout().at(inside_box(n)), share_[of_cells][k] * extent(of_cells, n).prod()});
         });
     }
 
@@ -123,35 +128,19 @@ private:
         beyond  ///< could let water through, but is no part of the box
     };
 
-    Real size(int a, int i) const noexcept { return grid_.size(a, std::clamp(i, 0, grid_.cells(a) - 1)); }
-    /// Lower face of cell i, which may be one beyond the ghosts.
-    Real face(int a, int i) const noexcept {
-        const int n = grid_.cells(a);
-        if (i < 0) return grid_.low(a) + i * size(a, 0);
-        if (i > n) return grid_.high(a) + (i - n) * size(a, n - 1);
-        return grid_.face(a, i);
-    }
-    Real centre(int a, int i) const noexcept { return face(a, i) + 0.5 * size(a, i); }
-    int cell_at(int a, Real x) const noexcept {
-        const int n = grid_.cells(a);
-        if (x < grid_.low(a)) return static_cast<int>(std::floor((x - grid_.low(a)) / size(a, 0)));
-        if (x >= grid_.high(a)) return n + static_cast<int>((x - grid_.high(a)) / size(a, n - 1));
-        const bool even = a != Grid<3>::vertical || grid_.uniform();
-        return detail::place_between(x, 0, n, size(a, 0), even, [&](int i) { return grid_.face(a, i); }).low;
-    }
-    int wrapped(int a, int i) const noexcept {
-        const int n = grid_.cells(a);
-        return sides_.periodic(a) ? (i % n + n) % n : i;
-    }
-
     /// The cells about the body, one more on either side than it reaches: the control volumes of their
     /// outermost faces hold nothing.
     void find_box() {
+        const Real radius = 0.5 * body_->diameter(), least = 0.9 * cell_width(body_->position);
+        grown_ = std::max(least - radius, 0.0);
+        scale_ = grown_ > 0 ? cube(radius / least) : 1;
         std::size_t count = 1;
         for (int a = 0; a < 3; ++a) {
             Real low = std::numeric_limits<Real>::infinity(), high = -low;
-            for (const Sphere& s : body_->spheres)
-                low = std::min(low, s.centre[a] - reach(s)), high = std::max(high, s.centre[a] + reach(s));
+            for (const Sphere& s : body_->spheres) {
+                low = std::min(low, s.centre[a] - s.radius - grown_);
+                high = std::max(high, s.centre[a] + s.radius + grown_);
+            }
             first_[a] = cell_at(a, low) - 1;
             length_[a] = cell_at(a, high) + 3 - first_[a];
             stride_[a] = count;
@@ -184,15 +173,13 @@ private:
         return inside;
     }
 
-    Real reach(const Sphere& s) const noexcept { return averaged_ ? grown_ : s.radius + grown_; }
-    /// What is averaged counts as a whole.
     bool is_cut() const noexcept {
         for (int a = 0; a < 3; ++a)
             for (const Sphere& s : body_->spheres) {
-                const Real way = averaged_ ? 0 : reach(s);
-                if (sides_.periodic(a)) continue;
-                if (!is_closed(sides_[a][0]) && s.centre[a] - way < grid_.low(a)) return true;
-                if (!is_closed(sides_[a][1]) && s.centre[a] + way > grid_.high(a)) return true;
+                const Real reach = s.radius + grown_;
+                if (sides.periodic(a)) continue;
+                if (!is_closed(sides[a][0]) && s.centre[a] - reach < grid.low(a)) return true;
+                if (!is_closed(sides[a][1]) && s.centre[a] + reach > grid.high(a)) return true;
             }
         return false;
     }
@@ -200,61 +187,13 @@ private:
     Kind kind(int axis, const Number& n) const noexcept {
         bool beyond = false;
         for (int a = 0; a < 3; ++a) {
-            const int first = a == axis ? 1 : 0, end = grid_.cells(a);
-            if (sides_.periodic(a) || (n[a] >= first && n[a] < end)) continue;
-            if (averaged_ || is_closed(sides_[a][n[a] < first ? 0 : 1])) return Kind::closed;
+            const int first = a == axis ? 1 : 0, end = grid.cells(a);
+            if (sides.periodic(a) || (n[a] >= first && n[a] < end)) continue;
+            if (is_closed(sides[a][n[a] < first ? 0 : 1])) return Kind::closed;
             beyond |= a != axis || (n[a] != 0 && n[a] != end);  // and not the side itself
         }
         if (beyond) return Kind::beyond;
-        return axis < 3 && open_(axis, grid_.layout().at(inside_box(n))) == 0 ? Kind::closed : Kind::open;
-    }
-    /// Of a control volume [-].
-    Real open(int axis, const Number& n) const noexcept {
-        const Offset c = grid_.layout().at(inside_box(n));
-        if (axis < 3) return open_(axis, c);
-        Real sum = 0;
-        for (int a = 0; a < 3; ++a) sum += open_(a, c) + open_(a, c + grid_.layout().stride[a]);
-        return sum / 6;
-    }
-
-    void find(int axis) { averaged_ ? find_averaged(axis) : find_shares(axis); }
-
-    /// Each axis has its own share of a sphere in each layer of the box.
-    void find_averaged(int axis) {
-        auto& share = share_[axis];
-        for (const Sphere& s : body_->spheres) {
-            PerAxis<std::vector<Real>, 3> part;
-            for (int a = 0; a < 3; ++a)
-                for (int i = first_[a]; i < first_[a] + length_[a]; ++i) {
-                    const Real low = a == axis ? centre(a, i - 1) : face(a, i);
-                    const Real high = a == axis ? centre(a, i) : face(a, i + 1);
-                    part[a].push_back(below(high - s.centre[a]) - below(low - s.centre[a]));
-                }
-            const Real volume = body_->spheres.size() > 1 ? cube(s.radius) : 1;
-            for_each([&](const Number& n, std::size_t k) {
-                Real all = volume;
-                for (int a = 0; a < 3; ++a) all *= part[a][static_cast<std::size_t>(n[a] - first_[a])];
-                share[k] += all;
-            });
-        }
-        Real sum = 0;
-        for_each([&](const Number& n, std::size_t k) {
-            if (share[k] == 0) return;
-            kind_[axis][k] = kind(axis, n);
-            share[k] *= kind_[axis][k] == Kind::open ? open(axis, n) : 0;
-            sum += share[k];
-        });
-        constexpr Real most = 0.9;
-        if (sum > 0)
-            for_each([&](const Number& n, std::size_t k) {
-                if (share[k] > 0)
-                    share[k] = std::min(share[k] * body_->volume / (sum * extent(axis, n).prod()), most);
-            });
-    }
-    /// Part of a triangle that is `grown_` wide to either side, below a place x from its middle [-].
-    Real below(Real x) const noexcept {
-        const Real t = std::clamp(x / grown_, -1.0, 1.0);
-        return t < 0 ? 0.5 * square(1 + t) : 1 - 0.5 * square(1 - t);
+        return axis < 3 && closed_(axis, grid.layout().at(inside_box(n))) ? Kind::closed : Kind::open;
     }
 
     struct Near {
@@ -320,32 +259,31 @@ private:
     }
 
     void list_faces(int axis, SolidCover& cover) const {
-        const Layout<3>& l = grid_.layout();
+        const Layout<3>& l = grid.layout();
         for_each([&](const Number& n, std::size_t k) {
             if (kind_[axis][k] != Kind::open || share_[axis][k] == 0) return;
             const Number inside = inside_box(n);
             Number below = inside;
             below[axis] = wrapped(axis, inside[axis] - 1);
             const Vec3 s = extent(axis, n);
-            cover.faces.push_back(
-                {.face = l.at(inside),
-                 .low = l.at(below),
-                 .axis = axis,
-                 .plane = std::min(inside[Layout<3>::outer], l.planes() - 1),
-                 .share = share_[axis][k],
-                 .area = s.prod() / s[axis],
-                 .gap = s[axis],
-                 .arm = averaged_ ? Vec3(Vec3::Zero()) : Vec3(place(axis, n) - body_->position)});
+            cover.faces.push_back({.face = l.at(inside),
+                                   .low = l.at(below),
+                                   .axis = axis,
+                                   .plane = std::min(inside[Layout<3>::outer], l.planes() - 1),
+                                   .share = share_[axis][k],
+                                   .area = s.prod() / s[axis],
+                                   .gap = s[axis],
+                                   .arm = place(axis, n) - body_->position});
         });
     }
 
     void list_cells(SolidCover& cover) const {
         for_each([&](const Number& n, std::size_t k) {
             const Number inside = inside_box(n);
-            bool last = !grid_.has(inside), all = true, none = true;
+            bool last = !grid.has(inside), all = true, none = true;
             for (int a = 0; a < 3; ++a) last |= n[a] == first_[a] + length_[a] - 1;
             if (last) return;
-            SolidCell cell{.cell = grid_.layout().at(inside), .arm = place(of_cells, n) - body_->position};
+            SolidCell cell{.cell = grid.layout().at(inside), .arm = place(of_cells, n) - body_->position};
             for (int a = 0; a < 3; ++a)
                 for (int up = 0; up < 2; ++up) {
                     const std::size_t at = k + static_cast<std::size_t>(up) * stride_[a];
@@ -356,18 +294,14 @@ private:
                     const Vec3 s = extent(a, of);
                     const Real out = (up == 1 ? share : -share) * s.prod() / s[a];
                     cell.way[a] += out;
-                    if (!averaged_) cell.turn += out * (place(a, of) - body_->position).cross(Vec3::Unit(a));
+                    cell.turn += out * (place(a, of) - body_->position).cross(Vec3::Unit(a));
                 }
             if (!none) (all ? cover.inside : cover.cells).push_back(cell);
         });
     }
 
-    const Grid<3>& grid_;
-    const Sides<3>& sides_;
-    Real resolved_from_;  ///< [cell]
-    Open open_;
+    Closed closed_;
     const FlowBody* body_ = nullptr;
-    bool averaged_ = false;
     Real grown_ = 0, scale_ = 1;  ///< of a small body's spheres [m], of its shares [-]
     Number first_{}, length_{};
     PerAxis<std::size_t, 3> stride_{};
@@ -377,12 +311,11 @@ private:
 
 }  // namespace detail
 
-/// The parts of the faces of `grid` that `body` covers; `open(axis, face)`: share that walls leave of one.
-template <class Open>
-SolidCover cover_of(const Grid<3>& grid, const Sides<3>& sides, const FlowBody& body, Open open,
-                    Real resolved_from = 0) {
+/// The parts of the faces of `grid` that `body` covers; `closed(axis, face)`: faces that walls close.
+template <class Closed>
+SolidCover cover_of(const Grid<3>& grid, const Sides<3>& sides, const FlowBody& body, Closed closed) {
     SolidCover cover;
-    detail::SolidCoverFinder<Open>(grid, sides, resolved_from, std::move(open)).find(body, cover);
+    detail::SolidCoverFinder<Closed>(grid, sides, std::move(closed)).find(body, cover);
     return cover;
 }
 

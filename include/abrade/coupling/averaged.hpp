@@ -1,0 +1,206 @@
+#pragma once
+// What a flow and bodies that are small against its cells do to each other.
+
+#include <abrade/core/fields.hpp>
+#include <abrade/coupling/covered_faces.hpp>
+#include <abrade/coupling/dense_drag.hpp>
+#include <abrade/coupling/spread_cloud.hpp>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace abrade {
+
+/// Bodies of a SpreadCloud. Upon one acts
+///   F = -(1 + C_m) V grad p + C_m rho V (g - dv/dt) + beta (u - v),
+/// means over its parts: pressure; added mass, for which water is accelerated by g - grad p / rho; a law's
+/// drag, with the slip that the body itself has made less put back (SpreadBody) and the porosity that other
+/// bodies leave. The water has all of it: pressure by the cloud's shares of its faces; friction
+///   du/dt = sum of beta / (rho V) sigma (v - u) / (1 - sum of sigma),
+/// implicit in u, with v as drag alone would leave it; added mass as the last pressure has it, what the new
+/// one changes a step later. These bodies are not turned. While the pressure is sought the cloud moves on
+/// with the velocity that they had before: their added mass is in their own law, so any ratio of densities is
+/// stable.
+template <DenseDragLaw Drag>
+class AveragedBodies {
+public:
+    AveragedBodies() = default;
+    AveragedBodies(Real added_mass, typename Drag::Params drag) : added_mass_(added_mass), drag_(drag) {}
+
+    /// Faces of the cloud get the velocity that its bodies have been given.
+    void begin(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies) {
+        motion_.assign(cloud.count(), {});
+        for (std::size_t n = 0; n < motion_.size(); ++n) motion_[n].v = bodies[cloud.which()[n]].velocity;
+        carry(faces, cloud);
+    }
+
+    /// Before the pressure is found: what friction and added mass do to faces, whose velocity and mass are
+    /// known.
+    void force(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
+               const Field<Real>& old, const FlowStage& stage) {
+        for_each(cloud, [&](std::size_t n) { drag_alone(n, faces, cloud, bodies, old, stage); });
+        for (CoveredFace& f : faces) f.rate = f.target = f.given = 0;
+        for_each_part(cloud, [&](std::size_t n, int axis, const SpreadPart& part) {
+            CoveredFace& f = faces[part.face];
+            const Real drags = motion_[n].rate * part.share * kept(f);
+            f.rate += drags, f.target += drags * motion_[n].v[axis];
+            f.given += part.share * motion_[n].handed[axis];
+        });
+        for (CoveredFace& f : faces) {
+            const Real stiff = stage.dt * f.rate / std::max(f.water, least_water);
+            f.held = stiff / (1 + stiff);
+            f.target = f.rate > 0 ? f.target / f.rate : 0;
+        }
+        for_each(cloud, [&](std::size_t n) {
+            Motion& m = motion_[n];
+            for (int axis = 0; axis < 3; ++axis)
+                for (const SpreadPart& part : cloud.parts(n, axis)) {
+                    const CoveredFace& f = faces[part.face];
+                    const Real slowed = f.velocity + f.held * (f.target - f.velocity);
+                    m.by_drag[axis] += f.mass * part.share * m.rate * kept(f) * (slowed - m.v[axis]);
+                }
+        });
+        carry(faces, cloud);
+    }
+
+    /// Once the pressure is known: velocities and loads of the bodies. Told ones keep their velocity, those
+    /// that have left the box their load.
+    void settle(std::span<const CoveredFace> faces, const SpreadCloud& cloud, std::span<FlowBody> bodies,
+                const Field<Real>& pressure, const FlowStage& stage, std::vector<bool>& left) {
+        const Real more = 1 + added_mass_;
+        for_each(cloud, [&](std::size_t n) {
+            FlowBody& body = bodies[cloud.which()[n]];
+            Motion& m = motion_[n];
+            const Vec3 pressed = pressed_by(n, faces, cloud, pressure, stage.density);
+            if (body.inverse_mass > 0)
+                m.v = (m.begun + m.lead + stage.dt * (m.by_drag + more * pressed)) /
+                      (1 / body.inverse_mass + m.added);
+            const Vec3 by_added = added_mass_ * pressed + (m.lead - m.added * m.v) / stage.dt;
+            body.velocity = m.v;
+            if (!left[cloud.which()[n]]) body.load = {pressed + m.by_drag + by_added, Vec3::Zero()};
+            m.pressed = pressed;
+            m.owed = stage.dt * by_added - m.owed;
+        });
+        memory_.clear();
+        for (std::size_t n = 0; n < motion_.size(); ++n)
+            memory_.push_back(
+                {bodies[cloud.which()[n]].id, motion_[n].v, motion_[n].pressed, motion_[n].owed});
+        std::sort(memory_.begin(), memory_.end(),
+                  [](const Memory& a, const Memory& b) { return a.id < b.id; });
+    }
+
+    static void fields(auto&& field) { field("memory", &AveragedBodies::memory_); }
+
+private:
+    struct Motion {
+        Vec3 v = Vec3::Zero();        ///< [m/s]
+        Vec3 begun = Vec3::Zero();    ///< momentum by all but the water [kg m/s]
+        Vec3 lead = Vec3::Zero();     ///< what added mass had, and its weight gives [kg m/s]
+        Vec3 by_drag = Vec3::Zero();  ///< [N]
+        Vec3 pressed = Vec3::Zero();  ///< by the pressure, without added mass [N]
+        Vec3 owed = Vec3::Zero();     ///< by the water to added mass [kg m/s]
+        Vec3 handed = Vec3::Zero();   ///< to the water for that, times its share [m/s]
+        Real rate = 0;                ///< beta / (rho V) [1/s]
+        Real added = 0;               ///< C_m rho V, as far as there is water [kg]
+    };
+    /// What is known of a body from the last step.
+    struct Memory {
+        Index id = 0;
+        Vec3 v = Vec3::Zero(), pressed = Vec3::Zero(), owed = Vec3::Zero();
+        static void fields(auto&& field) {
+            field("id", &Memory::id), field.bytes("v", &Memory::v), field.bytes("pressed", &Memory::pressed);
+            field.bytes("owed", &Memory::owed);
+        }
+    };
+    static constexpr Real tiny = 1e-300;
+    static constexpr Real least_water = 0.1;  ///< of a face: what less there is feels less [-]
+
+    static Real kept(const CoveredFace& f) noexcept { return std::min(f.water / least_water, 1.0); }
+
+    void for_each(const SpreadCloud& cloud, auto&& body) const {
+        parallel_blocks(
+            static_cast<Index>(cloud.count()),
+            [&](Index, Index first, Index last) {
+                for (Index n = first; n < last; ++n) body(static_cast<std::size_t>(n));
+            },
+            block_of_bodies);
+    }
+    static void for_each_part(const SpreadCloud& cloud, auto&& visit) {
+        for (std::size_t n = 0; n < cloud.count(); ++n)
+            for (int axis = 0; axis < 3; ++axis)
+                for (const SpreadPart& part : cloud.parts(n, axis)) visit(n, axis, part);
+    }
+    void carry(std::span<CoveredFace> faces, const SpreadCloud& cloud) const {
+        for (CoveredFace& f : faces) f.solid = 0;
+        for_each_part(cloud, [&](std::size_t n, int axis, const SpreadPart& part) {
+            faces[part.face].solid += part.share * motion_[n].v[axis];
+        });
+        for (CoveredFace& f : faces) f.solid /= f.share;
+    }
+    const Memory* memory_of(Index id) const noexcept {
+        const auto found = std::lower_bound(memory_.begin(), memory_.end(), id,
+                                            [](const Memory& m, Index wanted) { return m.id < wanted; });
+        return found != memory_.end() && found->id == id ? &*found : nullptr;
+    }
+    static Vec3 pressed_by(std::size_t n, std::span<const CoveredFace> faces, const SpreadCloud& cloud,
+                           const Field<Real>& pressure, Real density) noexcept {
+        Vec3 sum = Vec3::Zero();
+        for (int axis = 0; axis < 3; ++axis)
+            for (const SpreadPart& part : cloud.parts(n, axis)) {
+                const CoveredFace& f = faces[part.face];
+                sum[axis] -= density * part.share * f.volume() * f.gradient(pressure);
+            }
+        return sum;
+    }
+
+    /// The body's velocity with drag against the water as it is.
+    void drag_alone(std::size_t n, std::span<const CoveredFace> faces, const SpreadCloud& cloud,
+                    std::span<const FlowBody> bodies, const Field<Real>& old, const FlowStage& stage) {
+        const FlowBody& body = bodies[cloud.which()[n]];
+        Motion& m = motion_[n];
+        Vec3 weight = Vec3::Zero(), among = Vec3::Zero(), flow = Vec3::Zero();
+        Real shares = 0, others = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const SpreadPart& part : cloud.parts(n, axis)) {
+                const CoveredFace& f = faces[part.face];
+                const Real covers = f.mass * part.share;
+                weight[axis] += covers, among[axis] += covers * f.water, flow[axis] += covers * f.velocity;
+                if (f.open == 0) continue;
+                shares += part.share;
+                others += part.share * std::clamp(1 - (f.water + part.share) / f.open, 0.0, 1.0);
+            }
+        flow = flow.cwiseQuotient(weight.cwiseMax(tiny));
+        const SpreadBody spread{.diameter = body.diameter(),
+                                .reach = cloud.reach(n),
+                                .slip = (flow - body.velocity).norm(),
+                                .viscosity = stage.viscosity,
+                                .porosity = shares > 0 ? 1 - others / shares : 1};
+        m.rate = weight.norm() > 0 ? spread.drag(drag_) / body.volume : 0;
+        const Memory* const before = memory_of(body.id);
+        const Real dt = stage.dt;
+        m.added = added_mass_ * weight.mean();
+        const bool falls = body.inverse_mass > 0;  // or it moves as it is told
+        const Vec3 had = before ? before->v : Vec3(body.velocity - (falls ? dt : 0) * stage.falls);
+        m.lead = m.added * (had + dt * stage.falls);
+        const Vec3 last = before ? before->pressed : pressed_by(n, faces, cloud, old, stage.density);
+        if (falls) {
+            m.begun = body.velocity / body.inverse_mass - dt * body.load.force;
+            const Vec3 drags = dt * m.rate * weight;
+            const Vec3 heavy = Vec3::Constant(1 / body.inverse_mass + m.added) + drags;
+            const Vec3 gains = dt * (1 + added_mass_) * last + drags.cwiseProduct(flow);
+            m.v = (m.begun + m.lead + gains).cwiseQuotient(heavy);
+        }
+        m.owed = dt * added_mass_ * last + m.lead - m.added * m.v;
+        const Vec3 due = before ? Vec3(m.owed + before->owed) : m.owed;
+        m.handed = -due.cwiseQuotient(among.cwiseMax(tiny));
+    }
+
+    Real added_mass_ = 0.5;
+    Drag drag_;
+    std::vector<Motion> motion_;  ///< [body of the cloud]
+    std::vector<Memory> memory_;  ///< by id
+};
+
+}  // namespace abrade
