@@ -264,10 +264,11 @@ private:
         if constexpr (is_height) {
             return {.steepest = params.steepest_surface, .most_overturning = params.most_overturning};
         } else {
-            const Real smallest = std::clamp(params.tolerance, 1e-8, 1e-4);
+            // Air of less than a millionth would tilt a surface by what round-off makes of it.
+            const auto within = [&](Real least) { return std::clamp(params.tolerance, least, Real(1e-4)); };
             return {.courant = std::max(0.5, params.courant),
-                    .smallest_void = smallest,
-                    .most_surplus = 10 * smallest};
+                    .smallest_void = within(1e-6),
+                    .most_surplus = 10 * within(1e-8)};
         }
     }
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }

@@ -373,8 +373,9 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 /// A film or a drop whose plane lies at the end that it comes from: a slab of the
 /// other end would find next to nothing, for ever, while its weight makes it faster. Unless the cell behind
 /// is at least as full, a closed face that gravity does not pull it off holds it, or it is part of a surface
-/// that its neighbours tell, it leaves as if it filled the cell evenly. A wall that cuts the cell holds
-/// nothing back: what moves there moves along it.
+/// that its neighbours tell, it leaves as if it filled the cell evenly; where it fills half of it or more, if
+/// it is alone: what belongs to a bore's roller stays with it. A wall that cuts the cell holds nothing back:
+/// what moves there moves along it.
 template <int Dim>
 bool VolumeOfFluid<Dim>::is_stray(int axis, Offset c, int way) const noexcept {
     if (planes_.told[index(plane_of_[c])] != 0) return false;
@@ -382,6 +383,10 @@ bool VolumeOfFluid<Dim>::is_stray(int axis, Offset c, int way) const noexcept {
     const Offset behind = c - way * layout_.stride[index(axis)];
     const bool open_behind = (marks_[behind] & cell_mark::open) != 0 &&
                              ((marks_[behind] & cell_mark::inside) != 0 || sides_.periodic(axis));
+    if (fraction_[c] >= 0.5)
+        for (int a = 0; a < Dim; ++a)
+            for (const Offset s : {-layout_.stride[index(a)], layout_.stride[index(a)]})
+                if (fraction_[c + s] >= 0.5) return false;
     return open_behind ? fraction_[behind] < fraction_[c] : !whole || gravity_[axis] * way > 0;
 }
 
