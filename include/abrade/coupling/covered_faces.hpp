@@ -58,7 +58,7 @@ public:
         parallel_blocks(
             static_cast<Index>(bodies.size()),
             [&](Index, Index first, Index last) {
-                detail::SolidCoverFinder finder(grid, sides, closed);
+                detail::SolidCoverFinder finder(detail::GridNumbers{grid, sides}, closed);
                 for (Index b = first; b < last; ++b)
                     if (!covers_[at(b)].averaged) finder.find(bodies[at(b)], covers_[at(b)]);
             },

@@ -101,8 +101,8 @@ template <class Closed>
 class SolidCoverFinder : GridNumbers {
 public:
     /// `closed(axis, face)`: faces that walls close.
-    SolidCoverFinder(const Grid<3>& grid, const Sides<3>& sides, Closed closed)
-        : GridNumbers{grid, sides}, closed_(std::move(closed)) {}
+    SolidCoverFinder(const GridNumbers& numbers, Closed closed)
+        : GridNumbers(numbers), closed_(std::move(closed)) {}
 
     void find(const FlowBody& body, SolidCover& cover) {
         cover.clear();
@@ -315,7 +315,7 @@ private:
 template <class Closed>
 SolidCover cover_of(const Grid<3>& grid, const Sides<3>& sides, const FlowBody& body, Closed closed) {
     SolidCover cover;
-    detail::SolidCoverFinder<Closed>(grid, sides, std::move(closed)).find(body, cover);
+    detail::SolidCoverFinder<Closed>({grid, sides}, std::move(closed)).find(body, cover);
     return cover;
 }
 
