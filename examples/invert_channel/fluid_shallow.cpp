@@ -1,16 +1,18 @@
-// Depth-averaged water: runs down the dry channel before the stones begin, then beside them.
+// Depth-averaged water: runs down the dry channel before the stones begin, then beside them, and feels them.
 
 #include "run_channel.hpp"
+
+#include <abrade/coupling/two_way_shallow.hpp>
 
 namespace abrade::examples {
 
 namespace {
 
-ShallowWater<2> shallow_channel(const ChannelConfig& c) {
+TwoWayShallow<> shallow_channel(const ChannelConfig& c) {
     const WaterStart start(c);
     const Real half = 0.5 * c.invert.width;
     try {
-        return ShallowWater<2>{
+        return TwoWayShallow<>{
             {.low = {0, -half},
              .high = {c.invert.length, half},
              .cells = {cells_along(c, c.invert.length), cells_along(c, c.invert.width)},
@@ -21,7 +23,8 @@ ShallowWater<2> shallow_channel(const ChannelConfig& c) {
              .manning = c.water.manning,
              .density = c.water.density,
              .viscosity = c.water.viscosity,
-             .start_time = -start.settle}};
+             .start_time = -start.settle},
+            CliftGauvin{c.drag}};
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());
     }
@@ -75,8 +78,8 @@ ChannelRun run_in_shallow_water(const ChannelConfig& config, const ChannelFiles&
     ChannelWater water;
     water.manning_depth_m = uniform.depth(), water.manning_speed_m_per_s = uniform.mean_velocity();
     ChannelRun run = run_channel<LinearHysteretic>(
-        config, files, shallow_channel(config), water, [&](const ShallowWater<2>& flow, bool first) {
-            first ? measure(config, flow, water) : look_at_the_end(flow, water);
+        config, files, shallow_channel(config), water, [&](const TwoWayShallow<>& flow, bool first) {
+            first ? measure(config, flow.water(), water) : look_at_the_end(flow.water(), water);
         });
     run.results.water = std::move(water);
     return run;

@@ -77,7 +77,7 @@ TEST_CASE("a fixed ball that pierces the surface has the buoyancy of what is bel
 }
 
 TEST_CASE("a ball that rises swims as deep as Archimedes has it; no water is lost") {
-    for (const Real ratio : {0.3, 0.5}) {
+    for (const Real ratio : {0.05, 0.1, 0.3, 0.5}) {
         Pool water = pool();
         Ball ball({0.515, 0.49, 0.5}, 0.1, 1000 * ratio);
         advance(water, ball, 0.05);

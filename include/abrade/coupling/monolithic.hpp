@@ -253,6 +253,11 @@ private:
         return found != memory_.end() && found->id == id ? &*found : nullptr;
     }
 
+    /// The water's velocity by all but pressure and weight.
+    Real unpushed(const CoveredFace& f, const Field<Real>& old) const noexcept {
+        return f.velocity + stage_.dt * (f.gradient(old) - stage_.falls[f.axis]);
+    }
+
     /// The body's velocity with friction, and with the old pressure as it acts on it where it is now.
     void find_motion(std::size_t b, const Field<Real>& old) {
         const FlowBody& body = bodies_[b];
@@ -271,13 +276,20 @@ private:
             drag += held * c * c.transpose();
             brought += held * f.velocity * c;
             motion.covers += covers / 3;
-            if (!before) continue;
-            const Real unpushed = f.velocity + dt * (f.gradient(old) - stage_.falls[f.axis]);
-            within += covers * (unpushed - detail::along(f, before->q)) * c;
+            if (before) within += covers * (unpushed(f, old) - detail::along(f, before->q)) * c;
         }
-        // What has left through the surface has taken its part along.
-        if (before && before->covers > 0)
-            brought += within - std::min(1.0, motion.covers / before->covers) * before->slip;
+        if (before && before->covers > 0) {
+            // What has left through the surface has taken its part along; what has come meets the body as it
+            // will be, not as it was: it may be heavier than the body.
+            const Real kept = std::min(1.0, before->covers / motion.covers);
+            brought += kept * within - std::min(1.0, motion.covers / before->covers) * before->slip;
+            for (const CoveredFace& f : faces_.of(b)) {
+                if (kept == 1) break;
+                const Six c = detail::coefficient(f);
+                const Real comes = (1 - kept) * f.mass * f.share;
+                brought += comes * unpushed(f, old) * c, drag += comes * c * c.transpose();
+            }
+        }
         const Six now = detail::velocity_of(body);
         motion.held = motion.q = now;
         if (body.inverse_mass > 0) {

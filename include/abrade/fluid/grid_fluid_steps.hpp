@@ -44,23 +44,25 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
     std::vector<Sphere> spheres;
     for (const FlowBody& body : bodies)
         spheres.insert(spheres.end(), body.spheres.begin(), body.spheres.end());
+    const auto stand = [&](Real before) {  // where they were, that long before
+        auto sphere = spheres.begin();
+        for (std::size_t b = 0; b < now.size(); ++b) {
+            const Vec3 back = -before * bodies[b].velocity;
+            now[b].position = bodies[b].position + back;
+            now[b].spheres = {sphere, bodies[b].spheres.size()};
+            for (const Sphere& s : bodies[b].spheres) *sphere++ = {s.centre + back, s.radius};
+        }
+    };
     if constexpr (has_surface)
         if (steps_ == 0) {  // what stands in the water that was given
-            for (FlowBody& body : now) body.position -= (to_time - time_) * body.velocity;
+            stand(to_time - time_);
             solids_.place(*grid_, params_.sides, now, water_->open_area());
             water_->stand_solids(solids_.parts());
         }
     while (time_ < to_time) {
         const Real left = to_time - time_;
-        const Real steps = std::max(std::ceil(left / stable_step().seconds - 1e-9), 1.0);
-        const Real dt = left / steps, after = left - dt;
-        auto sphere = spheres.begin();
-        for (std::size_t b = 0; b < now.size(); ++b) {
-            const Vec3 back = steps > 1 ? Vec3(-after * bodies[b].velocity) : Vec3(Vec3::Zero());
-            now[b].position = bodies[b].position + back;
-            now[b].spheres = {sphere, bodies[b].spheres.size()};
-            for (const Sphere& s : bodies[b].spheres) *sphere++ = {s.centre + back, s.radius};
-        }
+        const Real steps = std::max(std::ceil(left / stable_step().seconds - 1e-9), 1.0), dt = left / steps;
+        stand(left - dt);
         arriving_ = now;
         step(dt);
         for (std::size_t b = 0; b < now.size(); ++b) {
@@ -151,8 +153,8 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
             velocity_, pressure_,
             {.density = params_.density, .dt = dt, .viscosity = nu(), .pushed = true, .falls = falls});
     project({dt, params_.tolerance, false, nullptr, late_.pace(dt)});
+    if constexpr (Solids::present) solids_.settle(velocity_, pressure_);
     finish(velocity_);
-    if constexpr (Solids::present) solids_.settle(velocity_, pressure_), sides_.fill(velocity_);
     if (late_.brief(dt)) pressure_ = saved_pressure_;  // what pushes so briefly is none to go on with
 }
 
@@ -220,8 +222,8 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
             {.density = params_.density, .dt = dt, .viscosity = nu(), .held = &water.held(), .falls = falls});
     project({dt, params_.tolerance, true, surplus(), late_.pace(dt)});
     if constexpr (is_height) detail::slow_thin_water(velocity_, water.liquid(), dt, nu());
+    if constexpr (Solids::present) solids_.settle(velocity_, pressure_);
     finish(velocity_);
-    if constexpr (Solids::present) solids_.settle(velocity_, pressure_), sides_.fill(velocity_, rows());
 }
 
 /// What is left beyond `most_left` is solved for once more: single precision may have lost its way.

@@ -56,6 +56,13 @@ public:
         }
     }
 
+    // --- what solids do to it ------------------------------------------------------------------
+
+    /// How high solids would stand over the plan of each cell [m], from here on: water stands on top of them.
+    void set_solids(const CellColumn& raised) { solver_.set_solids(raised); }
+    /// Gives a wet cell momentum over density and area, along the plane [m2/s].
+    void push(Index i, Index j, const Vec3& momentum) noexcept { solver_.push(i, j, momentum); }
+
     // --- what stones feel ----------------------------------------------------------------------
 
     /// Water at a point, between the centres of cells. At a height z above the bed it moves at
@@ -75,10 +82,11 @@ public:
     const ShallowGrid<Dim>& grid() const noexcept { return solver_.grid(); }
     Real depth(Index i, Index j = 0) const noexcept {
         return solver_.state().depth[grid().at(i, j)];
-    }                                                                                         ///< [m]
-    Real bed(Index i, Index j = 0) const noexcept { return solver_.bed()[grid().at(i, j)]; }  ///< [m]
-    Real surface(Index i, Index j = 0) const noexcept { return depth(i, j) + bed(i, j); }     ///< [m]
-    Real speed(int axis, Index i, Index j = 0) const noexcept {                               ///< [m/s]
+    }                                                                                            ///< [m]
+    Real bed(Index i, Index j = 0) const noexcept { return solver_.ground()[grid().at(i, j)]; }  ///< [m]
+    /// Of water and of the solids in it [m].
+    Real surface(Index i, Index j = 0) const noexcept { return depth(i, j) + solver_.bed()[grid().at(i, j)]; }
+    Real speed(int axis, Index i, Index j = 0) const noexcept {  ///< [m/s]
         return solver_.state().speed[static_cast<std::size_t>(axis)][grid().at(i, j)];
     }
     /// Through column i of cells, along x [m3/s]; in one dimension, per width [m2/s].
@@ -155,7 +163,7 @@ private:
             for (std::size_t p = 0; p < 2; ++p) {
                 const std::size_t k = grid().at(cell[0][p], cell[1][q]);
                 const Real share = weight[0][p] * weight[1][q], h = state.depth[k], z = solver_.bed()[k];
-                at.bed += share * z;
+                at.bed += share * solver_.ground()[k];
                 if (!(h > params_.dry_depth)) continue;
                 wet += share, at.surface += share * (h + z);
                 for (std::size_t a = 0; a < Dim; ++a) at.speed[a] += share * state.speed[a][k];

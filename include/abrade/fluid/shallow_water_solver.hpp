@@ -27,7 +27,21 @@ public:
     }
 
     const ShallowGrid<Dim>& grid() const noexcept { return grid_; }
-    const CellColumn& bed() const noexcept { return bed_.cell; }
+    const CellColumn& ground() const noexcept { return ground_; }  ///< [m]
+    const CellColumn& bed() const noexcept { return bed_.cell; }   ///< and what solids add to it [m]
+    /// `raised`: by solids, cell by cell as the bed is [m]. What flows in flows in over the ground.
+    void set_solids(const CellColumn& raised) {
+        if (std::ranges::equal(raised, raised_)) return;
+        raised_ = raised;
+        raise_bed();
+    }
+    /// Of momentum over density and area [m2/s].
+    void push(Index i, Index j, const Vec3& momentum) noexcept {
+        const std::size_t k = grid_.at(i, j);
+        ShallowState<Dim>& now = states_[current_];
+        if (!(now.depth[k] > forces_.dry_depth)) return;
+        for (std::size_t a = 0; a < Dim; ++a) now.speed[a][k] += momentum[static_cast<int>(a)] / now.depth[k];
+    }
     const ShallowState<Dim>& state() const noexcept { return states_[current_]; }
     Index steps() const noexcept { return steps_; }
     Index steps_repeated() const noexcept { return repeated_; }
@@ -97,7 +111,10 @@ public:
             field("swiftest", "1/s", &ShallowSolver::swiftest_),
             field("volume_at_start", "m3", &ShallowSolver::volume_at_start_),
             field("volume_in", "m3", &ShallowSolver::volume_in_), field("steps", &ShallowSolver::steps_),
-            field("repeated", &ShallowSolver::repeated_);
+            field("repeated", &ShallowSolver::repeated_), field("raised", "m", &ShallowSolver::raised_);
+    }
+    void restored() {
+        if (!raised_.empty()) raise_bed();
     }
 
 private:
@@ -119,11 +136,19 @@ private:
                 bed_.cell[grid_.at(i, j)] = z;
             });
         each_side([&](ShallowSide<Dim>& side) { side.extend_bed(grid_, bed_.cell); });
+        ground_ = bed_.cell;
         bed_.find_faces(grid_);
         each_side([&](ShallowSide<Dim>& side) {
             side.settle(grid_, bed_, forces_.pressing);
             if (side.is_periodic()) periodic_[static_cast<std::size_t>(side.axis())] = true;
         });
+    }
+
+    void raise_bed() {
+        bed_.cell = ground_;
+        for (std::size_t k = 0; k < raised_.size(); ++k) bed_.cell[k] += raised_[k];
+        each_side([&](ShallowSide<Dim>& side) { side.extend_bed(grid_, bed_.cell); });
+        bed_.find_faces(grid_);
     }
 
     void pour(const ShallowWaterParams<Dim>& p) {
@@ -249,6 +274,7 @@ private:
 
     ShallowGrid<Dim> grid_;
     ShallowBed<Dim> bed_;
+    CellColumn ground_, raised_;  ///< of the bed: without solids, by solids [m]
     ShallowForces forces_;
     ShallowTiles<Dim> tiles_;
     std::array<std::array<ShallowSide<Dim>, 2>, Dim> sides_;
