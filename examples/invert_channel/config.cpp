@@ -317,11 +317,19 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
                                          .help = "of water that flows in upstream, 0: of uniform flow",
                                          .assumption = "not in the text",
                                          .bound = Bound::not_negative});
+    constexpr std::array<std::string_view, 2> begins{"dry", "uniform"};
+    c.fluid.begins_uniform =
+        in.choice(
+            "fluid.begins", begins,
+            {.fallback = feels_stones ? "uniform" : "dry",
+             .help = "what a grid's water begins as, dry: it runs down the channel, uniform: as uniform "
+                     "flow all along it"}) == "uniform";
     c.fluid.settle =
         in.number("fluid.settle", {.unit = "s",
                                    .fallback = 0,
                                    .help = "that water runs before the stones begin, 0: three "
-                                           "times what uniform flow takes down the channel, and 1 s",
+                                           "times what uniform flow takes down the channel, and 1 s; 3 s at "
+                                           "most where it begins as uniform flow",
                                    .bound = Bound::not_negative});
     const bool on_a_grid = c.fluid.model == "shallow" || c.fluid.model == "grid" || feels_stones;
     require(!on_a_grid || c.fluid.spacing <= 0.25 * c.invert.width,

@@ -31,13 +31,14 @@ struct Comparison {
 
 /// Which water runs down the channel, and what it needs beyond Manning's formula.
 struct WaterChoice {
-    std::string model;       ///< a name of `channel_fluids`
-    std::string surface;     ///< of a grid's water: volume or height
-    bool energy = true;      ///< whether a grid's water keeps its energy account
-    Real spacing = 0;        ///< of a grid [m]
-    Real resolved_from = 0;  ///< stones that it flows around: of so many cells to a diameter
-    Real inflow_depth = 0;   ///< at the centre line [m]; 0: of uniform flow
-    Real settle = 0;         ///< before the stones begin [s]
+    std::string model;            ///< a name of `channel_fluids`
+    std::string surface;          ///< of a grid's water: volume or height
+    bool energy = true;           ///< whether a grid's water keeps its energy account
+    Real spacing = 0;             ///< of a grid [m]
+    Real resolved_from = 0;       ///< stones that it flows around: of so many cells to a diameter
+    Real inflow_depth = 0;        ///< at the centre line [m]; 0: of uniform flow
+    bool begins_uniform = false;  ///< or dry
+    Real settle = 0;              ///< before the stones begin [s]
 };
 
 struct ChannelConfig {

@@ -42,6 +42,10 @@ Flow grid_channel(const ChannelConfig& c, auto solids) {
                                 .profile = InflowProfile::logarithmic,
                                 .roughness = roughness});
         stream.give_to(params);
+        if (c.fluid.begins_uniform) {
+            params.water = [stream](const Vec3& x) { return stream.depth_at(x); };
+            params.velocity = [stream](const Vec3& x) { return stream.velocity(x); };
+        }
         Flow flow(std::move(params), {.depth = start.uniform.depth()}, std::move(solids));
         if (c.fluid.energy && !ResolvedFluid<Flow>) flow.open_energy_account();
         return flow;

@@ -16,7 +16,11 @@ namespace abrade::examples {
 struct WaterStart {
     explicit WaterStart(const ChannelConfig& c)
         : uniform(c.water), depth(c.fluid.inflow_depth > 0 ? c.fluid.inflow_depth : uniform.depth()),
-          settle(c.fluid.settle > 0 ? c.fluid.settle : 1 + 3 * c.invert.length / uniform.mean_velocity()) {}
+          settle(c.fluid.settle) {
+        if (settle > 0) return;
+        settle = 1 + 3 * c.invert.length / uniform.mean_velocity();
+        if (c.fluid.begins_uniform) settle = std::min(settle, Real(3));
+    }
     UniformFlow uniform;
     Real depth;   ///< at the centre line, upstream [m]
     Real settle;  ///< before the stones begin [s]
