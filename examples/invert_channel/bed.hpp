@@ -172,6 +172,7 @@ public:
         r.bed = measure_depth(config_, sim.concrete(), passed_);
         r.passed = history_, r.milestones = milestones_;
         r.stones_across = share_of(stones_, sum(stones_));
+        r.sampled_stone_speed_m_per_s = speed_ / seen_, r.stones_off_bed_share = off_bed_ / seen_;
         const Real losses = sum(impacts_) + sum(sliding_);
         r.impacts_across = share_of(impacts_, losses), r.sliding_across = share_of(sliding_, losses);
     }
@@ -181,7 +182,8 @@ public:
             field("next_note", "s", &BedRecord::next_note_), field("across", &BedRecord::across_),
             field("stones", &BedRecord::stones_), field("impacts", &BedRecord::impacts_),
             field("sliding", &BedRecord::sliding_), field("wanted", &BedRecord::wanted_),
-            field("milestones", &BedRecord::milestones_);
+            field("milestones", &BedRecord::milestones_), field("seen", &BedRecord::seen_);
+        field("speed", "m/s", &BedRecord::speed_), field("off_bed", &BedRecord::off_bed_);
     }
 
 private:
@@ -220,9 +222,22 @@ private:
     }
 
     void note_stones(const Particles& p) {
-        for (std::size_t b = 0; b < p.position.size(); ++b)
-            if (p.kind[b] == Kind::stone && compared(p.position[b]))
-                across(stones_, p.position[b]) += p.volume[b];
+        for (std::size_t b = 0; b < p.position.size(); ++b) {
+            if (p.kind[b] != Kind::stone || !compared(p.position[b])) continue;
+            across(stones_, p.position[b]) += p.volume[b];
+            seen_ += 1, speed_ += p.velocity[b].norm(), off_bed_ += is_off_bed(p, b);
+        }
+    }
+    /// More than a tenth of its lowest sphere's radius above the bed as it was laid.
+    bool is_off_bed(const Particles& p, std::size_t b) const {
+        const auto first = static_cast<std::size_t>(p.first_sphere[b]);
+        const auto count = static_cast<std::size_t>(p.sphere_count[b]);
+        for (std::size_t s = first; s < first + count; ++s) {
+            const Vec3& x = p.centre[s];
+            const Real arc = config_.invert.arc_radius;
+            if (arc - std::hypot(x.y(), arc - x.z()) < 1.1 * p.radius[s]) return false;
+        }
+        return true;
     }
 
     /// The power that contacts with concrete take up now. Elastic energy comes back, so over many looks the
@@ -246,8 +261,9 @@ private:
     PassedHistory history_;
     Real next_note_ = 0;  ///< [s]
     Index across_ = 0;
-    std::vector<Real> stones_;             ///< [across] volume, summed over looks
-    std::vector<Real> impacts_, sliding_;  ///< [across] power, summed over looks
+    std::vector<Real> stones_;                 ///< [across] volume, summed over looks
+    std::vector<Real> impacts_, sliding_;      ///< [across] power, summed over looks
+    Real seen_ = 0, speed_ = 0, off_bed_ = 0;  ///< stones, summed over looks: number, speed [m/s], number
     std::vector<Wanted> wanted_;
     std::vector<Milestone> milestones_;
 };

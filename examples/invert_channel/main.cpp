@@ -93,6 +93,8 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"ledger_residual_relative", r.ledger_residual_relative},
         {"integration_residue_J", r.integration_residue_J},
         {"mean_stone_speed_m_per_s", r.mean_stone_speed_m_per_s},
+        {"sampled_stone_speed_m_per_s", r.sampled_stone_speed_m_per_s},
+        {"stones_off_bed_share", r.stones_off_bed_share},
         {"wall_s_by_room",
          {{"contacts_and_wear", r.wall_contacts_s},
           {"bonds", r.wall_bonds_s},

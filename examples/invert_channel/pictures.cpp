@@ -215,20 +215,16 @@ void draw_ledger(const ChannelResults& r, const fs::path& picture) {
                     .y = {.label = "energy", .unit = "J"},
                     .curves = {}};
     static const std::vector<std::pair<std::string, std::string>> shown{
-        {"kinetic", "kinetic energy"},
-        {"drag_input", "put in by the flow"},
-        {"lost_drag", "lost in drag"},
-        {"lost_sliding", "lost in sliding"},
-        {"lost_normal", "lost in impacts"},
-        {"lost_bond", "lost in bonds"},
-        {"integration_residue", "integration residue"}};
+        {"kinetic", "kinetic energy"},       {"drag_input", "put in by the flow"},
+        {"lost_drag", "lost in drag"},       {"flow_work", "work of the flow on the bodies"},
+        {"lost_sliding", "lost in sliding"}, {"lost_normal", "lost in impacts"},
+        {"lost_bond", "lost in bonds"},      {"integration_residue", "integration residue"}};
     for (const auto& [name, title] : shown) {
         const auto found = std::find(r.ledger.names.begin(), r.ledger.names.end(), name);
         if (found == r.ledger.names.end()) continue;
-        chart.curves.push_back(
-            {.title = title,
-             .x = r.ledger.time,
-             .y = r.ledger.values[static_cast<std::size_t>(found - r.ledger.names.begin())]});
+        const auto& values = r.ledger.values[static_cast<std::size_t>(found - r.ledger.names.begin())];
+        if (std::ranges::all_of(values, [](Real value) { return value == 0; })) continue;
+        chart.curves.push_back({.title = title, .x = r.ledger.time, .y = values});
     }
     draw(chart, picture);
 }
@@ -248,6 +244,9 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
         row("stones fed", r.stones_fed, ""),
         row("stones in the channel at the end", r.stones, ""),
         row("their mean speed", r.mean_stone_speed_m_per_s, "m/s"),
+        row("speed in the compared section, mean over time", r.sampled_stone_speed_m_per_s, "m/s",
+            "no stone came there"),
+        row("share of stones off the bed there", r.stones_off_bed_share, "-", "no stone came there"),
         row("concrete spheres", r.concrete_spheres, ""),
         row("bonds broken", r.bonds_broken, ""),
         row("spheres fully worn", r.spheres_worn_out, ""),

@@ -100,6 +100,24 @@ TEST_CASE("momentum of water and small balls is kept to a hundredth of what they
     }
 }
 
+TEST_CASE("beside resolved ones, which leave them no room: each has its own buoyancy, and nothing moves") {
+    auto params = box(16, 0.1, Side::slip, 1e-3);
+    params.tolerance = 1e-12;
+    Water water(params);
+    std::vector<Ball> balls{{Vec3(0.81, 0.78, 0.83), 0.21, 0, 0}};
+    for (int n = 0; n < 6; ++n) {
+        Vec3 aside = Vec3::Zero();
+        aside[n / 2] = n % 2 == 0 ? 0.28 : -0.28;  // they touch
+        balls.emplace_back(balls[0].body.position + aside, 0.07, 0, n + 1);
+    }
+    for (int k = 0; k < 20; ++k) step(water, balls, 0.05);
+    CHECK(water.solids().averaged() == 6);
+    for (const Ball& ball : balls) {
+        const Real weight = 1000 * g * ball.body.volume;
+        CHECK((ball.body.load.force - Vec3(0, 0, weight)).norm() < 1e-5 * weight);
+    }
+}
+
 TEST_CASE("bad input is refused") {
     using Solids = MonolithicSolids<>;
     CHECK_THROWS_AS(Solids({.resolved_from = -1}), InputError);

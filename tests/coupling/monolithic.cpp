@@ -132,6 +132,28 @@ TEST_CASE("a ball that contacts hold on the floor feels no kick at the exchange"
     }
 }
 
+TEST_CASE("a ball that goes with the stream leaves the box as if there were no side") {
+    for (const Real radius : {0.06, 0.21}) {  // averaged, resolved
+        auto params = box(12, 0.1, Side::slip);
+        params.gravity.setZero();
+        params.sides[0] = {Side::inflow, Side::outflow};
+        params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
+        params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
+        Water water(params);
+        std::vector<Ball> balls{{Vec3(0.8, 0.61, 0.57), radius, 1000}};
+        balls[0].body.velocity = {1, 0, 0};
+        while (balls[0].body.position.x() < 1.2 + 2 * radius) {
+            step(water, balls, 0.04);
+            CAPTURE(balls[0].body.position.x());
+            CHECK((balls[0].body.velocity - Vec3(1, 0, 0)).norm() < 1e-4);
+            Real most = 0;
+            water.grid().for_each(
+                [&](const auto&, Offset c) { most = std::max(most, std::abs(water.velocity()[0][c] - 1)); });
+            CHECK(most < 1e-3);
+        }
+    }
+}
+
 TEST_CASE("drag of a fixed sphere at Re 100, 3 and 4 cells to a diameter, in a stream 8 wide") {
     for (const Real cells : {3.0, 4.0})
         for (const Real off : {0.0, 0.5}) {

@@ -78,7 +78,7 @@ holds "it ends the run" "$(value through/summary.json simulated_s) < 0.2"
 # --- other fluids: shallow water has come to Manning's depth and speed before the stones begin, and keeps its volume
 "$program" "${short[@]}" --fluid shallow --set run.end_time=0.03 --out shallow > shallow.log || fail "shallow water: $(cat shallow.log)"
 for file in report.html summary.json water.png side_view.png; do [ -s "shallow/$file" ] || fail "shallow/$file is missing or empty"; done
-[ "$(value shallow/summary.json fluid)" = '"ShallowWater"' ] || fail "the fluid is not shallow water"
+[ "$(value shallow/summary.json fluid)" = '"TwoWayShallow"' ] || fail "the fluid is not shallow water"
 [ "$(value shallow/summary.json water_settled)" = true ] || fail "the water has not settled"
 holds "Manning's depth" "($(value shallow/summary.json water_depth_m) / $(value shallow/summary.json manning_depth_m) - 1)^2 < 0.01"
 holds "Manning's speed" "($(value shallow/summary.json water_speed_m_per_s) / $(value shallow/summary.json manning_speed_m_per_s) - 1)^2 < 0.01"
@@ -98,6 +98,13 @@ holds "water comes in with energy" "$(value grid/summary.json water_energy_inflo
 "$program" "${short[@]}" --fluid grid --set 'fluid.surface="height"' --set fluid.energy=false --set fluid.spacing=0.04 --set run.end_time=0.03 --out height > height.log || fail "water below a height: $(cat height.log)"
 holds "a height's depth is near that of volume of fluid" "$(value height/summary.json water_depth_m) < 1.05 * $(value grid/summary.json water_depth_m) && $(value height/summary.json water_depth_m) > 0.95 * $(value grid/summary.json water_depth_m)"
 grep -q water_energy height/summary.json && fail "an energy account that was not asked for"
+for model in unresolved resolved; do
+    "$program" "${short[@]}" --fluid $model --set fluid.spacing=0.04 --set run.end_time=0.05 --out $model > $model.log || fail "$model stones: $(cat $model.log)"
+    holds "the ledger closes with $model stones" "$(value $model/summary.json ledger_residual_relative) < 1e-12"
+    holds "Manning's depth about $model stones" "($(value $model/summary.json water_depth_m) / $(value $model/summary.json manning_depth_m) - 1)^2 < 0.01"
+    holds "small stones are averaged" "$(value $model/summary.json stones_averaged) > 0"
+done
+holds "unresolved: all are" "$(value unresolved/summary.json stones_resolved) == 0"
 "$program" "${short[@]}" --fluid none --set run.end_time=0.01 --out none > none.log || fail "a dry channel: $(cat none.log)"
 grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
 

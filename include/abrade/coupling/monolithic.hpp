@@ -66,8 +66,11 @@ public:
     }
     const Params& params() const noexcept { return params_; }
     std::span<const FlowBody> bodies() const noexcept { return bodies_; }
-    std::span<const SolidCover> covers() const noexcept { return faces_.covers(); }  ///< [body]
-    Real fastest() const noexcept { return fastest_; }                               ///< of the bodies [m/s]
+    Index averaged() const noexcept { return std::ssize(faces_.cloud().which()); }  ///< of the bodies
+    std::span<const SolidCover> covers() const noexcept {
+        return faces_.covers();
+    }                                                   ///< [body], of their cloud
+    Real fastest() const noexcept { return fastest_; }  ///< of the bodies [m/s]
 
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                const FaceField<3>* open_area) {
