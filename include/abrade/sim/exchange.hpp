@@ -4,9 +4,23 @@
 #include <abrade/fluid/flow_body.hpp>
 #include <abrade/sim/state.hpp>
 
+#include <limits>
 #include <vector>
 
 namespace abrade {
+
+/// Until when a fluid's next step would lead, found once for each of them: solids ask before every step of
+/// theirs.
+class FluidDue {
+public:
+    Real of(const auto& fluid) {
+        if (fluid.time() != begins_) begins_ = fluid.time(), ends_ = begins_ + fluid.stable_step().seconds;
+        return ends_;
+    }
+
+private:
+    Real begins_ = std::numeric_limits<Real>::quiet_NaN(), ends_ = 0;  ///< [s]
+};
 
 /// Stones and grains, and fixed stones, as a flow sees them. Velocities are those of the present.
 template <class P>

@@ -215,7 +215,7 @@ private:
     /// The fluid comes to where the solids are, if a step to `t` would have it take more than one of its own.
     void exchange_before(Real t) {
         auto& fluid = state_.policies.fluid;
-        if (!(fluid.time() < now_) || fluid.time() + fluid.stable_step().seconds >= t) return;
+        if (!(fluid.time() < now_) || fluid_due_.of(fluid) >= t) return;
         make_whole();
         FlowBodies<P> flow(state_);
         fluid.advance(now_, flow.bodies());
@@ -388,8 +388,9 @@ private:
     bool whole_ = true;                ///< velocities are those of the present, not of half a step ago
     Real stored_contacts_ = 0, stored_bonds_ = 0;  ///< in what is evaluated [J]
     Real stored_at_rest_ = 0;                      ///< [J]
-    Index unlooked_ = 0;                           ///< steps since the last look at who falls asleep
-    bool too_deep_ = false;                        ///< some contact may be, as of the last evaluation
+    FluidDue fluid_due_;
+    Index unlooked_ = 0;     ///< steps since the last look at who falls asleep
+    bool too_deep_ = false;  ///< some contact may be, as of the last evaluation
     Trouble trouble_;
     StepSeconds timed_;
     Real fluid_seconds_ = 0;  ///< that a changing fluid took [s]

@@ -1,0 +1,115 @@
+// What stones in water on a grid cost: the validation's channel below a height, in cells of 0.02 m, with its
+// mixture of stones in the flow, against the same water alone.
+
+#include "../tests/verification/channel_water.hpp"
+
+#include <abrade/coupling/monolithic.hpp>
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <limits>
+#include <random>
+
+using namespace abrade;
+
+namespace {
+
+template <class Solids>
+using Water = GridFluid<3, HeightSurface, Limited, Real, MixingLength, Solids>;
+using Stones = MonolithicSolids<>;
+
+/// The five classes by equal volumes, on the bed and up to a few diameters above it.
+struct Gravel {
+    std::vector<Sphere> spheres;
+    std::vector<FlowBody> bodies;
+
+    Gravel(Index count, Real length) {
+        constexpr std::array sizes{0.04, 0.05, 0.075, 0.1, 0.15};
+        std::mt19937 random(5);
+        std::uniform_real_distribution<Real> unit(0, 1);
+        Real numbers = 0;
+        for (const Real d : sizes) numbers += 1 / cube(d);
+        const Real arc = channel_water::uniform_flow(length).params().section.arc_radius;
+        for (Index n = 0; n < count; ++n) {
+            Real pick = unit(random) * numbers;
+            std::size_t c = 0;
+            while (c + 1 < sizes.size() && pick > 1 / cube(sizes[c])) pick -= 1 / cube(sizes[c++]);
+            const Real radius = 0.5 * sizes[c], y = 0.25 * (2 * unit(random) - 1);
+            const Real up = radius * (1 + 0.3 * unit(random));
+            const Vec3 x(0.2 + unit(random) * (length - 0.6), y,
+                         arc - std::sqrt(square(arc - up) - square(y)));
+            spheres.push_back({x, radius});
+            FlowBody body{.id = n, .position = x, .volume = 4.0 / 3 * pi * cube(radius)};
+            body.inverse_mass = 1 / (2650 * body.volume);
+            body.inverse_inertia = Mat3::Identity() * body.inverse_mass / (0.4 * square(radius));
+            bodies.push_back(body);
+        }
+        for (std::size_t n = 0; n < bodies.size(); ++n) bodies[n].spheres = {&spheres[n], 1};
+    }
+    void move(Real dt) {
+        for (std::size_t n = 0; n < bodies.size(); ++n) {
+            bodies[n].velocity = {2.5, 0, 0}, bodies[n].angular_velocity.setZero();
+            bodies[n].position += dt * bodies[n].velocity, spheres[n].centre = bodies[n].position;
+        }
+    }
+};
+
+/// `resolved_from` cells to a diameter; `count` stones in n cells along the channel.
+template <class Solids>
+void steps(benchmark::State& state, Solids solids, Index count) {
+    const int n = static_cast<int>(state.range(0)), threads = static_cast<int>(state.range(1));
+    set_thread_count(threads);
+    const Real length = n * channel_water::spacing;
+    Water<Solids> water(channel_water::channel(length, true), {.depth = channel_water::wanted().depth},
+                        std::move(solids));
+    Gravel gravel(count, length);
+    const auto step = [&] {
+        const Real dt = water.stable_step().seconds;
+        gravel.move(dt);
+        if constexpr (Solids::present)
+            water.advance(water.time() + dt, gravel.bodies);
+        else
+            water.step(dt);
+    };
+    for (int k = 0; k < 5; ++k) step();
+    double wet = 0, iterations = 0;
+    for (auto _ : state) {
+        step();
+        wet += static_cast<double>(water.wet_cells()), iterations += water.last_projection().iterations;
+    }
+    set_thread_count(1);
+    state.counters["stones"] = static_cast<double>(count);
+    state.counters["wet_cells"] = wet / static_cast<double>(state.iterations());
+    state.counters["iterations"] = iterations / static_cast<double>(state.iterations());
+    state.counters["s/wet_cell_step"] =
+        benchmark::Counter(wet, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+/// 28 in a metre, as many as the channel holds after 25 s.
+Index stones_in(int cells) { return static_cast<Index>(28 * cells * channel_water::spacing); }
+
+void alone(benchmark::State& state) { steps(state, NoSolids{}, 0); }
+void unresolved(benchmark::State& state) {
+    const Stones all({.resolved_from = std::numeric_limits<Real>::infinity()});
+    steps(state, all, stones_in(static_cast<int>(state.range(0))));
+}
+void by_size(benchmark::State& state) {
+    steps(state, Stones{}, stones_in(static_cast<int>(state.range(0))));
+}
+void resolved(benchmark::State& state) {
+    steps(state, Stones({.resolved_from = 0}), stones_in(static_cast<int>(state.range(0))));
+}
+void lengths(benchmark::internal::Benchmark* of) {
+    of->ArgNames({"cells", "threads"})
+        ->ArgsProduct({{225}, {1, 2}})
+        ->Args({1786, 2})  // 1,000 stones
+        ->Iterations(20)
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
+}
+BENCHMARK(alone)->Name("water_solids_none")->Apply(lengths);
+BENCHMARK(unresolved)->Name("water_solids_unresolved")->Apply(lengths);
+BENCHMARK(by_size)->Name("water_solids_by_size")->Apply(lengths);
+BENCHMARK(resolved)->Name("water_solids_resolved")->Apply(lengths);
+
+}  // namespace
