@@ -7,6 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <random>
@@ -35,10 +36,13 @@ struct Gravel {
             Real pick = unit(random) * numbers;
             std::size_t c = 0;
             while (c + 1 < sizes.size() && pick > 1 / cube(sizes[c])) pick -= 1 / cube(sizes[c++]);
-            const Real radius = 0.5 * sizes[c], y = 0.25 * (2 * unit(random) - 1);
-            const Real up = radius * (1 + 0.3 * unit(random));
-            const Vec3 x(0.2 + unit(random) * (length - 0.6), y,
-                         arc - std::sqrt(square(arc - up) - square(y)));
+            const Real radius = 0.5 * sizes[c];
+            Vec3 x;
+            do {
+                const Real y = 0.25 * (2 * unit(random) - 1), up = radius * (1 + 0.3 * unit(random));
+                x = {0.2 + unit(random) * (length - 0.6), y, arc - std::sqrt(square(arc - up) - square(y))};
+            } while (std::ranges::any_of(
+                spheres, [&](const Sphere& s) { return (s.centre - x).norm() < s.radius + radius; }));
             spheres.push_back({x, radius});
             FlowBody body{.id = n, .position = x, .volume = 4.0 / 3 * pi * cube(radius)};
             body.inverse_mass = 1 / (2650 * body.volume);
@@ -93,9 +97,7 @@ void unresolved(benchmark::State& state) {
     const Stones all({.resolved_from = std::numeric_limits<Real>::infinity()});
     steps(state, all, stones_in(static_cast<int>(state.range(0))));
 }
-void by_size(benchmark::State& state) {
-    steps(state, Stones{}, stones_in(static_cast<int>(state.range(0))));
-}
+void by_size(benchmark::State& state) { steps(state, Stones{}, stones_in(static_cast<int>(state.range(0)))); }
 void resolved(benchmark::State& state) {
     steps(state, Stones({.resolved_from = 0}), stones_in(static_cast<int>(state.range(0))));
 }

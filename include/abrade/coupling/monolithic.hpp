@@ -66,7 +66,7 @@ public:
     }
     const Params& params() const noexcept { return params_; }
     std::span<const FlowBody> bodies() const noexcept { return bodies_; }
-    Index averaged() const noexcept { return std::ssize(faces_.cloud().which()); }  ///< of the bodies
+    Index averaged() const noexcept { return static_cast<Index>(faces_.cloud().count()); }  ///< of the bodies
     std::span<const SolidCover> covers() const noexcept {
         return faces_.covers();
     }                                                   ///< [body], of their cloud

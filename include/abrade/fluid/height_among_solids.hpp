@@ -13,7 +13,7 @@ void HeightOfFluid<Dim>::gather() {
         for (int k = columns_.first(n); k < columns_.levels(); ++k) {
             const Offset c = columns_.cell(plane, j, k);
             const Real solid = solids_.empty() ? 0 : solids_.volume(n, k);
-            sum += fraction_[c] * (columns_.open(c) * columns_.volume(k) - solid);
+            sum += fraction_[c] * std::max(columns_.open(c) * columns_.volume(k) - solid, Real(0));
             sum += surplus_[c] * columns_.open(c) * columns_.volume(k);
         }
         for (int k = 0; k < columns_.levels(); ++k) fraction_[columns_.cell(plane, j, k)] = 0;

@@ -5,7 +5,9 @@
 #include <abrade/fluid/solids_in_flow.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace abrade::detail {
@@ -18,26 +20,39 @@ class SolidsInColumns {
 
 public:
     void set(std::span<const SolidPart> parts, const Grid<Dim>& grid, const HeightColumns<Dim>& columns) {
-        parts_.clear();
+        std::vector<Part> found;
+        found.reserve(parts.size());
+        Index last = -1;
         for (const SolidPart& part : parts) {
             const CellNumber<Dim> number = grid.layout().number(part.cell);
-            parts_.push_back({columns.column(number), number[vertical], part.volume});
+            found.push_back({columns.column(number), number[vertical], part.volume});
+            last = std::max(last, found.back().column);
         }
-        const auto before = [](const Part& a, const Part& b) {
-            return a.column != b.column ? a.column < b.column : a.level < b.level;
-        };
-        std::stable_sort(parts_.begin(), parts_.end(), before);
-        std::size_t last = 0;
-        for (std::size_t i = 1; i < parts_.size(); ++i)
-            if (before(parts_[last], parts_[i]))
-                parts_[++last] = parts_[i];
+        start_.assign(static_cast<std::size_t>(last + 2), 0);
+        for (const Part& part : found) ++start_[static_cast<std::size_t>(part.column + 1)];
+        std::partial_sum(start_.begin(), start_.end(), start_.begin());
+        parts_.resize(found.size());
+        std::vector<std::size_t> end(start_.begin(), start_.end());
+        for (const Part& part : found) {  // what is in the same cell is one part
+            const auto column = static_cast<std::size_t>(part.column);
+            std::size_t at = start_[column];
+            while (at < end[column] && parts_[at].level != part.level) ++at;
+            if (at < end[column])
+                parts_[at].volume += part.volume;
             else
-                parts_[last].volume += parts_[i].volume;
-        if (!parts_.empty()) parts_.resize(last + 1);
+                parts_[end[column]++] = part;
+        }
+        std::size_t kept = 0;
+        for (std::size_t column = 0; column + 1 < start_.size(); ++column) {
+            const std::size_t first = std::exchange(start_[column], kept);
+            for (std::size_t at = first; at < end[column]; ++at) parts_[kept++] = parts_[at];
+        }
+        start_.back() = kept;
+        parts_.resize(kept);
     }
 
     bool empty() const noexcept { return parts_.empty(); }
-    bool has(Index column) const noexcept { return !parts_.empty() && !of(column).empty(); }
+    bool has(Index column) const noexcept { return !of(column).empty(); }
     /// In a cell [m3].
     Real volume(Index column, int level) const noexcept {
         for (const Part& part : of(column))
@@ -80,7 +95,9 @@ public:
         return columns.surface(plane, j, columns.capacity(n), 0);
     }
 
-    static void fields(auto&& field) { field.bytes("parts", &SolidsInColumns::parts_); }
+    static void fields(auto&& field) {
+        field.bytes("parts", &SolidsInColumns::parts_), field.bytes("start", &SolidsInColumns::start_);
+    }
 
 private:
     struct Part {
@@ -89,13 +106,13 @@ private:
         Real volume = 0;
     };
     std::span<const Part> of(Index column) const noexcept {
-        const auto [first, last] =
-            std::equal_range(parts_.begin(), parts_.end(), Part{column},
-                             [](const Part& a, const Part& b) { return a.column < b.column; });
-        return {first, last};
+        const auto at = static_cast<std::size_t>(column);
+        if (column < 0 || at + 1 >= start_.size()) return {};
+        return std::span(parts_).subspan(start_[at], start_[at + 1] - start_[at]);
     }
 
-    std::vector<Part> parts_;  ///< by column and level
+    std::vector<Part> parts_;         ///< by column
+    std::vector<std::size_t> start_;  ///< [column] in `parts_`
 };
 
 }  // namespace abrade::detail
