@@ -122,7 +122,8 @@ inline void look_at_the_end(const auto& flow, ChannelWater& water) {
         {"water_volume_m3", flow.liquid().volume()},
         {"water_discharge_at_outlet_m3_per_s", section_of_cells(flow, grid.cells(0) - 1).discharge}};
     if constexpr (requires { flow.solids().averaged(); }) {
-        const Index all = std::ssize(flow.solids().bodies()), averaged = flow.solids().averaged();
+        const Index averaged = flow.solids().averaged();
+        const auto all = static_cast<Index>(flow.solids().bodies().size());
         water.figures.push_back({"stones_resolved", static_cast<Real>(all - averaged)});
         water.figures.push_back({"stones_averaged", static_cast<Real>(averaged)});
     }
