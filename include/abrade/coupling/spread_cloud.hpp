@@ -62,7 +62,7 @@ private:
     };
     struct Layer {
         int number = 0;
-        Real weight = 0;
+        Real weight = 0, size = 0;  ///< [-]; of its control volumes [m]
     };
 
     /// Part of a triangle that is `half` wide to either side, below a place x from its middle [-].
@@ -81,7 +81,7 @@ private:
             const Real low = faces ? in.centre(a, i - 1) : in.face(a, i);
             const Real high = faces ? in.centre(a, i) : in.face(a, i + 1);
             const Real weight = below(high - middle, half) - below(low - middle, half);
-            if (weight > 0) layers.push_back({in.wrapped(a, i), weight});
+            if (weight > 0) layers.push_back({in.wrapped(a, i), weight, high - low});
         }
     }
 
@@ -112,13 +112,12 @@ private:
                             if (weight < least * largest) continue;
                             const Offset face = in.grid.layout().at({x.number, y.number, z.number});
                             const Real has = weight * open(axis, face);
-                            if (has > 0) parts.push_back({0, has}), at.push_back(face), sum += has;
+                            if (!(has > 0)) continue;
+                            parts.push_back({0, has / (x.size * y.size * z.size)});
+                            at.push_back(face), sum += has;
                         }
             }
-            for (std::size_t i = 0; i < parts.size(); ++i) {
-                const Real volume = control_volume(in, axis, at[i]);
-                parts[i].share = std::min(parts[i].share / sum * body.volume / volume, most);
-            }
+            for (SpreadPart& part : parts) part.share = std::min(part.share * body.volume / sum, most);
         }
     }
     static Real control_volume(const detail::GridNumbers& in, int axis, Offset face) noexcept {
