@@ -149,8 +149,7 @@ public:
         across_ = sim.concrete().lattice().count_across;
         for (auto* values : {&stones_, &impacts_, &sliding_})
             values->resize(static_cast<std::size_t>(across_), 0);
-        note_stones(sim.particles());
-        note_losses(sim);
+        note_stones(sim.particles(), note_losses(sim));
         for (Wanted& one : wanted_) {
             if (one.reached) continue;
             const Real converted = config_.wear.params().acceleration * passed_.past(one.past);
@@ -221,39 +220,33 @@ private:
         return values[static_cast<std::size_t>(std::clamp(row, 0.0, across_ - 1.0))];
     }
 
-    void note_stones(const Particles& p) {
+    /// `on_bed`: whether a body touches concrete.
+    void note_stones(const Particles& p, const std::vector<bool>& on_bed) {
         for (std::size_t b = 0; b < p.position.size(); ++b) {
             if (p.kind[b] != Kind::stone || !compared(p.position[b])) continue;
             across(stones_, p.position[b]) += p.volume[b];
-            seen_ += 1, speed_ += p.velocity[b].norm(), off_bed_ += is_off_bed(p, b);
+            seen_ += 1, speed_ += p.velocity[b].norm(), off_bed_ += on_bed[b] ? 0 : 1;
         }
-    }
-    /// More than a tenth of its lowest sphere's radius above the bed as it was laid.
-    bool is_off_bed(const Particles& p, std::size_t b) const {
-        const auto first = static_cast<std::size_t>(p.first_sphere[b]);
-        const auto count = static_cast<std::size_t>(p.sphere_count[b]);
-        for (std::size_t s = first; s < first + count; ++s) {
-            const Vec3& x = p.centre[s];
-            const Real arc = config_.invert.arc_radius;
-            if (arc - std::hypot(x.y(), arc - x.z()) < 1.1 * p.radius[s]) return false;
-        }
-        return true;
     }
 
     /// The power that contacts with concrete take up now. Elastic energy comes back, so over many looks the
-    /// mean is what is lost.
+    /// mean is what is lost. Returns which bodies touch concrete.
     template <class Sim>
-    void note_losses(const Sim& sim) {
+    std::vector<bool> note_losses(const Sim& sim) {
         const Particles& p = sim.particles();
+        std::vector<bool> touches(p.position.size(), false);
         sim.world().each_contact([&](Index first, Index second, const auto& contact, const auto& load) {
             const Real all = -load.force.dot(contact.velocity);
             const Real normal = -load.force.dot(contact.normal) * contact.velocity.dot(contact.normal);
             for (const Index body : {first, second}) {
                 if (body < 0 || p.site[static_cast<std::size_t>(body)] < 0) continue;
+                if (const Index other = first + second - body; other >= 0)
+                    touches[static_cast<std::size_t>(other)] = true;
                 const Vec3& x = p.position[static_cast<std::size_t>(body)];
                 if (compared(x)) across(impacts_, x) += normal, across(sliding_, x) += all - normal;
             }
         });
+        return touches;
     }
 
     const ChannelConfig& config_;

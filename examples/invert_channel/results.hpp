@@ -119,7 +119,7 @@ struct ChannelResults {
     Real energy_lost_normal_J = 0, energy_lost_sliding_J = 0;  ///< in contacts with concrete
     Real ledger_residual_relative = 0, integration_residue_J = 0;
     Real mean_stone_speed_m_per_s = 0;  ///< at the end
-    /// In the compared section, means over looks; NaN: no stone came there.
+    /// In the compared section, means over looks; NaN: no stone came there. Off the bed: touches no concrete.
     Real sampled_stone_speed_m_per_s = 0, stones_off_bed_share = 0;
     Real waiting_volume_m3 = 0;         ///< told to wear, its epoch has not ended
     Index spheres_let_go = 0;           ///< that bonds no longer held

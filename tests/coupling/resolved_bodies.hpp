@@ -74,7 +74,7 @@ inline Drag drag_in(const Stream& stream, Real end) {
     params.sides[0] = {Side::inflow, Side::outflow};
     params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
     params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
-    Water water(params);
+    Water water(params, {}, MonolithicSolids<>({.resolved_from = 0}));
     std::vector<Ball> balls{{Vec3(4, 4, 4) + stream.off * h * Vec3(1, 0.37, 0.71), 0.5, 0}};
     Real sum = 0, squares = 0, count = 0;
     while (water.time() < end) {
