@@ -223,7 +223,8 @@ void draw_ledger(const ChannelResults& r, const fs::path& picture) {
         const auto found = std::find(r.ledger.names.begin(), r.ledger.names.end(), name);
         if (found == r.ledger.names.end()) continue;
         const auto& values = r.ledger.values[static_cast<std::size_t>(found - r.ledger.names.begin())];
-        if (std::ranges::all_of(values, [](Real value) { return value == 0; })) continue;
+        const bool nothing = std::ranges::all_of(values, [](Real value) { return value == 0; });
+        if (nothing && name != "kinetic") continue;
         chart.curves.push_back({.title = title, .x = r.ledger.time, .y = values});
     }
     draw(chart, picture);
