@@ -305,9 +305,12 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
                        .help = "diameter from which on the water flows around a stone; smaller "
                                "ones are spread over the flow, as all are where it is unresolved",
                        .bound = Bound::not_negative});
-    c.fluid.energy = in.flag("fluid.energy", {.fallback = true,
-                                              .help = "whether the grid's water keeps its energy account, "
-                                                      "which costs a quarter of a step"});
+    c.fluid.energy = !feels_stones;
+    if (!feels_stones)
+        c.fluid.energy =
+            in.flag("fluid.energy", {.fallback = true,
+                                     .help = "whether the grid's water keeps its energy account, "
+                                             "which costs a quarter of a step"});
     c.fluid.spacing = in.number(
         "fluid.spacing",
         {.unit = "m", .fallback = 0.02, .help = "of the grid of water that flows", .bound = Bound::positive});
@@ -317,13 +320,15 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
                                          .help = "of water that flows in upstream, 0: of uniform flow",
                                          .assumption = "not in the text",
                                          .bound = Bound::not_negative});
-    constexpr std::array<std::string_view, 2> begins{"dry", "uniform"};
-    c.fluid.begins_uniform =
-        in.choice(
-            "fluid.begins", begins,
-            {.fallback = feels_stones ? "uniform" : "dry",
-             .help = "what a grid's water begins as, dry: it runs down the channel, uniform: as uniform "
-                     "flow all along it"}) == "uniform";
+    if (c.fluid.model == "grid" || feels_stones) {
+        constexpr std::array<std::string_view, 2> begins{"dry", "uniform"};
+        c.fluid.begins_uniform =
+            in.choice(
+                "fluid.begins", begins,
+                {.fallback = feels_stones ? "uniform" : "dry",
+                 .help = "what a grid's water begins as, dry: it runs down the channel, uniform: as uniform "
+                         "flow all along it"}) == "uniform";
+    }
     c.fluid.settle =
         in.number("fluid.settle", {.unit = "s",
                                    .fallback = 0,

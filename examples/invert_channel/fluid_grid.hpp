@@ -47,7 +47,7 @@ Flow grid_channel(const ChannelConfig& c, auto solids) {
             params.velocity = [stream](const Vec3& x) { return stream.velocity(x); };
         }
         Flow flow(std::move(params), {.depth = start.uniform.depth()}, std::move(solids));
-        if (c.fluid.energy && !ResolvedFluid<Flow>) flow.open_energy_account();
+        if (c.fluid.energy) flow.open_energy_account();
         return flow;
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());

@@ -154,10 +154,14 @@ TEST_CASE("a standing wave over ten periods: what the scheme gains") {
         look_at("wave of " + short_text(height) + " m", flow);
         MESSAGE("lost in ten periods " << 100 * e.numerical / wave << " % of the wave, gained in one at most "
                                        << 100 * most_gained / wave << " %");
-        // Round-off decides which cells are wet: 1.7e-3 by g++, 2.1e-3 with its sanitizers, 2.5e-3 by
-        // clang++.
+        // Round-off decides which cells are wet: 1.7e-3; missed by clang++, 2.5e-3, and with
+        // sanitizers, 2.1e-3.
+#if defined(__clang__) || defined(__SANITIZE_ADDRESS__)
         WARN(most_gained < 2e-3 * wave);
         CHECK(most_gained < 3e-3 * wave);
+#else
+        CHECK(most_gained < 2e-3 * wave);
+#endif
         CHECK(least > -2e-3 * wave);
     }
 }

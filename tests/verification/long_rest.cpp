@@ -92,7 +92,7 @@ TEST_CASE("a level surface on the curved bed, at faces of cells") {
     for (const int cells : {3, 4, 5, 6, 7}) {
         const Real found = report<2>(cells * cell, 0, true);
         WARN(found < gate);  // missed by half at 3 cells
-        CHECK(found < 3 * gate);
+        CHECK(found < (cells == 3 ? 3 : 1) * gate);
     }
     for (const int cells : {2, 3, 4}) CHECK(report<3>(cells * 2 * cell, 0, true) < gate);
 }

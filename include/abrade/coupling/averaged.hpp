@@ -68,7 +68,7 @@ public:
     /// Once the pressure is known: velocities and loads of the bodies. Told ones keep their velocity, those
     /// that have left the box their load.
     void settle(std::span<const CoveredFace> faces, const SpreadCloud& cloud, std::span<FlowBody> bodies,
-                const Field<Real>& pressure, const FlowStage& stage, std::vector<bool>& left) {
+                std::span<const SolidCover> covers, const Field<Real>& pressure, const FlowStage& stage) {
         const Real more = 1 + added_mass_;
         for_each(cloud, [&](std::size_t n) {
             FlowBody& body = bodies[cloud.which()[n]];
@@ -79,7 +79,7 @@ public:
                       (1 / body.inverse_mass + m.added);
             const Vec3 by_added = added_mass_ * pressed + (m.lead - m.added * m.v) / stage.dt;
             body.velocity = m.v;
-            if (!left[cloud.which()[n]]) body.load = {pressed + m.by_drag + by_added, Vec3::Zero()};
+            if (!covers[cloud.which()[n]].cut) body.load = {pressed + m.by_drag + by_added, Vec3::Zero()};
             m.pressed = pressed;
             m.owed = stage.dt * by_added - m.owed;
         });
@@ -87,8 +87,7 @@ public:
         for (std::size_t n = 0; n < motion_.size(); ++n)
             memory_.push_back(
                 {bodies[cloud.which()[n]].id, motion_[n].v, motion_[n].pressed, motion_[n].owed});
-        std::sort(memory_.begin(), memory_.end(),
-                  [](const Memory& a, const Memory& b) { return a.id < b.id; });
+        std::ranges::sort(memory_, {}, &Memory::id);
     }
 
     static void fields(auto&& field) { field("memory", &AveragedBodies::memory_); }
@@ -139,11 +138,6 @@ private:
         });
         for (CoveredFace& f : faces) f.solid /= f.share;
     }
-    const Memory* memory_of(Index id) const noexcept {
-        const auto found = std::lower_bound(memory_.begin(), memory_.end(), id,
-                                            [](const Memory& m, Index wanted) { return m.id < wanted; });
-        return found != memory_.end() && found->id == id ? &*found : nullptr;
-    }
     static Vec3 pressed_by(std::size_t n, std::span<const CoveredFace> faces, const SpreadCloud& cloud,
                            const Field<Real>& pressure, Real density) noexcept {
         Vec3 sum = Vec3::Zero();
@@ -178,7 +172,7 @@ private:
                                 .viscosity = stage.viscosity,
                                 .porosity = shares > 0 ? 1 - others / shares : 1};
         m.rate = weight.norm() > 0 ? spread.drag(drag_) / body.volume : 0;
-        const Memory* const before = memory_of(body.id);
+        const Memory* const before = with_id(memory_, body.id);
         const Real dt = stage.dt;
         m.added = added_mass_ * weight.mean();
         const bool falls = body.inverse_mass > 0;  // or it moves as it is told

@@ -41,6 +41,12 @@ private:
 
 static_assert(DenseDragLaw<DiFelice>);
 
+/// Radius of the ball that a body is spread over: of three diameters, or of three cells where these are wider
+/// [m].
+inline Real spread_radius(Real diameter, Real cell) noexcept { return 1.5 * std::max(diameter, cell); }
+/// Half the width of the triangle that has the variance of a ball along an axis [m].
+inline Real triangle_half(Real radius) noexcept { return std::sqrt(6.0 / 5) * radius; }
+
 /// A body whose force is spread over water that feels it. What it meets there it has slowed itself: a force F
 /// spread evenly over a ball of radius a makes F / R,
 ///   R = 5 pi mu a + 2 rho pi a^2 |u - v|

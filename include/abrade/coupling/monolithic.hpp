@@ -76,10 +76,8 @@ public:
                const FaceField<3>* open_area) {
         bodies_.assign(bodies.begin(), bodies.end()), motion_.assign(bodies.size() + 1, {});
         faces_.place(grid, sides, bodies, params_.resolved_from, open_area);
-        cut_.assign(bodies_.size(), false);
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
-            cut_[b] = faces_.cover(b).cut;
-            if (cut_[b]) bodies_[b].inverse_mass = 0, bodies_[b].inverse_inertia.setZero();
+            if (faces_.cover(b).cut) bodies_[b].inverse_mass = 0, bodies_[b].inverse_inertia.setZero();
             for (CoveredFace& f : faces_.of(b)) f.solid = detail::along(f, detail::velocity_of(bodies_[b]));
         }
         averaged_.begin(faces_.of_cloud(), faces_.cloud(), bodies_);
@@ -178,15 +176,15 @@ public:
             const Six by_pressure = stage_.density * detail::pressed(faces_.cover(b), pressure);
             const Six load = by_pressure + motion.by_friction;
             body.velocity = motion.q.template head<3>(), body.angular_velocity = motion.q.template tail<3>();
-            if (!cut_[b]) body.load = {load.template head<3>(), load.template tail<3>()};
+            if (!faces_.cover(b).cut) body.load = {load.template head<3>(), load.template tail<3>()};
             fill_inside(b, by_pressure.template head<3>(), pressure);
-            const Memory* const before = memory_of(body.id);
+            const Memory* const before = with_id(memory_, body.id);
             const Six gained = before ? Six(motion.q - before->q) / stage_.dt : Six(Six::Zero());
             next.push_back({body.id, motion.q, gained, motion.covers, slip_of(b, u), by_pressure});
         }
-        std::sort(next.begin(), next.end(), [](const Memory& a, const Memory& b) { return a.id < b.id; });
+        std::ranges::sort(next, {}, &Memory::id);
         memory_ = std::move(next);
-        averaged_.settle(faces_.of_cloud(), faces_.cloud(), bodies_, pressure, stage_, cut_);
+        averaged_.settle(faces_.of_cloud(), faces_.cloud(), bodies_, faces_.covers(), pressure, stage_);
         fastest_ = 0;
         for (const FlowBody& body : bodies_) fastest_ = std::max(fastest_, body.velocity.norm());
     }
@@ -250,11 +248,6 @@ private:
             },
             block_of_bodies);
     }
-    const Memory* memory_of(Index id) const noexcept {
-        const auto found = std::lower_bound(memory_.begin(), memory_.end(), id,
-                                            [](const Memory& m, Index wanted) { return m.id < wanted; });
-        return found != memory_.end() && found->id == id ? &*found : nullptr;
-    }
 
     /// The water's velocity by all but pressure and weight.
     Real unpushed(const CoveredFace& f, const Field<Real>& old) const noexcept {
@@ -265,7 +258,7 @@ private:
     void find_motion(std::size_t b, const Field<Real>& old) {
         const FlowBody& body = bodies_[b];
         Motion& motion = motion_[b];
-        const Memory* const before = memory_of(body.id);
+        const Memory* const before = with_id(memory_, body.id);
         const Real dt = stage_.dt;
         Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
         Six brought = Six::Zero(), within = Six::Zero();
@@ -336,7 +329,6 @@ private:
 
     Params params_;
     std::vector<FlowBody> bodies_;
-    std::vector<bool> cut_;       ///< [body] by an open side: it moves as it is told, with its last load
     std::vector<Motion> motion_;  ///< [body], and 0 of the cloud
     CoveredFaces faces_;
     AveragedBodies<DragOfSmall> averaged_;

@@ -2,6 +2,7 @@
 // Bodies that are small against cells, spread over the faces of a staggered grid.
 
 #include <abrade/core/parallel.hpp>
+#include <abrade/coupling/dense_drag.hpp>
 #include <abrade/coupling/solid_shares.hpp>
 
 #include <algorithm>
@@ -24,9 +25,6 @@ struct SpreadPart {
 /// together make one cover.
 class SpreadCloud {
 public:
-    /// Radius of that ball [m].
-    static Real reach(Real diameter, Real cell) noexcept { return 1.5 * std::max(diameter, cell); }
-
     /// `which`: numbers of those among `bodies` that are spread; `open(axis, face)`: share that is left of a
     /// face.
     template <class Open>
@@ -88,8 +86,8 @@ private:
     template <class Open>
     static void spread(const detail::GridNumbers& in, const FlowBody& body, const Open& open, Spread& to) {
         constexpr Real least = 0.02, most = 0.9;  // of the largest weight; of a face
-        to.reach = reach(body.diameter(), in.cell_width(body.position));
-        const Real half = std::sqrt(6.0 / 5) * to.reach;
+        to.reach = spread_radius(body.diameter(), in.cell_width(body.position));
+        const Real half = triangle_half(to.reach);
         PerAxis<std::vector<Layer>, 3> layers;
         for (int axis = 0; axis < 3; ++axis) {
             auto& parts = to.parts[axis];

@@ -1,7 +1,7 @@
 #pragma once
 // Depth-averaged water that feels the bodies in it.
 
-#include <abrade/coupling/drag.hpp>
+#include <abrade/coupling/dense_drag.hpp>
 #include <abrade/fluid/shallow_water.hpp>
 
 #include <algorithm>
@@ -96,7 +96,7 @@ private:
         const ShallowGrid<2>& grid = water_.grid();
         std::array<std::vector<std::pair<Index, Real>>, 2> layers;
         for (int a = 0; a < 2; ++a) {
-            const Real h = grid.spacing(a), half = 1.5 * std::sqrt(6.0 / 5) * std::max(diameter, h);
+            const Real h = grid.spacing(a), half = triangle_half(spread_radius(diameter, h));
             const auto number = [&](Real at) {
                 return static_cast<Index>(std::floor((at - grid.low(a)) / h));
             };

@@ -4,8 +4,10 @@
 #include <abrade/core/types.hpp>
 #include <abrade/geometry/solid_moments.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
+#include <vector>
 
 namespace abrade {
 
@@ -39,5 +41,12 @@ struct FlowBody {
 
     Real diameter() const noexcept { return std::cbrt(6 / pi * volume); }  ///< of a sphere as large [m]
 };
+
+/// Of records in the order of their ids; null: it has none.
+template <class Record>
+const Record* with_id(const std::vector<Record>& records, Index id) noexcept {
+    const auto found = std::ranges::lower_bound(records, id, {}, &Record::id);
+    return found != records.end() && found->id == id ? &*found : nullptr;
+}
 
 }  // namespace abrade
