@@ -65,7 +65,7 @@ void steps(benchmark::State& state, Solids solids, Index count) {
     const int n = static_cast<int>(state.range(0)), threads = static_cast<int>(state.range(1));
     set_thread_count(threads);
     const Real length = n * channel_water::spacing;
-    Water<Solids> water(channel_water::channel(length, true), {.depth = channel_water::wanted().depth},
+    Water<Solids> water(channel_water::channel(length, true), channel_water::mixing_length(),
                         std::move(solids));
     Gravel gravel(count, length);
     const auto step = [&] {

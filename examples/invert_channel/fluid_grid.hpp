@@ -46,7 +46,10 @@ Flow grid_channel(const ChannelConfig& c, auto solids) {
             params.water = [stream](const Vec3& x) { return stream.depth_at(x); };
             params.velocity = [stream](const Vec3& x) { return stream.velocity(x); };
         }
-        Flow flow(std::move(params), {.depth = start.uniform.depth()}, std::move(solids));
+        const UniformFlow& uniform = start.uniform;
+        Flow flow(std::move(params),
+                  {.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()},
+                  std::move(solids));
         if (c.fluid.energy) flow.open_energy_account();
         return flow;
     } catch (const InputError& error) {

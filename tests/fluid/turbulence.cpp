@@ -99,6 +99,15 @@ TEST_CASE("beside walls, at sides and inside, eddies are no larger than their di
           doctest::Approx(0.41 * 0.5 * std::sqrt(0.5)).epsilon(1e-14));
     CHECK(MixingLength{.depth = 1}.length(7, 2) == 0);
 
+    // The mean flow's are bounded by what they are in uniform flow of that u*.
+    const MixingLength bounded{.depth = 1.6, .friction_velocity = 0.3};
+    const Flow<2, MixingLength> uniform(params, bounded);
+    for (int k = 0; k < 39; ++k) {
+        const Real d = (k + 0.5) * 0.04, free = square(bounded.length(7, d)) * 4;
+        CHECK(uniform.eddy_viscosity()[uniform.grid().layout().at({2, k})] ==
+              doctest::Approx(std::min(free, 0.41 * 0.3 * d * (1 - d / 1.6))).epsilon(1e-12).scale(0));
+    }
+
     // A bed inside, which cuts the second level in the middle: what is open of it lies 0.01 m above the bed.
     params.sides[0] = {Side::slip, Side::slip};
     params.sides[1] = {Side::slip, Side::slip};
@@ -115,6 +124,47 @@ TEST_CASE("beside walls, at sides and inside, eddies are no larger than their di
     CHECK(at(0) == 0);
     CHECK(at(1) == doctest::Approx(square(0.41 * 0.01) * 4).epsilon(1e-12).scale(0));
     CHECK(at(2) == doctest::Approx(square(0.41 * 0.04) * 4).epsilon(1e-12).scale(0));
+}
+
+TEST_CASE("beside what bodies cover of cells eddies are those that a cell does not resolve") {
+    const Grid<3> grid({.cells = {6, 7, 8}, .spacing = {0.1, 0.2, 0.3}});
+    GridFluidParams<3> params{.grid = grid.params(), .sides = Sides<3>::all(Side::slip)};
+    params.sides[0] = {Side::periodic, Side::periodic}, params.sides[2][0] = Side::wall;
+    const MixingLength model{.depth = 2.5, .friction_velocity = 1e3, .beside_bodies = 0.05};
+    detail::EddyViscosity<3, Real> found(grid, params, model, nullptr, true);
+    const auto u = velocity(grid, [](const Vec3& x) { return Vec3(4 * x.z(), 0, 0); });
+    const VelocitySides<3> sides(grid, params.sides, {});
+    const auto look = [&](std::initializer_list<CellNumber<3>> covered) {
+        std::vector<SolidPart> parts;
+        for (const auto& cell : covered) parts.push_back({grid.layout().at(cell), 1e-3});
+        found.make_way(grid, params.sides, parts);
+        found.find(u, sides);
+        int near = 0;
+        grid.for_each([&](const CellNumber<3>& at, Offset c) {
+            const Real free = square(model.length(0, grid.centre(at).z())) * 4;
+            const Real small = square(0.05) * std::pow(grid.volume(at), 2.0 / 3) * 4;
+            const bool is_near = std::ranges::any_of(covered, [&](const CellNumber<3>& cell) {
+                const int along = std::abs(at[0] - cell[0]);
+                return std::min(along, 6 - along) <= 1 && std::abs(at[1] - cell[1]) <= 1 &&
+                       std::abs(at[2] - cell[2]) <= 1;
+            });
+            REQUIRE(found.field()[c] ==
+                    doctest::Approx(is_near ? std::min(free, small) : free).epsilon(1e-12).scale(0));
+            near += is_near;
+        });
+        return near;
+    };
+    CHECK(look({}) == 0);
+    CHECK(look({{2, 3, 4}}) == 27);
+    CHECK(look({{2, 3, 4}, {3, 3, 4}}) == 36);
+    CHECK(look({{0, 0, 7}}) == 12);  // round the periodic side, not beyond the others
+    CHECK(look({}) == 0);            // and gone without a trace
+    CHECK_THROWS_WITH_AS(
+        (detail::EddyViscosity<3, Real>(grid, params, MixingLength{.depth = 1}, nullptr, true)),
+        "MixingLength.friction_velocity, among bodies must be finite, got inf m/s; give "
+        "sqrt(g depth slope) of uniform flow, or their wakes make nu_t a hundred times too "
+        "large",
+        InputError);
 }
 
 TEST_CASE("a step that eddies allow, and parameters that make none") {

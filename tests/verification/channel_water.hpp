@@ -23,6 +23,12 @@ inline UniformFlow uniform_flow(Real length = 1) {
     return UniformFlow{{.section = invert, .discharge = discharge, .manning = manning}};
 }
 
+/// Of eddies, for this depth.
+inline MixingLength mixing_length() {
+    const UniformFlow uniform = uniform_flow();
+    return {.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()};
+}
+
 /// Begun dry, or full of uniform flow.
 inline GridFluidParams<3> channel(Real length, bool full = false) {
     const UniformFlow uniform = uniform_flow(length);

@@ -84,11 +84,12 @@ public:
     std::span<CoveredFace> of_cloud() noexcept { return of(covers_.size() - 1); }
     const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }
     std::span<const SolidCover> covers() const noexcept { return covers_; }
-    /// Volume in cells, of all bodies.
-    std::vector<SolidPart> parts() const {
+    /// Volume in cells, of all bodies or without their cloud.
+    std::vector<SolidPart> parts(bool with_cloud) const {
         std::vector<SolidPart> parts;
         for (const SolidCover& cover : covers_)
-            parts.insert(parts.end(), cover.parts.begin(), cover.parts.end());
+            if (with_cloud || &cover != &covers_.back())
+                parts.insert(parts.end(), cover.parts.begin(), cover.parts.end());
         return parts;
     }
     /// In an order that does not depend on threads.

@@ -82,7 +82,8 @@ public:
         }
         averaged_.begin(faces_.of_cloud(), faces_.cloud(), bodies_);
     }
-    std::vector<SolidPart> parts() const { return faces_.parts(); }
+    std::vector<SolidPart> parts() const { return faces_.parts(true); }
+    std::vector<SolidPart> resolved_parts() const { return faces_.parts(false); }
     std::span<const SolidFlux> fluxes() const noexcept { return fluxes_; }
     void mix_last(FaceField<3>& u) const {
         for (std::size_t i = 0; i < fluxes_.size(); ++i) u[fluxes_[i].axis][fluxes_[i].face] += beyond_[i];

@@ -3,9 +3,14 @@
 
 #include <abrade/fluid/grid_fluid_params.hpp>
 #include <abrade/fluid/level_table.hpp>
+#include <abrade/fluid/solids_in_flow.hpp>
 #include <abrade/fluid/turbulence.hpp>
 
+#include <array>
 #include <limits>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace abrade::detail {
 
@@ -27,17 +32,24 @@ public:
     /// `walls` may be none.
     template <class Model>
     EddyViscosity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, const Model& model,
-                  const Walls<Dim>* walls)
+                  const Walls<Dim>* walls, bool among_bodies = false)
         : layout_(grid.layout()), field_(layout_.total), length2_(layout_.total),
           all_(WetRows<Dim>::whole(layout_)), most_(static_cast<std::size_t>(layout_.planes())) {
         model.validate();
+        if constexpr (requires { model.largest(0.0); }) {
+            if (among_bodies) model.validate_among_bodies();
+            bound_ = Field<State>(layout_.total);
+            beside_bodies_ = model.beside_bodies;
+        }
         for (int a = 0; a < Dim; ++a) {
             per_size_[a] = Table(grid, [&](int k) { return 1 / grid.size(a, a == vertical ? k : 0); });
             per_gap_[a] = Table(grid, [&](int k) { return 1 / grid.gap(a, a == vertical ? k : 0); });
         }
         const auto set_length = [&](const CellNumber<Dim>& cell, Offset c, const Point<Dim>& middle) {
             const Real size = std::pow(grid.volume(cell), 1.0 / Dim);
-            length2_[c] = static_cast<State>(square(model.length(size, wall_distance(grid, params, middle))));
+            const Real d = wall_distance(grid, params, middle);
+            length2_[c] = static_cast<State>(square(model.length(size, d)));
+            if constexpr (requires { model.largest(d); }) bound_[c] = static_cast<State>(model.largest(d));
         };
         grid.for_each([&](const CellNumber<Dim>& cell, Offset c) { set_length(cell, c, grid.centre(cell)); });
         if (walls)
@@ -78,6 +90,10 @@ public:
                 // Whole packs, as they were set.
                 for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
                     for (int k = i; k < i + lanes; ++k) nu[k] = length2[k] * std::sqrt(nu[k]);
+                if (bound_.size() > 0) {
+                    const State* const __restrict bound = bound_.data() + start;
+                    for (int i = r.begin; i < r.end; ++i) nu[i] = std::min(nu[i], bound[i]);
+                }
                 if (held) {
                     const Real* const __restrict h = held->data() + start;
                     for (int i = r.begin; i < r.end; ++i) nu[i] = h[i] > least_held ? nu[i] : State(0);
@@ -93,6 +109,31 @@ public:
             const Offset out = high ? layout_.stride[a] : -layout_.stride[a];
             sides.along_side({a, high, rows}, [&](Offset c, std::size_t) { field_[c + out] = -field_[c]; });
         });
+    }
+
+    /// Beside what solids cover of cells, across faces, edges and corners, eddies are those that a cell does
+    /// not resolve, from here on.
+    void make_way(const Grid<Dim>& grid, const Sides<Dim>& sides,
+                  std::span<const SolidPart> solids) requires(Dim == 3) {
+        for (const Shortened& last : shortened_) length2_[last.cell] = last.length2;
+        shortened_.clear();
+        if (!std::isfinite(beside_bodies_)) return;
+        for (const SolidPart& part : solids) {
+            const CellNumber<3> middle = layout_.number(part.cell);
+            PerAxis<std::array<Offset, 3>, 3> beside{};
+            for (int a = 0; a < 3; ++a)
+                for (int n = -1; n <= 1; ++n)
+                    beside[a][at(n + 1)] =
+                        layout_.stride[a] * (around(grid, sides, a, middle[a] + n) - middle[a]);
+            const Real longest = beside_bodies_ * std::cbrt(grid.volume(middle));
+            const auto most = static_cast<State>(square(longest));
+            for (const Offset i : beside[0])
+                for (const Offset j : beside[1])
+                    for (const Offset k : beside[2]) {
+                        const Offset c = part.cell + i + j + k;
+                        if (length2_[c] > most) shortened_.push_back({c, std::exchange(length2_[c], most)});
+                    }
+        }
     }
 
     Field<State>& field() noexcept { return field_; }
@@ -111,6 +152,18 @@ private:
     struct Pair {
         int a, b, number;
     };
+
+    struct Shortened {
+        Offset cell;
+        State length2;
+    };
+
+    static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+    /// Of the cells along a: beyond a side the last one, or where it comes in again.
+    static int around(const Grid<Dim>& grid, const Sides<Dim>& sides, int a, int i) noexcept {
+        const int n = grid.cells(a);
+        return sides.periodic(a) ? (i + n) % n : std::clamp(i, 0, n - 1);
+    }
 
     static Real wall_distance(const Grid<Dim>& grid, const GridFluidParams<Dim>& params,
                               const Point<Dim>& x) {
@@ -205,8 +258,11 @@ private:
     }
 
     Layout<Dim> layout_;
-    Field<State> field_, length2_;     ///< nu_t [m2/s], l^2 [m2]
-    std::vector<Field<State>> known_;  ///< [pair of axes]; none: all edges count
+    Field<State> field_, length2_;  ///< nu_t [m2/s], l^2 [m2]
+    Field<State> bound_;            ///< of nu_t [m2/s]; may be none
+    Real beside_bodies_ = std::numeric_limits<Real>::infinity();
+    std::vector<Shortened> shortened_;  ///< l^2 of cells beside solids, as it was without them
+    std::vector<Field<State>> known_;   ///< [pair of axes]; none: all edges count
     PerAxis<Table, Dim> per_size_, per_gap_;
     WetRows<Dim> all_;
     std::vector<State> most_;  ///< [plane]

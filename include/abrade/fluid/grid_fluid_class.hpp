@@ -294,7 +294,8 @@ private:
             walls = water_->walls();
             heights_ = detail::SurfaceHeights<Dim>(*grid_, params_.sides.periodic_axes(), walls);
         }
-        if constexpr (Turbulence::has_eddies) eddies_.emplace(*grid_, params_, turbulence_, walls);
+        if constexpr (Turbulence::has_eddies)
+            eddies_.emplace(*grid_, params_, turbulence_, walls, Solids::present);
     }
 
     /// Walls, and cells that are too small to stay open, take some of the faces that water comes through.
@@ -339,6 +340,8 @@ private:
     }
 
     void find_eddies() {
+        if constexpr (Turbulence::has_eddies && Solids::present)
+            eddies_->make_way(*grid_, params_.sides, solids_.resolved_parts());
         if constexpr (Turbulence::has_eddies) eddies_->find(velocity_, sides_, rows(), held());
     }
 

@@ -41,7 +41,8 @@ struct FlowStage {
 /// with, and that of the mixture of water and solid, which carries and has no divergence. A step asks
 /// - `mix_last`, `seep`: from the water's velocity that of the mixture, or that of the water times its share of a face,
 ///   as the last step left them; `fluxes`: the solids' part of it;
-/// - `place`: where they stand at its end, and `parts`, what they cover of cells there;
+/// - `place`: where they stand at its end, and `parts`, what they cover of cells there; of `resolved_parts` the water
+///   flows around the shape;
 /// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface among them,
 ///   before the operator is built and after it;
 /// - `mix`: the mixture's velocity from a water's that is not known to the end yet;
@@ -65,6 +66,7 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     still.mix(u);
     still.mix_last(u), still.seep(u);
     { still.parts() } -> std::convertible_to<std::span<const SolidPart>>;
+    { still.resolved_parts() } -> std::convertible_to<std::span<const SolidPart>>;
     { still.fluxes() } -> std::convertible_to<std::span<const SolidFlux>>;
     s.force(u, p, FlowStage{});
     s.push(p, Real{}), s.push(e, Real{});

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <string_view>
 
 namespace abrade {
 
 /// A mixing length for every place: `length(Delta, d)` [m], Delta the size of the cell, d its distance from
-/// the nearest wall [m]; or none (`has_eddies` false), then no instruction is run for it.
+/// the nearest wall [m]; or none (`has_eddies` false), then no instruction is run for it. A model of the mean
+/// flow also has what that flow's nu_t is at most, `largest(d)` [m2/s], and the share of Delta that eddies
+/// have at most beside bodies that the water flows around, `beside_bodies` [-].
 // clang-format off
 template <class T>
 concept TurbulenceModel = std::copyable<T> && requires {
@@ -56,23 +59,46 @@ struct Smagorinsky {
 };
 
 /// Mean flow of a channel, all eddies modelled: L. Prandtl's mixing length (doi 10.1002/zamm.19250050212)
-///   nu_t = l^2 |S|, l = kappa d sqrt(1 - d / h),
-/// with which the profile of uniform flow of depth h is logarithmic and nu_t the parabola kappa u* d
-/// (1 - d / h). Does not depend on the grid. For coarse grids, and in two dimensions; no model of wakes.
+///   nu_t = l^2 |S|, l = kappa d sqrt(1 - d / h), at most kappa u* d (1 - d / h),
+/// with which the profile of uniform flow of depth h is logarithmic and nu_t that parabola. Does not depend
+/// on the grid. For coarse grids, and in two dimensions.
+/// It is no model of wakes: a body's strain is a hundred times the mean flow's, eddies of the water's depth
+/// would hold the body fast (drag of stones in a channel: four to nine times too large). So among bodies it
+/// asks for u*, and beside them eddies are those that a cell does not resolve, l <= C_s Delta.
 struct MixingLength {
     static constexpr std::string_view name = "MixingLength";
     static constexpr bool has_eddies = true;
-    Real depth = 0;      ///< h [m]
-    Real karman = 0.41;  ///< kappa [-]
+    Real depth = 0;  ///< h [m]
+    /// u* = sqrt(g h S) of uniform flow [m/s]. Infinite: nu_t has no bound.
+    Real friction_velocity = std::numeric_limits<Real>::infinity();
+    Real karman = 0.41;        ///< kappa [-]
+    Real beside_bodies = 0.1;  ///< C_s, as Smagorinsky's in channels [-]
 
     void validate() const {
         require_positive(depth, "MixingLength.depth", "m", "give the depth of uniform flow");
+        require(friction_velocity > 0,
+                {"MixingLength.friction_velocity", "> 0", "m/s",
+                 "sqrt(g depth slope) of uniform flow; infinity sets no bound"},
+                friction_velocity);
         require_positive(karman, "MixingLength.karman", "", "0.41");
+        require_not_negative(beside_bodies, "MixingLength.beside_bodies", "");
     }
     Real length(Real /*size*/, Real wall_distance) const noexcept {
-        const Real d = std::clamp(wall_distance, Real(0), depth);
-        return karman * d * std::sqrt(1 - d / depth);
+        return karman * within(wall_distance) * std::sqrt(1 - within(wall_distance) / depth);
     }
+    Real largest(Real wall_distance) const noexcept {
+        const Real d = within(wall_distance), parabola = karman * d * (1 - d / depth);
+        return parabola > 0 ? friction_velocity * parabola : 0;
+    }
+    /// Throws InputError: what bodies need.
+    void validate_among_bodies() const {
+        require_finite(
+            friction_velocity, "MixingLength.friction_velocity, among bodies", "m/s",
+            "give sqrt(g depth slope) of uniform flow, or their wakes make nu_t a hundred times too large");
+    }
+
+private:
+    Real within(Real wall_distance) const noexcept { return std::clamp(wall_distance, Real(0), depth); }
 };
 
 static_assert(TurbulenceModel<NoTurbulence> && TurbulenceModel<Smagorinsky> && TurbulenceModel<MixingLength>);

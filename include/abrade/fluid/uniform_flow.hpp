@@ -84,6 +84,9 @@ public:
     Real bed_shear() const noexcept {  ///< rho g R_h S [Pa]
         return params_.density * standard_gravity * hydraulic_radius() * params_.section.slope;
     }
+    Real friction_velocity() const noexcept {  ///< u* = sqrt(g h S) at the centre line [m/s]
+        return std::sqrt(standard_gravity * depth_ * params_.section.slope);
+    }
     Real froude() const noexcept {  ///< with the hydraulic depth A / surface width [-]
         const Invert& s = params_.section;
         const Real half = depth_ > s.bed_height(0.5 * s.width)
