@@ -15,6 +15,7 @@ struct Idle {
     void mix_last(FaceField<3>&) const {}
     void seep(FaceField<3>&) const {}
     std::vector<SolidPart> parts() const { return {}; }
+    std::vector<SolidPart> resolved_parts() const { return {}; }
     std::span<const SolidFlux> fluxes() const { return {}; }
     Real water_share(const OpenFace&) const { return 1; }
     void keep_wet(const Poisson<3>&) {}

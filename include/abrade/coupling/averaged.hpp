@@ -41,18 +41,18 @@ public:
     void force(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
                const Field<Real>& old, const FlowStage& stage) {
         for_each(cloud, [&](std::size_t n) { drag_alone(n, faces, cloud, bodies, old, stage); });
-        for (CoveredFace& f : faces) f.rate = f.target = f.given = 0;
+        for_each_face(faces, [](CoveredFace& f) { f.rate = f.target = f.given = 0; });
         for_each_part(cloud, [&](std::size_t n, int axis, const SpreadPart& part) {
             CoveredFace& f = faces[part.face];
             const Real drags = motion_[n].rate * part.share * kept(f);
             f.rate += drags, f.target += drags * motion_[n].v[axis];
             f.given += part.share * motion_[n].handed[axis];
         });
-        for (CoveredFace& f : faces) {
+        for_each_face(faces, [&](CoveredFace& f) {
             const Real stiff = stage.dt * f.rate / std::max(f.water, least_water);
             f.held = stiff / (1 + stiff);
             f.target = f.rate > 0 ? f.target / f.rate : 0;
-        }
+        });
         for_each(cloud, [&](std::size_t n) {
             Motion& m = motion_[n];
             for (int axis = 0; axis < 3; ++axis)
@@ -126,17 +126,24 @@ private:
             },
             block_of_bodies);
     }
+    static void for_each_face(std::span<CoveredFace> faces, auto&& visit) {
+        parallel_for(static_cast<Index>(faces.size()),
+                     [&](Index i) { visit(faces[static_cast<std::size_t>(i)]); });
+    }
+    /// Bodies share faces, axes do not.
     static void for_each_part(const SpreadCloud& cloud, auto&& visit) {
-        for (std::size_t n = 0; n < cloud.count(); ++n)
-            for (int axis = 0; axis < 3; ++axis)
+        parallel_tasks(3, [&](Index task) {
+            const int axis = static_cast<int>(task);
+            for (std::size_t n = 0; n < cloud.count(); ++n)
                 for (const SpreadPart& part : cloud.parts(n, axis)) visit(n, axis, part);
+        });
     }
     void carry(std::span<CoveredFace> faces, const SpreadCloud& cloud) const {
-        for (CoveredFace& f : faces) f.solid = 0;
+        for_each_face(faces, [](CoveredFace& f) { f.solid = 0; });
         for_each_part(cloud, [&](std::size_t n, int axis, const SpreadPart& part) {
             faces[part.face].solid += part.share * motion_[n].v[axis];
         });
-        for (CoveredFace& f : faces) f.solid /= f.share;
+        for_each_face(faces, [](CoveredFace& f) { f.solid /= f.share; });
     }
     static Vec3 pressed_by(std::size_t n, std::span<const CoveredFace> faces, const SpreadCloud& cloud,
                            const Field<Real>& pressure, Real density) noexcept {

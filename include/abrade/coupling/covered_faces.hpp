@@ -64,14 +64,13 @@ public:
             },
             block_of_bodies);
         spread(grid, sides, bodies, std::move(small), open_area);
-        faces_.clear(), first_.assign(1, 0);
-        for (std::size_t b = 0; b < covers_.size(); ++b) {
-            for (const SolidFace& f : covers_[b].faces) {
-                faces_.push_back({f});
-                faces_.back().body = b;
-            }
-            first_.push_back(faces_.size());
-        }
+        first_.assign(1, 0);
+        for (const SolidCover& cover : covers_) first_.push_back(first_.back() + cover.faces.size());
+        faces_.resize(first_.back());
+        parallel_for(static_cast<Index>(covers_.size()), [&](Index b) {
+            std::size_t i = first_[at(b)];
+            for (const SolidFace& f : covers_[at(b)].faces) (faces_[i++] = {f}).body = at(b);
+        });
         sort_by_plane(grid.layout().planes());
     }
 
@@ -92,27 +91,35 @@ public:
                 parts.insert(parts.end(), cover.parts.begin(), cover.parts.end());
         return parts;
     }
-    /// In an order that does not depend on threads.
+    /// In parallel.
+    void for_each(auto&& visit) {
+        parallel_for(static_cast<Index>(faces_.size()), [&](Index i) { visit(faces_[at(i)]); });
+    }
+    /// In an order that does not depend on threads: bodies may share a face.
     void on_plane(int plane, auto&& visit) const {
         if (by_plane_.empty()) return;
         for (std::size_t i = plane_start_[at(plane)]; i < plane_start_[at(plane + 1)]; ++i)
             visit(faces_[by_plane_[i]]);
     }
+    /// Plane by plane in parallel, each of the visits to all faces of a plane before the next.
+    void by_planes(auto&&... visits) { visit_planes(*this, visits...); }
+    void by_planes(auto&&... visits) const { visit_planes(*this, visits...); }
 
     /// Takes from what faces conduct what bodies cover. `surface`: faces at which the pressure is 0.
     void close(Poisson<3>& m, std::span<const OpenFace> surface) {
         const auto share = [&](const SolidFace& f) {
             return static_cast<Real>(m.face[f.axis][f.face]) * f.gap / f.area;
         };
-        for (CoveredFace& f : faces_) f.open = share(f), f.per_gap = 1 / f.gap;
-        for (const CoveredFace& f : faces_) {
-            const Real left = share(f) - f.share;
-            m.face[f.axis][f.face] = left > least ? static_cast<float>(left * f.area / f.gap) : 0.0f;
-        }
-        for (CoveredFace& f : faces_) {
-            f.water = share(f);
-            f.covered = f.open > 0 ? std::min(f.share / f.open, 1.0) : 0;
-        }
+        by_planes([&](CoveredFace& f) { f.open = share(f), f.per_gap = 1 / f.gap; },
+                  [&](const CoveredFace& f) {
+                      const Real left = share(f) - f.share;
+                      m.face[f.axis][f.face] =
+                          left > least ? static_cast<float>(left * f.area / f.gap) : 0.0f;
+                  },
+                  [&](CoveredFace& f) {
+                      f.water = share(f);
+                      f.covered = f.open > 0 ? std::min(f.share / f.open, 1.0) : 0;
+                  });
         close_surface(surface);
     }
     /// What is left of a face at the surface [-].
@@ -153,6 +160,23 @@ private:
 
     static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
     static Offset key(int axis, Offset face) noexcept { return 4 * face + axis; }
+
+    static void visit_planes(auto& self, auto&... visits) {
+        constexpr Index planes_at_once = 4;  // stones lie in heaps
+        parallel_blocks(
+            static_cast<Index>(self.plane_start_.size()) - 1,
+            [&](Index, Index first, Index last) {
+                for (Index plane = first; plane < last; ++plane) {
+                    const auto all = [&](auto& visit) {
+                        for (std::size_t i = self.plane_start_[at(plane)];
+                             i < self.plane_start_[at(plane + 1)]; ++i)
+                            visit(self.faces_[self.by_plane_[i]]);
+                    };
+                    (all(visits), ...);
+                }
+            },
+            planes_at_once);
+    }
 
     void sort_by_plane(int planes) {
         plane_start_.assign(at(planes) + 1, 0);

@@ -98,27 +98,27 @@ public:
     void keep_wet(const Poisson<3>& m) { faces_.keep_wet(m); }
 
     void mix(FaceField<3>& u) const {
-        for (const CoveredFace& f : faces_.all()) {
+        faces_.by_planes([&](const CoveredFace& f) {
             Real& value = u[f.axis][f.face];
             value += f.covered * (f.solid - value);
-        }
+        });
     }
 
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         stage_ = stage;
-        for (CoveredFace& f : faces_.all()) {
+        faces_.for_each([&](CoveredFace& f) {
             f.velocity = u[f.axis][f.face] - (stage_.pushed ? 0 : stage_.dt * f.gradient(pressure));
             f.mass = mass_of(f);
-        }
+        });
         parallel_for_resolved([&](std::size_t b) { find_motion(b, pressure); });
         averaged_.force(faces_.of_cloud(), faces_.cloud(), bodies_, pressure, stage_);
-        for (const CoveredFace& f : faces_.all())
-            u[f.axis][f.face] += f.held * (f.target - f.velocity) + f.given;
-        for (CoveredFace& f : faces_.all()) f.velocity = u[f.axis][f.face];
-        for (CoveredFace& f : faces_.all()) {
-            u[f.axis][f.face] += f.covered * (f.solid - f.velocity);
-            if (stage_.pushed || f.leaves) f.velocity += stage_.dt * f.gradient(pressure);
-        }
+        faces_.by_planes(
+            [&](const CoveredFace& f) { u[f.axis][f.face] += f.held * (f.target - f.velocity) + f.given; },
+            [&](CoveredFace& f) { f.velocity = u[f.axis][f.face]; },
+            [&](CoveredFace& f) {
+                u[f.axis][f.face] += f.covered * (f.solid - f.velocity);
+                if (stage_.pushed || f.leaves) f.velocity += stage_.dt * f.gradient(pressure);
+            });
     }
 
     template <class Number>
@@ -158,16 +158,18 @@ public:
     }
 
     void settle(FaceField<3>& u, Field<Real>& pressure) {
-        for (const CoveredFace& f : faces_.all())
+        faces_.by_planes([&](const CoveredFace& f) {
             if (f.water > 0) u[f.axis][f.face] = f.velocity - stage_.dt * f.gradient(pressure);
-        for (std::size_t b = 0; b < bodies_.size(); ++b)
-            for (CoveredFace& f : faces_.of(b)) f.solid = detail::along(f, motion_[b].q);
-        fluxes_.clear(), beyond_.clear();
-        for (const CoveredFace& f : faces_.all()) {
-            if (f.covered == 0) continue;
-            fluxes_.push_back({f.face, f.axis, f.covered * f.solid});
-            beyond_.push_back(f.covered * (f.solid - u[f.axis][f.face]));
-        }
+        });
+        const std::span<CoveredFace> all = faces_.all();
+        fluxes_.resize(all.size()), beyond_.resize(all.size());
+        parallel_for(static_cast<Index>(all.size()), [&](Index n) {
+            const auto i = static_cast<std::size_t>(n);
+            CoveredFace& f = all[i];
+            if (f.body < bodies_.size()) f.solid = detail::along(f, motion_[f.body].q);
+            fluxes_[i] = {f.face, f.axis, f.covered * f.solid};
+            beyond_[i] = f.covered * (f.solid - u[f.axis][f.face]);
+        });
         std::vector<Memory> next;
         next.reserve(bodies_.size());
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -264,7 +266,7 @@ private:
         Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
         Six brought = Six::Zero(), within = Six::Zero();
         for (CoveredFace& f : faces_.of(b)) {
-            const Real rate = params_.friction * stage_.viscosity * dt / std::pow(f.volume(), 2.0 / 3);
+            const Real rate = params_.friction * stage_.viscosity * dt / square(std::cbrt(f.volume()));
             const Real stiff = rate * f.share, left = 1 - f.share;
             f.held = stiff > 0 ? stiff / (left + stiff) : 0;
             if (f.open > 0) f.held = std::max(f.held, 1 - f.water / (sliver * f.open));

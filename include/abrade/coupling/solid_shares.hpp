@@ -112,16 +112,26 @@ public:
         for (int a = 0; a < 3; ++a) find_shares(a), list_faces(a, cover);
         list_cells(cover);
         find_shares(of_cells);
-        for_each([&](const Number& n, std::size_t k) {
-            if (kind_[of_cells][k] == Kind::open && share_[of_cells][k] > 0)
+        for (const Volume& v : covered_)
+            if (kind_[of_cells][v.k] == Kind::open && share_[of_cells][v.k] > 0)
                 cover.parts.push_back(
-                    {grid.layout().at(inside_box(n)), share_[of_cells][k] * extent(of_cells, n).prod()});
-        });
+                    {grid.layout().at(inside_box(v.n)), share_[of_cells][v.k] * v.size.prod()});
     }
 
 private:
     static constexpr int of_cells = 3;  ///< after the three axes
     using Number = CellNumber<3>;
+    /// Of a cell along an axis: its lower face, its middle, its size, how far its middle is from the last
+    /// [m].
+    struct Line {
+        Real face, centre, size, gap;
+    };
+    /// A control volume that the body covers some of; k in `share_`, [m].
+    struct Volume {
+        Number n;
+        std::size_t k;
+        Vec3 centre, size;
+    };
     enum class Kind : char {
         closed,
         open,
@@ -145,6 +155,10 @@ private:
             length_[a] = cell_at(a, high) + 3 - first_[a];
             stride_[a] = count;
             count *= static_cast<std::size_t>(length_[a]);
+            auto& lines = lines_[a];
+            lines.clear();
+            for (int i = first_[a]; i < first_[a] + length_[a]; ++i)
+                lines.push_back({face(a, i), centre(a, i), size(a, i), centre(a, i) - centre(a, i - 1)});
         }
         for (auto& share : share_) share.assign(count, 0);
         for (auto& kind : kind_) kind.assign(count, Kind::closed);
@@ -159,13 +173,16 @@ private:
     /// Centre and size of the control volume of a face, or of a cell.
     Vec3 place(int axis, const Number& n) const noexcept {
         Vec3 x;
-        for (int a = 0; a < 3; ++a) x[a] = a == axis ? face(a, n[a]) : centre(a, n[a]);
+        for (int a = 0; a < 3; ++a) x[a] = a == axis ? line(a, n).face : line(a, n).centre;
         return x;
     }
     Vec3 extent(int axis, const Number& n) const noexcept {
         Vec3 s;
-        for (int a = 0; a < 3; ++a) s[a] = a == axis ? centre(a, n[a]) - centre(a, n[a] - 1) : size(a, n[a]);
+        for (int a = 0; a < 3; ++a) s[a] = a == axis ? line(a, n).gap : line(a, n).size;
         return s;
+    }
+    const Line& line(int a, const Number& n) const noexcept {
+        return lines_[a][static_cast<std::size_t>(n[a] - first_[a])];
     }
     Number inside_box(const Number& n) const noexcept {
         Number inside;
@@ -201,13 +218,14 @@ private:
         Real radius = 0;
         Vec3 from = Vec3::Zero();  ///< that sphere's centre [m]
     };
-    Near nearest(const Vec3& x) const noexcept {
-        Near near;
+    /// Of spheres whose surface is no farther than `reach`.
+    Near nearest(const Vec3& x, Real reach) const noexcept {
+        Near near{.distance = reach};
         for (const Sphere& s : body_->spheres) {
             const Vec3 from = x - s.centre;
-            const Real radius = s.radius + grown_;
-            const Real distance = from.norm() - radius;
-            if (distance < near.distance) near = {distance, radius, from};
+            const Real radius = s.radius + grown_, within = radius + near.distance,
+                       square2 = from.squaredNorm();
+            if (within > 0 && square2 < square(within)) near = {std::sqrt(square2) - radius, radius, from};
         }
         return near;
     }
@@ -224,6 +242,7 @@ private:
 
     void find_shares(int axis) {
         auto& share = share_[axis];
+        covered_.clear();
         const int b = (axis + 1) % 3, c = (axis + 2) % 3;
         const Real unit = std::cbrt(body_->volume);  // lest the equations be as uneven as metres make them
         const auto terms = [&](const Vec3& x) {
@@ -231,41 +250,42 @@ private:
             return Vec3(1, arm[b], arm[c]);
         };
         for_each([&](const Number& n, std::size_t k) {
-            const Vec3 s = extent(axis, n);
-            const Near near = nearest(place(axis, n));
-            if (near.distance > 0.6 * s.norm()) return;
+            const Vec3 x = place(axis, n), s = extent(axis, n);
+            const Near near = nearest(x, 0.6 * s.norm());
+            if (near.radius == 0) return;
             kind_[axis][k] = kind(axis, n);
-            if (kind_[axis][k] != Kind::closed) share[k] = share_of(near, s);
+            if (kind_[axis][k] == Kind::closed) return;
+            share[k] = share_of(near, s);
+            if (share[k] > 0) covered_.push_back({n, k, x, s});
         });
         constexpr int most_rounds =
             4;  // one, but where a floor takes so much that shares are at their bounds
         for (int round = 0; round < most_rounds; ++round) {
             Mat3 matrix = 1e-12 * body_->volume * Mat3::Identity();
             Vec3 lacks(body_->volume, 0, 0);
-            for_each([&](const Number& n, std::size_t k) {
-                if (share[k] == 0) return;
-                const Vec3 x = terms(place(axis, n));
-                const Real volume = extent(axis, n).prod();
-                lacks -= share[k] * volume * x;
-                matrix += share[k] * (1 - share[k]) * volume * x * x.transpose();
-            });
+            for (const Volume& v : covered_) {
+                const Vec3 x = terms(v.centre);
+                const Real covers = share[v.k] * v.size.prod();
+                lacks -= covers * x;
+                matrix += covers * (1 - share[v.k]) * x * x.transpose();
+            }
             if (lacks.norm() < 1e-14 * body_->volume) return;
             const Vec3 by = matrix.ldlt().solve(lacks);
-            for_each([&](const Number& n, std::size_t k) {
-                if (share[k] == 0 || share[k] == 1) return;
-                share[k] += share[k] * (1 - share[k]) * std::clamp(by.dot(terms(place(axis, n))), -1.0, 1.0);
-            });
+            for (const Volume& v : covered_) {
+                Real& of = share[v.k];
+                if (of < 1) of += of * (1 - of) * std::clamp(by.dot(terms(v.centre)), -1.0, 1.0);
+            }
         }
     }
 
+    /// After `find_shares`.
     void list_faces(int axis, SolidCover& cover) const {
         const Layout<3>& l = grid.layout();
-        for_each([&](const Number& n, std::size_t k) {
-            if (kind_[axis][k] != Kind::open || share_[axis][k] == 0) return;
+        for (const auto& [n, k, centre, s] : covered_) {
+            if (kind_[axis][k] != Kind::open || share_[axis][k] == 0) continue;
             const Number inside = inside_box(n);
             Number below = inside;
             below[axis] = wrapped(axis, inside[axis] - 1);
-            const Vec3 s = extent(axis, n);
             cover.faces.push_back({.face = l.at(inside),
                                    .low = l.at(below),
                                    .axis = axis,
@@ -273,8 +293,8 @@ private:
                                    .share = share_[axis][k],
                                    .area = s.prod() / s[axis],
                                    .gap = s[axis],
-                                   .arm = place(axis, n) - body_->position});
-        });
+                                   .arm = centre - body_->position});
+        }
     }
 
     void list_cells(SolidCover& cover) const {
@@ -289,6 +309,7 @@ private:
                     const std::size_t at = k + static_cast<std::size_t>(up) * stride_[a];
                     const Real share = kind_[a][at] == Kind::open ? share_[a][at] : 0;
                     all &= share == 1, none &= share == 0;
+                    if (share == 0) continue;
                     Number of = n;
                     of[a] += up;
                     const Vec3 s = extent(a, of);
@@ -305,6 +326,8 @@ private:
     Real grown_ = 0, scale_ = 1;  ///< of a small body's spheres [m], of its shares [-]
     Number first_{}, length_{};
     PerAxis<std::size_t, 3> stride_{};
+    PerAxis<std::vector<Line>, 3> lines_;
+    std::vector<Volume> covered_;          ///< in the order of k
     PerAxis<std::vector<Real>, 4> share_;  ///< of the faces across each axis, of cells
     PerAxis<std::vector<Kind>, 4> kind_;
 };

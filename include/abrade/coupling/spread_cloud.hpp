@@ -132,20 +132,30 @@ private:
         constexpr std::uint32_t none = ~std::uint32_t{0};
         if (number_[0].empty())
             for (auto& numbers : number_) numbers.assign(static_cast<std::size_t>(l.total), none);
-        for (Spread& one : spread_)
-            for (int axis = 0; axis < 3; ++axis)
+        PerAxis<std::vector<SolidFace>, 3> found;  // axes share no face
+        parallel_tasks(3, [&](Index task) {
+            const auto axis = static_cast<std::size_t>(task);
+            auto& faces = found[axis];
+            for (Spread& one : spread_)
                 for (std::size_t i = 0; i < one.parts[axis].size(); ++i) {
                     const Offset face = one.at[axis][i];
                     std::uint32_t& number = number_[axis][static_cast<std::size_t>(face)];
                     if (number == none) {
-                        number = static_cast<std::uint32_t>(cover.faces.size());
-                        cover.faces.push_back(face_of(in, axis, face));
+                        number = static_cast<std::uint32_t>(faces.size());
+                        faces.push_back(face_of(in, static_cast<int>(axis), face));
                     }
                     one.parts[axis][i].face = number;
-                    cover.faces[number].share += one.parts[axis][i].share;
+                    faces[number].share += one.parts[axis][i].share;
                 }
+            for (const SolidFace& f : faces) number_[axis][static_cast<std::size_t>(f.face)] = none;
+        });
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto before = static_cast<std::uint32_t>(cover.faces.size());
+            cover.faces.insert(cover.faces.end(), found[axis].begin(), found[axis].end());
+            for (Spread& one : spread_)
+                for (SpreadPart& part : one.parts[axis]) part.face += before;
+        }
         for (const SolidFace& f : cover.faces) {
-            number_[f.axis][static_cast<std::size_t>(f.face)] = none;
             const Real half = f.share * f.volume() / 6;  // of each axis' a third
             cover.parts.push_back({f.face, half}), cover.parts.push_back({f.low, half});
         }

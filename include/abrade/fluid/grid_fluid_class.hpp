@@ -347,7 +347,7 @@ private:
 
     /// What carries the water, from its velocity.
     void mix(const FaceField<Dim, State>& u, auto&& with_solids) requires Solids::present {
-        mixture_ = u;
+        parallel_tasks(Dim, [&](Index a) { mixture_[static_cast<int>(a)] = u[static_cast<int>(a)]; });
         with_solids();
         sides_.fill(mixture_);
     }
