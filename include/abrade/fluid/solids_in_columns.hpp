@@ -68,7 +68,8 @@ public:
     /// How high a volume of water stands in a column with solids [m3]. Where they cover the most of its area
     /// at the level `around` [m] of the columns beside it, it stands at that level, inside the solid: so the
     /// water below a solid that pierces the surface has the pressure of its depth, and what it has too much
-    /// or too little is the pressure's to drive out.
+    /// or too little is the pressure's to drive out. So it is with what would rise beside a solid that hangs
+    /// over, where it finds little room: a litre would stand metres high there.
     typename HeightColumns<Dim>::Surface surface(const HeightColumns<Dim>& columns, int plane, int j,
                                                  Real liquid, Real around) const noexcept {
         constexpr Real covers = 0.75;
@@ -78,20 +79,24 @@ public:
         const auto share_below = [&](int k) {
             return columns.share_below(columns.cell(plane, j, k), k, around);
         };
+        const auto covered = [&](int k) { return k < columns.levels() && volume(n, k) > covers * open(k); };
+        const auto hangs_over = [&](int k) { return covered(k) && share_below(k) == 0; };
         int k = columns.first(n);
         Real left = liquid;
         for (; k < columns.levels() && share_below(k) == 1; ++k) left -= room(k);
-        if (k < columns.levels() && volume(n, k) > covers * open(k)) {
+        if (covered(k)) {
             const Real share = share_below(k);
             const Real height = columns.height_in(columns.cell(plane, j, k), k, share);
             return {k, share, height, left - share * room(k)};
         }
         left = liquid;
-        for (k = columns.first(n); k < columns.levels(); left -= room(k++))
-            if (left <= room(k) && room(k) > 0) {
-                const Real share = left / room(k);
-                return {k, share, columns.height_in(columns.cell(plane, j, k), k, share)};
-            }
+        for (k = columns.first(n); k < columns.levels(); left -= room(k++)) {
+            const bool holds = left <= room(k) && room(k) > 0;
+            if (!holds && !hangs_over(k + 1)) continue;
+            const Real share = holds ? left / room(k) : 1;
+            return {k, share, columns.height_in(columns.cell(plane, j, k), k, share),
+                    holds ? 0 : left - room(k)};
+        }
         return columns.surface(plane, j, columns.capacity(n), 0);
     }
 
