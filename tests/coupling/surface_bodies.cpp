@@ -77,8 +77,12 @@ TEST_CASE("a fixed ball that pierces the surface has the buoyancy of what is bel
 }
 
 TEST_CASE("a ball that rises swims as deep as Archimedes has it; no water is lost") {
-    for (const auto& [ratio, from] : {std::pair{0.05, 0.5}, std::pair{0.05, 0.48}, std::pair{0.1, 0.5},
-                                      std::pair{0.3, 0.5}, std::pair{0.5, 0.5}}) {
+    struct Start {
+        Real ratio, z;
+    };
+    for (const Start& start :
+         {Start{0.05, 0.5}, Start{0.05, 0.48}, Start{0.1, 0.5}, Start{0.3, 0.5}, Start{0.5, 0.5}}) {
+        const Real ratio = start.ratio, from = start.z;
         Pool water = pool();
         Ball ball({0.515, 0.49, from}, 0.1, 1000 * ratio);
         advance(water, ball, 0.05);
