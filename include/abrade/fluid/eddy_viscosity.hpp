@@ -7,6 +7,7 @@
 #include <abrade/fluid/turbulence.hpp>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
