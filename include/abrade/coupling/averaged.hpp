@@ -46,7 +46,7 @@ public:
             CoveredFace& f = faces[part.face];
             const Real drags = motion_[n].rate * part.share * kept(f);
             f.rate += drags, f.target += drags * motion_[n].v[axis];
-            f.given += part.share * motion_[n].handed[axis];
+            f.given += part.share * motion_[n].pushed[axis];
         });
         for_each_face(faces, [&](CoveredFace& f) {
             const Real stiff = stage.dt * f.rate / std::max(f.water, least_water);
@@ -75,18 +75,18 @@ public:
             Motion& m = motion_[n];
             const Vec3 pressed = pressed_by(n, faces, cloud, pressure, stage.density);
             if (body.inverse_mass > 0)
-                m.v = (m.begun + m.lead + stage.dt * (m.by_drag + more * pressed)) /
+                m.v = (m.begun + m.added_momentum + stage.dt * (m.by_drag + more * pressed)) /
                       (1 / body.inverse_mass + m.added);
-            const Vec3 by_added = added_mass_ * pressed + (m.lead - m.added * m.v) / stage.dt;
+            const Vec3 by_added = added_mass_ * pressed + (m.added_momentum - m.added * m.v) / stage.dt;
             body.velocity = m.v;
             if (!covers[cloud.which()[n]].cut) body.load = {pressed + m.by_drag + by_added, Vec3::Zero()};
             m.pressed = pressed;
-            m.owed = stage.dt * by_added - m.owed;
+            m.reaction = stage.dt * by_added - m.reaction;
         });
         memory_.clear();
         for (std::size_t n = 0; n < motion_.size(); ++n)
             memory_.push_back(
-                {bodies[cloud.which()[n]].id, motion_[n].v, motion_[n].pressed, motion_[n].owed});
+                {bodies[cloud.which()[n]].id, motion_[n].v, motion_[n].pressed, motion_[n].reaction});
         std::ranges::sort(memory_, {}, &Memory::id);
     }
 
@@ -94,23 +94,23 @@ public:
 
 private:
     struct Motion {
-        Vec3 v = Vec3::Zero();        ///< [m/s]
-        Vec3 begun = Vec3::Zero();    ///< momentum by all but the water [kg m/s]
-        Vec3 lead = Vec3::Zero();     ///< what added mass had, and its weight gives [kg m/s]
-        Vec3 by_drag = Vec3::Zero();  ///< [N]
-        Vec3 pressed = Vec3::Zero();  ///< by the pressure, without added mass [N]
-        Vec3 owed = Vec3::Zero();     ///< by the water to added mass [kg m/s]
-        Vec3 handed = Vec3::Zero();   ///< to the water for that, times its share [m/s]
-        Real rate = 0;                ///< beta / (rho V) [1/s]
-        Real added = 0;               ///< C_m rho V, as far as there is water [kg]
+        Vec3 v = Vec3::Zero();               ///< [m/s]
+        Vec3 begun = Vec3::Zero();           ///< momentum by all but the water [kg m/s]
+        Vec3 added_momentum = Vec3::Zero();  ///< of the added mass, with its weight [kg m/s]
+        Vec3 by_drag = Vec3::Zero();         ///< [N]
+        Vec3 pressed = Vec3::Zero();         ///< by the pressure, without added mass [N]
+        Vec3 reaction = Vec3::Zero();        ///< of the added mass on the water, an impulse [kg m/s]
+        Vec3 pushed = Vec3::Zero();          ///< of the water by that impulse, over its share [m/s]
+        Real rate = 0;                       ///< beta / (rho V) [1/s]
+        Real added = 0;                      ///< C_m rho V, as far as there is water [kg]
     };
     /// What is known of a body from the last step.
     struct Memory {
         Index id = 0;
-        Vec3 v = Vec3::Zero(), pressed = Vec3::Zero(), owed = Vec3::Zero();
+        Vec3 v = Vec3::Zero(), pressed = Vec3::Zero(), reaction = Vec3::Zero();
         static void fields(auto&& field) {
             field("id", &Memory::id), field.bytes("v", &Memory::v), field.bytes("pressed", &Memory::pressed);
-            field.bytes("owed", &Memory::owed);
+            field.bytes("reaction", &Memory::reaction);
         }
     };
     static constexpr Real tiny = 1e-300;
@@ -184,18 +184,18 @@ private:
         m.added = added_mass_ * weight.mean();
         const bool falls = body.inverse_mass > 0;  // or it moves as it is told
         const Vec3 had = before ? before->v : Vec3(body.velocity - (falls ? dt : 0) * stage.falls);
-        m.lead = m.added * (had + dt * stage.falls);
+        m.added_momentum = m.added * (had + dt * stage.falls);
         const Vec3 last = before ? before->pressed : pressed_by(n, faces, cloud, old, stage.density);
         if (falls) {
             m.begun = body.velocity / body.inverse_mass - dt * body.load.force;
             const Vec3 drags = dt * m.rate * weight;
             const Vec3 heavy = Vec3::Constant(1 / body.inverse_mass + m.added) + drags;
             const Vec3 gains = dt * (1 + added_mass_) * last + drags.cwiseProduct(flow);
-            m.v = (m.begun + m.lead + gains).cwiseQuotient(heavy);
+            m.v = (m.begun + m.added_momentum + gains).cwiseQuotient(heavy);
         }
-        m.owed = dt * added_mass_ * last + m.lead - m.added * m.v;
-        const Vec3 due = before ? Vec3(m.owed + before->owed) : m.owed;
-        m.handed = -due.cwiseQuotient(among.cwiseMax(tiny));
+        m.reaction = dt * added_mass_ * last + m.added_momentum - m.added * m.v;
+        const Vec3 due = before ? Vec3(m.reaction + before->reaction) : m.reaction;
+        m.pushed = -due.cwiseQuotient(among.cwiseMax(tiny));
     }
 
     Real added_mass_ = 0.5;

@@ -300,14 +300,14 @@ private:
             // Friction meets the last force of the pressure, whatever cells have become wet or dry since, and
             // what added mass makes of the rest.
             Matrix6 heavier = inertia;
-            Six lead = before ? Six(dt * before->pressed) : pressure;
+            Six expected = before ? Six(dt * before->pressed) : pressure;
             const Real added = of_a_sphere * motion.covers;
             heavier.template topLeftCorner<3, 3>().diagonal().array() += added;
             if (before)
-                lead.template head<3>() += added * (before->q + dt * before->gained).template head<3>();
+                expected.template head<3>() += added * (before->q + dt * before->gained).template head<3>();
             else
-                lead.template head<3>() += added * body.velocity;
-            motion.held = (heavier + drag).ldlt().solve(begun + lead + brought);
+                expected.template head<3>() += added * body.velocity;
+            motion.held = (heavier + drag).ldlt().solve(begun + expected + brought);
             motion.q = inertia.ldlt().solve(begun + brought - drag * motion.held);
             if (stage_.pushed) motion.q += detail::accelerated(body, pressure);  // or by the `push` to come
         }
