@@ -118,6 +118,25 @@ TEST_CASE("beside resolved ones, which leave them no room: each has its own buoy
     }
 }
 
+TEST_CASE("bodies that come one by one hold no memory of the cloud that they are in") {
+    const auto params = box(16, 0.1, Side::slip, 1e-3);
+    const Grid<3> grid(params.grid);
+    MonolithicSolids<> solids;
+    std::vector<Ball> balls;
+    std::vector<FlowBody> bodies;
+    for (int n = 0; n < 10; ++n) {
+        balls.emplace_back(Vec3(0.3 + 0.1 * n, 0.8, 0.8), 0.05, 0, n);
+        bodies.clear();
+        for (const Ball& ball : balls) bodies.push_back(ball.body), bodies.back().spheres = {&ball.sphere, 1};
+        solids.place(grid, params.sides, bodies, nullptr);
+    }
+    REQUIRE(solids.averaged() == 10);
+    const auto of_bodies = solids.covers().first(10);
+    CHECK(solids.covers().back().faces.size() > 0);
+    CHECK(std::ranges::all_of(
+        of_bodies, [](const SolidCover& c) { return c.faces.capacity() + c.parts.capacity() == 0; }));
+}
+
 TEST_CASE("bad input is refused") {
     using Solids = MonolithicSolids<>;
     CHECK_THROWS_AS(Solids({.resolved_from = -1}), InputError);

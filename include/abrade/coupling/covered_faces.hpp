@@ -45,7 +45,10 @@ public:
     /// body behind the others. `open_area`: shares that walls leave open; none: all is.
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                Real resolved_from, const FaceField<3>* open_area) {
-        covers_.resize(bodies.size() + 1);
+        SolidCover cloud;  // the last one, large: as a body's it would keep its memory
+        if (!covers_.empty()) cloud = std::move(covers_.back()), covers_.pop_back();
+        covers_.resize(bodies.size());
+        covers_.push_back(std::move(cloud));
         std::vector<std::size_t> small;
         for (std::size_t b = 0; b < bodies.size(); ++b) {
             const Real width = detail::GridNumbers{grid, sides}.cell_width(bodies[b].position);
