@@ -162,7 +162,7 @@ TEST_CASE("beside what bodies cover of cells eddies are those that a cell does n
     CHECK_THROWS_WITH_AS(
         (detail::EddyViscosity<3, Real>(grid, params, MixingLength{.depth = 1}, nullptr, true)),
         "MixingLength.friction_velocity, among bodies must be finite, got inf m/s; give "
-        "sqrt(g depth slope) of uniform flow, or their wakes make nu_t a hundred times too "
+        "sqrt(g depth slope) of uniform flow, or their wakes make nu_t twenty times too "
         "large",
         InputError);
 }

@@ -100,9 +100,7 @@ public:
     }
     /// In an order that does not depend on threads: bodies may share a face.
     void on_plane(int plane, auto&& visit) const {
-        if (by_plane_.empty()) return;
-        for (std::size_t i = plane_start_[at(plane)]; i < plane_start_[at(plane + 1)]; ++i)
-            visit(faces_[by_plane_[i]]);
+        if (!by_plane_.empty()) visit_plane(*this, plane, visit);
     }
     /// Plane by plane in parallel, each of the visits to all faces of a plane before the next.
     void by_planes(auto&&... visits) { visit_planes(*this, visits...); }
@@ -164,19 +162,16 @@ private:
     static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
     static Offset key(int axis, Offset face) noexcept { return 4 * face + axis; }
 
+    static void visit_plane(auto& self, Index plane, auto& visit) {
+        for (std::size_t i = self.plane_start_[at(plane)]; i < self.plane_start_[at(plane + 1)]; ++i)
+            visit(self.faces_[self.by_plane_[i]]);
+    }
     static void visit_planes(auto& self, auto&... visits) {
         constexpr Index planes_at_once = 4;  // stones lie in heaps
         parallel_blocks(
             static_cast<Index>(self.plane_start_.size()) - 1,
             [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane) {
-                    const auto all = [&](auto& visit) {
-                        for (std::size_t i = self.plane_start_[at(plane)];
-                             i < self.plane_start_[at(plane + 1)]; ++i)
-                            visit(self.faces_[self.by_plane_[i]]);
-                    };
-                    (all(visits), ...);
-                }
+                for (Index plane = first; plane < last; ++plane) (visit_plane(self, plane, visits), ...);
             },
             planes_at_once);
     }

@@ -62,9 +62,9 @@ struct Smagorinsky {
 ///   nu_t = l^2 |S|, l = kappa d sqrt(1 - d / h), at most kappa u* d (1 - d / h),
 /// with which the profile of uniform flow of depth h is logarithmic and nu_t that parabola. Does not depend
 /// on the grid. For coarse grids, and in two dimensions.
-/// It is no model of wakes: a body's strain is a hundred times the mean flow's, eddies of the water's depth
-/// would hold the body fast (drag of stones in a channel: four to nine times too large). So among bodies it
-/// asks for u*, and beside them eddies are those that a cell does not resolve, l <= C_s Delta.
+/// It is no model of wakes: there the strain makes nu_t some twenty times the mean flow's, which would hold
+/// the body fast (drag of stones in a channel: four to nine times too large). So among bodies it asks for u*,
+/// and beside them eddies are those that a cell does not resolve, l <= C_s Delta.
 struct MixingLength {
     static constexpr std::string_view name = "MixingLength";
     static constexpr bool has_eddies = true;
@@ -94,7 +94,7 @@ struct MixingLength {
     void validate_among_bodies() const {
         require_finite(
             friction_velocity, "MixingLength.friction_velocity, among bodies", "m/s",
-            "give sqrt(g depth slope) of uniform flow, or their wakes make nu_t a hundred times too large");
+            "give sqrt(g depth slope) of uniform flow, or their wakes make nu_t twenty times too large");
     }
 
 private:
