@@ -128,7 +128,7 @@ TEST_CASE("bodies that come one by one hold no memory of the cloud that they are
         balls.emplace_back(Vec3(0.3 + 0.1 * n, 0.8, 0.8), 0.05, 0, n);
         bodies.clear();
         for (const Ball& ball : balls) bodies.push_back(ball.body), bodies.back().spheres = {&ball.sphere, 1};
-        solids.place(grid, params.sides, bodies, nullptr);
+        solids.place(grid, params.sides, bodies, nullptr, params.density);
     }
     REQUIRE(solids.averaged() == 10);
     const auto of_bodies = solids.covers().first(10);

@@ -6,13 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace resolved {
 
 using namespace abrade;
 
-using Water = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+template <class Solids>
+using WaterAmong = GridFluid<3, FullBox, Limited, Real, NoTurbulence, Solids>;
+using Water = WaterAmong<MonolithicSolids<>>;
 
 /// A sphere that is free, or fixed where its density is 0 [kg/m3].
 struct Ball {
@@ -63,10 +66,12 @@ struct Drag {
     Real varies = 0;  ///< root mean square of its change as the sphere crosses the grid, over the mean [-]
 };
 /// Means over the last quarter of `end`.
-inline Drag drag_in(const Stream& stream, Real end) {
+template <class Solids = MonolithicSolids<>>
+Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_from = 0})) {
+    using Flow = WaterAmong<Solids>;
     const Real h = 1 / stream.cells;
     const int across = static_cast<int>(8 * stream.cells), along = static_cast<int>(12 * stream.cells);
-    Water::Params params{.grid = {.cells = {along, across, across}, .spacing = Vec3::Constant(h)},
+    typename Flow::Params params{.grid = {.cells = {along, across, across}, .spacing = Vec3::Constant(h)},
                          .sides = Sides<3>::all(Side::slip),
                          .density = 1,
                          .viscosity = 1 / stream.reynolds,
@@ -74,7 +79,7 @@ inline Drag drag_in(const Stream& stream, Real end) {
     params.sides[0] = {Side::inflow, Side::outflow};
     params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
     params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
-    Water water(params, {}, MonolithicSolids<>({.resolved_from = 0}));
+    Flow water(params, {}, std::move(solids));
     std::vector<Ball> balls{{Vec3(4, 4, 4) + stream.off * h * Vec3(1, 0.37, 0.71), 0.5, 0}};
     Real sum = 0, squares = 0, count = 0;
     while (water.time() < end) {

@@ -1,55 +1,10 @@
 // Bodies below, in and above the surface of water: rest, draft, what is displaced, what falls in.
-#include "resolved_bodies.hpp"
+#include "pool.hpp"
 
 #include <doctest/doctest.h>
 
 using namespace resolved;
-
-namespace {
-
-using Pool = GridFluid<3, HeightSurface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
-
-constexpr Real g = 9.81, h = 0.05, level = 0.613;
-
-/// A box of 1 m x 1 m, filled up to `level`.
-Pool pool() {
-    return Pool({.grid = {.cells = {20, 20, 24}, .spacing = Vec3::Constant(h)},
-                 .sides = Sides<3>::all(Side::slip),
-                 .water = [](const Vec3& x) { return level - x.z(); },
-                 .gravity = {0, 0, -g},
-                 .density = 1000,
-                 .viscosity = 1e-3,
-                 .tolerance = 1e-8});
-}
-Real fastest(const Pool& water) {
-    Real most = 0;
-    for (int a = 0; a < 3; ++a)
-        water.grid().for_each([&](const auto&, Offset c) {
-            if (water.liquid().fraction()[c] == 1) most = std::max(most, std::abs(water.velocity()[a][c]));
-        });
-    return most;
-}
-/// Up and down alone, onto the floor; returns how high the ball was in the mean.
-Real advance(Pool& water, Ball& ball, Real end) {
-    std::vector<Ball> balls{ball};
-    balls[0].floor = 0;
-    const Vec3 place = ball.body.position;
-    Real sum = 0, time = 0;
-    while (water.time() < end - 1e-9) {
-        FlowBody& body = balls[0].body;
-        body.velocity.head<2>().setZero(), body.load.force.head<2>().setZero();
-        body.position.head<2>() = place.head<2>();
-        const Real dt = std::min(water.stable_step().seconds, end - water.time());
-        step(water, balls, dt);
-        sum += dt * body.position.z(), time += dt;
-    }
-    ball = balls[0];
-    return sum / time;
-}
-/// Of a ball whose lowest point lies `depth` below the surface.
-Real cap(Real radius, Real depth) { return pi * square(depth) * (radius - depth / 3); }
-
-}  // namespace
+using Pool = PoolAmong<MonolithicSolids<>>;
 
 TEST_CASE("a fixed ball below the surface: all stays at rest, what it pushes up is its volume") {
     Pool water = pool();
@@ -89,16 +44,12 @@ TEST_CASE("a ball that rises swims as deep as Archimedes has it; no water is los
         const Real volume = water.liquid().volume();
         advance(water, ball, 3);
         const Real middle = advance(water, ball, 7);
-        Real low = 0, high = 0.2;
-        for (int k = 0; k < 60; ++k) {
-            const Real depth = 0.5 * (low + high);
-            (cap(0.1, depth) < ratio * ball.body.volume ? low : high) = depth;
-        }
+        const Real exact = draft_of(ratio);
         const Real draft = volume + ratio * ball.body.volume - (middle - 0.1);
         CAPTURE(ratio);
         CAPTURE(from);
-        MESSAGE("draft " << draft << " m, exact " << low << " m");
-        CHECK(std::abs(draft - low) < (ratio < 0.2 ? 0.3 : 0.2) * h);  // of a cell, waves included
+        MESSAGE("draft " << draft << " m, exact " << exact << " m");
+        CHECK(std::abs(draft - exact) < (ratio < 0.2 ? 0.3 : 0.2) * h);  // of a cell, waves included
         CHECK(water.liquid().volume() == doctest::Approx(volume).epsilon(1e-13));
     }
 }

@@ -10,7 +10,7 @@ namespace {
 /// What does nothing: the seam's least.
 struct Idle {
     static constexpr bool present = true;
-    void place(const Grid<3>&, const Sides<3>&, std::span<const FlowBody>, const FaceField<3>*) {}
+    void place(const Grid<3>&, const Sides<3>&, std::span<const FlowBody>, const FaceField<3>*, Real) {}
     void close(Poisson<3>&, std::span<const OpenFace>) {}
     void mix_last(FaceField<3>&) const {}
     void seep(FaceField<3>&) const {}

@@ -5,6 +5,7 @@
 #include <abrade/coupling/spread_cloud.hpp>
 
 #include <span>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -17,6 +18,8 @@ struct CoveredFace : SolidFace {
     Real open = 0;     ///< share of the face that walls leave open; 0: no water passes [-]
     Real water = 0;    ///< share that bodies leave to the water, too [-]
     Real covered = 0;  ///< by the one body, of what is open [-]
+    Real lighter = 1;  ///< the water's density over the face's, where `weigh` asks for it [-]
+    Real heavier = 0;  ///< what the body adds to the face's density, over this [-]
     Real per_gap = 0;  ///< 1 over the distance of the pressures to both sides [1/m]
     bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
     bool leaves = false;  ///< at a side where water leaves: only what is added to a pressure pushes there
@@ -42,9 +45,10 @@ struct CoveredFace : SolidFace {
 class CoveredFaces {
 public:
     /// Bodies as they stand; those below `resolved_from` cells to a diameter make a cloud, which is one more
-    /// body behind the others. `open_area`: shares that walls leave open; none: all is.
+    /// body behind the others. `open_area`: shares that walls leave open; none: all is. `retracted`: the
+    /// surface of the others' cores [cell].
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
-               Real resolved_from, const FaceField<3>* open_area) {
+               Real resolved_from, const FaceField<3>* open_area, Real retracted) {
         SolidCover cloud;  // the last one, large: as a body's it would keep its memory
         if (!covers_.empty()) cloud = std::move(covers_.back()), covers_.pop_back();
         covers_.resize(bodies.size());
@@ -61,7 +65,7 @@ public:
         parallel_blocks(
             static_cast<Index>(bodies.size()),
             [&](Index, Index first, Index last) {
-                detail::SolidCoverFinder finder(detail::GridNumbers{grid, sides}, closed);
+                detail::SolidCoverFinder finder(detail::GridNumbers{grid, sides}, closed, retracted);
                 for (Index b = first; b < last; ++b)
                     if (!covers_[at(b)].averaged) finder.find(bodies[at(b)], covers_[at(b)]);
             },
@@ -123,7 +127,34 @@ public:
                   });
         close_surface(surface);
     }
-    /// What is left of a face at the surface [-].
+    /// After `close`: opens faces again, and lets them conduct as little as what is in them is heavy.
+    /// `ratio(body)`: its density over the water's.
+    void weigh(Poisson<3>& m, auto&& ratio) {
+        const auto density = [&](const CoveredFace& f) -> float& { return m.face[f.axis][f.face]; };
+        const auto add = [&](const CoveredFace& f, auto& to) {
+            to += static_cast<std::remove_reference_t<decltype(to)>>(f.covered * (ratio(f.body) - 1));
+        };
+        const auto find = [&](CoveredFace& f, Real all) {
+            f.lighter = 1 / all, f.heavier = f.covered * (ratio(f.body) - 1) / all;
+        };
+        const auto wet = [](auto visit) {
+            return [visit](auto& f) {
+                if (f.open > 0 && !f.at_surface()) visit(f);
+            };
+        };
+        by_planes(wet([&](const CoveredFace& f) { density(f) = 1; }),
+                  wet([&](const CoveredFace& f) { add(f, density(f)); }),
+                  wet([&](CoveredFace& f) { find(f, density(f)); }), wet([&](const CoveredFace& f) {
+                      density(f) = static_cast<float>(f.open * f.lighter * f.area / f.gap);
+                  }));
+        for (auto& [face, share] : surface_) share = 1;
+        for (const CoveredFace& f : faces_)
+            if (f.open > 0 && f.at_surface()) add(f, surface_[key(f.axis, f.face)]);
+        for (CoveredFace& f : faces_)
+            if (f.open > 0 && f.at_surface()) find(f, surface_[key(f.axis, f.face)]);
+        for (auto& [face, share] : surface_) share = 1 / share;
+    }
+    /// What a face at the surface conducts, over what it would without bodies [-].
     Real water_share(const OpenFace& open) const noexcept {
         const auto found = surface_.find(key(open.axis, open.face));
         return found == surface_.end() ? 1 : found->second;

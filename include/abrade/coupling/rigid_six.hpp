@@ -24,6 +24,13 @@ inline Six accelerated(const FlowBody& body, const Six& impulse) noexcept {
     q.template tail<3>() = body.inverse_inertia * impulse.template tail<3>();
     return q;
 }
+/// Mass and inertia of one that is free.
+inline Eigen::Matrix<Real, 6, 6> inertia_of(const FlowBody& body) noexcept {
+    Eigen::Matrix<Real, 6, 6> m = Eigen::Matrix<Real, 6, 6>::Zero();
+    m.template topLeftCorner<3, 3>() = Mat3::Identity() / body.inverse_mass;
+    m.template bottomRightCorner<3, 3>() = body.inverse_inertia.inverse();
+    return m;
+}
 /// J^T of a pressure.
 template <class Number>
 Six pressed(const SolidCover& cover, const Field<Number>& of) noexcept {

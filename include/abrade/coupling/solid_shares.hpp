@@ -23,6 +23,7 @@ struct SolidFace {
     int axis = 0;
     int plane = 0;            ///< of the face, across the longest axis; the last of the upper side's, too
     Real share = 0;           ///< sigma, of the control volume [-]
+    Real core = 0;            ///< share of a body whose surface is retracted [-]
     Real area = 0, gap = 0;   ///< of the face [m2]; between the centres of its cells [m]
     Vec3 arm = Vec3::Zero();  ///< from the body's centroid to the face's centre [m]
 
@@ -100,9 +101,9 @@ struct GridNumbers {
 template <class Closed>
 class SolidCoverFinder : GridNumbers {
 public:
-    /// `closed(axis, face)`: faces that walls close.
-    SolidCoverFinder(const GridNumbers& numbers, Closed closed)
-        : GridNumbers(numbers), closed_(std::move(closed)) {}
+    /// `closed(axis, face)`: faces that walls close. `retracted`: by how much the core's surface is [cell].
+    SolidCoverFinder(const GridNumbers& numbers, Closed closed, Real retracted = 0)
+        : GridNumbers(numbers), closed_(std::move(closed)), retracted_(retracted) {}
 
     void find(const FlowBody& body, SolidCover& cover) {
         cover.clear();
@@ -131,6 +132,7 @@ private:
         Number n;
         std::size_t k;
         Vec3 centre, size;
+        Real core;
     };
     enum class Kind : char {
         closed,
@@ -240,6 +242,11 @@ private:
                liquid_fraction<3>(std::array{across[0], across[1], across[2]}, -near.distance - curved);
     }
 
+    Real core_of(Near near, const Vec3& s) const noexcept {
+        near.distance += retracted_ * std::cbrt(s.prod());
+        return share_of(near, s);
+    }
+
     void find_shares(int axis) {
         auto& share = share_[axis];
         covered_.clear();
@@ -256,7 +263,7 @@ private:
             kind_[axis][k] = kind(axis, n);
             if (kind_[axis][k] == Kind::closed) return;
             share[k] = share_of(near, s);
-            if (share[k] > 0) covered_.push_back({n, k, x, s});
+            if (share[k] > 0) covered_.push_back({n, k, x, s, retracted_ > 0 ? core_of(near, s) : 0});
         });
         constexpr int most_rounds =
             4;  // one, but where a floor takes so much that shares are at their bounds
@@ -281,7 +288,7 @@ private:
     /// After `find_shares`.
     void list_faces(int axis, SolidCover& cover) const {
         const Layout<3>& l = grid.layout();
-        for (const auto& [n, k, centre, s] : covered_) {
+        for (const auto& [n, k, centre, s, core] : covered_) {
             if (kind_[axis][k] != Kind::open || share_[axis][k] == 0) continue;
             const Number inside = inside_box(n);
             Number below = inside;
@@ -291,6 +298,7 @@ private:
                                    .axis = axis,
                                    .plane = std::min(inside[Layout<3>::outer], l.planes() - 1),
                                    .share = share_[axis][k],
+                                   .core = retracted_ > 0 ? core : share_[axis][k],
                                    .area = s.prod() / s[axis],
                                    .gap = s[axis],
                                    .arm = centre - body_->position});
@@ -322,6 +330,7 @@ private:
     }
 
     Closed closed_;
+    Real retracted_;
     const FlowBody* body_ = nullptr;
     Real grown_ = 0, scale_ = 1;  ///< of a small body's spheres [m], of its shares [-]
     Number first_{}, length_{};

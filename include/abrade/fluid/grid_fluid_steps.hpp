@@ -56,7 +56,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
     if constexpr (has_surface)
         if (steps_ == 0) {  // what stands in the water that was given
             stand(to_time - time_);
-            solids_.place(*grid_, params_.sides, now, water_->open_area());
+            solids_.place(*grid_, params_.sides, now, water_->open_area(), params_.density);
             water_->stand_solids(solids_.parts());
         }
     while (time_ < to_time) {
@@ -125,7 +125,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
     saved_pressure_ = pressure_;  // the velocity is kept by the second stage
     if constexpr (Solids::present) {
         mix(velocity_, [&] { solids_.mix_last(mixture_); });
-        solids_.place(*grid_, params_.sides, std::exchange(arriving_, {}), nullptr);
+        solids_.place(*grid_, params_.sides, std::exchange(arriving_, {}), nullptr, params_.density);
         projection_.fill_box(solids_);
     }
     sides_.fill_cells(pressure_);
@@ -163,7 +163,8 @@ template <int Dim, class Surface, AdvectionScheme Scheme, class State, Turbulenc
 void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surface(Real dt) {
     auto& water = *water_;
     if constexpr (Solids::present) {  // first, since a step that goes wrong takes it back
-        solids_.place(*grid_, params_.sides, std::exchange(arriving_, {}), water.open_area());
+        solids_.place(*grid_, params_.sides, std::exchange(arriving_, {}), water.open_area(),
+                      params_.density);
         water.set_solids(solids_.parts(), solids_.fluxes());
     }
     if (record_.keep(velocity_, pressure_, water, late_, dt)) {

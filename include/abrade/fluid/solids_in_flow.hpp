@@ -41,7 +41,7 @@ struct FlowStage {
 /// with, and that of the mixture of water and solid, which carries and has no divergence. A step asks
 /// - `mix_last`, `seep`: from the water's velocity that of the mixture, or that of the water times its share of a face,
 ///   as the last step left them; `fluxes`: the solids' part of it;
-/// - `place`: where they stand at its end, and `parts`, what they cover of cells there; of `resolved_parts` the water
+/// - `place`: where they stand at its end, in water of a density, and `parts`, what they cover of cells there; of `resolved_parts` the water
 ///   flows around the shape;
 /// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface among them,
 ///   before the operator is built and after it;
@@ -59,7 +59,7 @@ template <class S>
 concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3>& u, Field<Real>& p, Poisson<3>& m,
                                                Field<float>& e, const Grid<3>& grid, const Sides<3>& sides,
                                                std::span<const FlowBody> bodies, const FaceField<3>* open) {
-    s.place(grid, sides, bodies, open);
+    s.place(grid, sides, bodies, open, Real{});
     s.close(m, std::span<const OpenFace>{});
     { still.water_share(OpenFace{}) } -> std::same_as<Real>;
     s.keep_wet(m);

@@ -148,25 +148,25 @@ private:
 
     /// Takes the list of a class.
     template <class T>
-    struct Members {
+    struct Members {  // of T, or of what it is derived from
         FieldWalk& walk;
         const std::string& path;
         const Objects& all;
 
-        template <class Type>
-        void operator()(std::string_view name, Type T::*member) const {
+        template <class Type, class Of>
+        void operator()(std::string_view name, Type Of::*member) const {
             (*this)(name, "-", member);
         }
-        template <class Type>
-        void operator()(std::string_view name, std::string_view unit, Type T::*member) const {
+        template <class Type, class Of>
+        void operator()(std::string_view name, std::string_view unit, Type Of::*member) const {
             walk.visit<Type, false>(path + "/" + std::string(name), unit, of(member));
         }
-        template <class Type>
-        void bytes(std::string_view name, Type T::*member) const {
+        template <class Type, class Of>
+        void bytes(std::string_view name, Type Of::*member) const {
             walk.visit<Type, true>(path + "/" + std::string(name), "-", of(member));
         }
-        template <class Type>
-        Objects of(Type T::*member) const {
+        template <class Type, class Of>
+        Objects of(Type Of::*member) const {
             Objects found;
             for (void* one : all) found.push_back(&(static_cast<T*>(one)->*member));
             return found;

@@ -1,0 +1,235 @@
+#pragma once
+// Rigid bodies on a grid that water flows around: what each exchange of momentum between the two knows of
+// them.
+
+#include <abrade/core/fields.hpp>
+#include <abrade/coupling/covered_faces.hpp>
+#include <abrade/coupling/rigid_six.hpp>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace abrade {
+
+/// The part of SolidsInFlow that does not depend on the exchange: which shares sigma of the faces bodies
+/// cover, what goes through these, and what is remembered of a body from step to step.
+///
+/// Momentum: what friction and advection bring to a control volume and its water does not keep, the body
+/// gets. All of it acts upon velocities that the last pressure and the body's last load have acted on
+/// already: where all is at rest, nothing is exchanged.
+class BodiesInFlow {
+public:
+    std::span<const FlowBody> bodies() const noexcept { return bodies_; }
+    std::span<const SolidCover> covers() const noexcept {
+        return faces_.covers();
+    }                                                   ///< [body], of their cloud
+    Real fastest() const noexcept { return fastest_; }  ///< of the bodies [m/s]
+
+    std::vector<SolidPart> parts() const { return faces_.parts(true); }
+    std::vector<SolidPart> resolved_parts() const { return faces_.parts(false); }
+    std::span<const SolidFlux> fluxes() const noexcept { return fluxes_; }
+    void mix_last(FaceField<3>& u) const {
+        for (std::size_t i = 0; i < fluxes_.size(); ++i) u[fluxes_[i].axis][fluxes_[i].face] += beyond_[i];
+    }
+    void seep(FaceField<3>& u) const {
+        for (std::size_t i = 0; i < fluxes_.size(); ++i)
+            u[fluxes_[i].axis][fluxes_[i].face] += beyond_[i] - fluxes_[i].speed;
+    }
+    Real water_share(const OpenFace& open) const noexcept { return faces_.water_share(open); }
+    void keep_wet(const Poisson<3>& m) { faces_.keep_wet(m); }
+    void mix(FaceField<3>& u) const {
+        faces_.by_planes([&](const CoveredFace& f) {
+            Real& value = u[f.axis][f.face];
+            value += f.covered * (f.solid - value);
+        });
+    }
+
+    static void fields(auto&& field) {
+        field("memory", &BodiesInFlow::memory_), field.bytes("fluxes", &BodiesInFlow::fluxes_);
+        field("beyond", "m/s", &BodiesInFlow::beyond_), field("fastest", "m/s", &BodiesInFlow::fastest_);
+    }
+
+protected:
+    using Six = detail::Six;
+    using Matrix6 = Eigen::Matrix<Real, 6, 6>;
+
+    struct Motion {
+        Six q = Six::Zero();            ///< velocity and spin [m/s], [rad/s]
+        Six held = Six::Zero();         ///< the same while friction acts
+        Six push = Six::Zero();         ///< its change by the last pressure
+        Six by_friction = Six::Zero();  ///< [N], [N m]
+        Real curvature = 0;
+        Real covers = 0;  ///< mass of water in the body's place [kg]
+    };
+    /// What is known of a body from the last step.
+    struct Memory {
+        Index id = 0;
+        Six q = Six::Zero();        ///< velocity and spin that it left [m/s], [rad/s]
+        Six gained = Six::Zero();   ///< by these in the step [m/s2], [rad/s2]
+        Real covers = 0;            ///< mass of water in the body's place [kg]
+        Six slip = Six::Zero();     ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
+        Six pressed = Six::Zero();  ///< force and torque of the pressure [N], [N m]
+
+        static void fields(auto&& field) {
+            field("id", &Memory::id), field.bytes("q", &Memory::q), field.bytes("gained", &Memory::gained);
+            field("covers", "kg", &Memory::covers), field.bytes("slip", &Memory::slip);
+            field.bytes("pressed", &Memory::pressed);
+        }
+    };
+
+    /// Bodies of less than `resolved_from` cells to a diameter make a cloud; the others have a core.
+    void stand(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
+               Real resolved_from, const FaceField<3>* open_area, Real retracted = 0) {
+        bodies_.assign(bodies.begin(), bodies.end()), motion_.assign(bodies.size() + 1, {});
+        faces_.place(grid, sides, bodies, resolved_from, open_area, retracted);
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            if (faces_.cover(b).cut) bodies_[b].inverse_mass = 0, bodies_[b].inverse_inertia.setZero();
+            for (CoveredFace& f : faces_.of(b)) f.solid = detail::along(f, detail::velocity_of(bodies_[b]));
+        }
+    }
+
+    void parallel_for_resolved(auto&& body) const {
+        parallel_blocks(
+            static_cast<Index>(bodies_.size()),
+            [&](Index, Index first, Index last) {
+                for (auto b = static_cast<std::size_t>(first); b < static_cast<std::size_t>(last); ++b)
+                    if (!faces_.cover(b).averaged) body(b);
+            },
+            block_of_bodies);
+    }
+
+    /// The water's velocity and mass at all faces, once the old pressure has acted.
+    void look_at(const FaceField<3>& u, const Field<Real>& old, const FlowStage& stage) {
+        stage_ = stage;
+        faces_.for_each([&](CoveredFace& f) {
+            f.velocity = u[f.axis][f.face] - (stage_.pushed ? 0 : stage_.dt * f.gradient(old));
+            f.mass = mass_of(f);
+        });
+    }
+
+    /// The body's velocity `q` by all but the pressure, and `held`, with the pressure expected, as friction
+    /// meets it. `held_of`: the share of the way to the body's velocity that friction takes a face's water.
+    void find_motion(std::size_t b, const Field<Real>& old, auto&& held_of) {
+        const FlowBody& body = bodies_[b];
+        Motion& motion = motion_[b];
+        const Memory* const before = with_id(memory_, body.id);
+        const Real dt = stage_.dt;
+        Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
+        Six brought = Six::Zero(), within = Six::Zero();
+        for (CoveredFace& f : faces_.of(b)) {
+            f.held = held_of(std::as_const(f));
+            const Real held = f.mass * f.water * f.held, covers = f.mass * f.share;
+            const Six c = detail::coefficient(f);
+            drag += held * c * c.transpose();
+            brought += held * f.velocity * c;
+            motion.covers += covers / 3;
+            if (before) within += covers * (unpushed(f, old) - detail::along(f, before->q)) * c;
+        }
+        if (before && before->covers > 0) {
+            // What has left through the surface has taken its part along; what has come meets the body as it
+            // will be, not as it was: it may be heavier than the body.
+            const Real kept = std::min(1.0, before->covers / motion.covers);
+            brought += kept * within - std::min(1.0, motion.covers / before->covers) * before->slip;
+            for (const CoveredFace& f : faces_.of(b)) {
+                if (kept == 1) break;
+                const Six c = detail::coefficient(f);
+                const Real comes = (1 - kept) * f.mass * f.share;
+                brought += comes * unpushed(f, old) * c, drag += comes * c * c.transpose();
+            }
+        }
+        motion.held = motion.q = detail::velocity_of(body);
+        if (body.inverse_mass > 0) {
+            const Matrix6 inertia = detail::inertia_of(body);
+            const Six begun =
+                inertia * motion.q - dt * (Six() << body.load.force, body.load.torque).finished();
+            // Friction meets the last force of the pressure, whatever cells have become wet or dry since, and
+            // what added mass makes of the rest.
+            Matrix6 heavier = inertia;
+            Six expected = before ? Six(dt * before->pressed)
+                                  : dt * stage_.density * detail::pressed(faces_.cover(b), old);
+            const Real added = of_a_sphere * motion.covers;
+            heavier.template topLeftCorner<3, 3>().diagonal().array() += added;
+            if (before)
+                expected.template head<3>() += added * (before->q + dt * before->gained).template head<3>();
+            else
+                expected.template head<3>() += added * body.velocity;
+            motion.held = (heavier + drag).ldlt().solve(begun + expected + brought);
+            motion.q = inertia.ldlt().solve(begun + brought - drag * motion.held);
+        }
+        motion.by_friction = (brought - drag * motion.held) / dt;
+    }
+
+    /// The water's velocity by all but pressure and weight.
+    Real unpushed(const CoveredFace& f, const Field<Real>& old) const noexcept {
+        return f.velocity + stage_.dt * (f.gradient(old) - stage_.falls[f.axis]);
+    }
+
+    /// Once velocities are known: `q` and `load` of resolved bodies are handed out, and what the next step
+    /// needs of them is remembered. `load_of(b, force and torque of the pressure)`.
+    void hand_out(const FaceField<3>& u, const Field<Real>& pressure, auto&& load_of) {
+        std::vector<Memory> next;
+        next.reserve(bodies_.size());
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            if (faces_.cover(b).averaged) continue;
+            FlowBody& body = bodies_[b];
+            const Six& q = motion_[b].q;
+            const Six pressed = stage_.density * detail::pressed(faces_.cover(b), pressure);
+            const Six load = load_of(b, pressed);
+            body.velocity = q.template head<3>(), body.angular_velocity = q.template tail<3>();
+            if (!faces_.cover(b).cut) body.load = {load.template head<3>(), load.template tail<3>()};
+            const Memory* const before = with_id(memory_, body.id);
+            const Six gained = before ? Six(q - before->q) / stage_.dt : Six(Six::Zero());
+            next.push_back({body.id, q, gained, motion_[b].covers, slip_of(b, u), pressed});
+        }
+        std::ranges::sort(next, {}, &Memory::id);
+        memory_ = std::move(next);
+    }
+    void find_fastest() {
+        fastest_ = 0;
+        for (const FlowBody& body : bodies_) fastest_ = std::max(fastest_, body.velocity.norm());
+    }
+    /// What goes through each face. `beyond(face)`: its part of the mixture's velocity beyond the water's.
+    void find_fluxes(auto&& beyond) {
+        const std::span<CoveredFace> all = faces_.all();
+        fluxes_.resize(all.size()), beyond_.resize(all.size());
+        parallel_for(static_cast<Index>(all.size()), [&](Index n) {
+            const auto i = static_cast<std::size_t>(n);
+            CoveredFace& f = all[i];
+            if (f.body < bodies_.size()) f.solid = detail::along(f, motion_[f.body].q);
+            fluxes_[i] = {f.face, f.axis, f.covered * f.solid};
+            beyond_[i] = beyond(std::as_const(f));
+        });
+    }
+
+    std::vector<FlowBody> bodies_;
+    std::vector<Motion> motion_;  ///< [body], and 0 of the cloud
+    CoveredFaces faces_;
+    FlowStage stage_;
+
+private:
+    static constexpr Real of_a_sphere = 0.5;  ///< added mass over that of its place [-]
+
+    /// Of the control volume of a face, as far as walls leave it open and it lies below the surface [kg].
+    Real mass_of(const CoveredFace& f) const noexcept {
+        if (f.open == 0) return 0;
+        const Real all = stage_.density * f.volume();
+        if (!stage_.held) return all;
+        return all * std::min(0.5 * ((*stage_.held)[f.face] + (*stage_.held)[f.low]) / f.open, 1.0);
+    }
+    Six slip_of(std::size_t b, const FaceField<3>& u) noexcept {
+        Six sum = Six::Zero();
+        for (const CoveredFace& f : faces_.of(b))
+            sum += f.mass * f.share * (u[f.axis][f.face] - detail::along(f, motion_[b].q)) *
+                   detail::coefficient(f);
+        return sum;
+    }
+
+    std::vector<Memory> memory_;     ///< by id
+    std::vector<SolidFlux> fluxes_;  ///< as the last step left them
+    std::vector<Real> beyond_;       ///< mixture's velocity beyond the water's at these faces [m/s]
+    Real fastest_ = 0;
+};
+
+}  // namespace abrade
