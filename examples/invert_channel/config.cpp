@@ -305,12 +305,9 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
                        .help = "diameter from which on the water flows around a stone; smaller "
                                "ones are spread over the flow, as all are where it is unresolved",
                        .bound = Bound::not_negative});
-    c.fluid.energy = !feels_stones;
-    if (!feels_stones)
-        c.fluid.energy =
-            in.flag("fluid.energy", {.fallback = true,
-                                     .help = "whether the grid's water keeps its energy account, "
-                                             "which costs a quarter of a step"});
+    c.fluid.energy = in.flag("fluid.energy", {.fallback = true,
+                                              .help = "whether the grid's water keeps its energy account, "
+                                                      "which costs a quarter of a step"});
     c.fluid.spacing = in.number(
         "fluid.spacing",
         {.unit = "m", .fallback = 0.02, .help = "of the grid of water that flows", .bound = Bound::positive});

@@ -22,6 +22,7 @@ struct Ball {
     Sphere sphere;
     FlowBody body;
     Real floor = -1e9;  ///< on which it stops [m]
+    Real given = 0;     ///< work of the water on it [J]
 
     Ball(const Vec3& centre, Real radius, Real density, Index id = 0) : sphere{centre, radius} {
         body.id = id, body.position = centre, body.volume = 4.0 / 3 * pi * cube(radius);
@@ -32,14 +33,23 @@ struct Ball {
     }
     /// By what acts between two exchanges.
     void move(Real dt, const Vec3& gravity) {
+        const Vec3 velocity = body.velocity, spin = body.angular_velocity;
         if (body.inverse_mass > 0) body.velocity += dt * (gravity + body.inverse_mass * body.load.force);
         body.angular_velocity += dt * body.inverse_inertia * body.load.torque;
+        given += 0.5 * dt * body.load.force.dot(velocity + body.velocity);
+        given += 0.5 * dt * body.load.torque.dot(spin + body.angular_velocity);
         body.position += dt * body.velocity;
         if (body.position.z() < floor + sphere.radius)
             body.position.z() = floor + sphere.radius, body.velocity.z() = std::max(body.velocity.z(), 0.0);
         sphere.centre = body.position;
     }
 };
+
+inline Real kinetic(const FlowBody& body) {
+    if (body.inverse_mass == 0) return 0;
+    return 0.5 * (body.velocity.squaredNorm() / body.inverse_mass +
+                  body.angular_velocity.dot(body.inverse_inertia.inverse() * body.angular_velocity));
+}
 
 /// One step of both.
 template <class Flow>
@@ -51,7 +61,12 @@ void step(Flow& water, std::vector<Ball>& balls, Real dt) {
         bodies.push_back(ball.body);
     }
     water.advance(water.time() + dt, bodies);
-    for (std::size_t b = 0; b < balls.size(); ++b) balls[b].body = bodies[b];
+    Real given = 0;
+    for (std::size_t b = 0; b < balls.size(); ++b) {
+        given += balls[b].given += kinetic(bodies[b]) - kinetic(balls[b].body);
+        balls[b].body = bodies[b];
+    }
+    water.solids_took(given);
 }
 
 /// A sphere of diameter 1 in a stream of speed 1 that is 8 wide, fixed or led along it.
@@ -72,10 +87,10 @@ Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_f
     const Real h = 1 / stream.cells;
     const int across = static_cast<int>(8 * stream.cells), along = static_cast<int>(12 * stream.cells);
     typename Flow::Params params{.grid = {.cells = {along, across, across}, .spacing = Vec3::Constant(h)},
-                         .sides = Sides<3>::all(Side::slip),
-                         .density = 1,
-                         .viscosity = 1 / stream.reynolds,
-                         .tolerance = 1e-5};
+                                 .sides = Sides<3>::all(Side::slip),
+                                 .density = 1,
+                                 .viscosity = 1 / stream.reynolds,
+                                 .tolerance = 1e-5};
     params.sides[0] = {Side::inflow, Side::outflow};
     params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
     params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };

@@ -25,6 +25,9 @@ struct Idle {
     void correct(FaceField<3>&, const auto&, Real, int, bool) const {}
     Real add_product(const Field<float>&, Field<float>&) { return 0; }
     void settle(FaceField<3>&, Field<Real>&) {}
+    std::vector<SolidVolume> volumes(bool) const { return {}; }
+    Vec3 moment(const Grid<3>&, const Field<Real>*, bool) const { return Vec3::Zero(); }
+    Real lost_to_friction() const { return 0; }
     Real fastest() const { return 0; }
     std::span<const FlowBody> bodies() const { return {}; }
     static void fields(auto&&) {}

@@ -20,12 +20,12 @@ Peak settle(const ReferenceRow& row, Real cells, Real end) {
     using Oil = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids<>>;
     const Real diameter = 0.015, h = diameter / cells;
     const int across = static_cast<int>(std::ceil(0.1 / h)), up = static_cast<int>(std::ceil(0.16 / h));
-    const Oil oil(
-        {.grid = {.cells = {across, across, up}, .spacing = Vec3(0.1 / across, 0.1 / across, 0.16 / up)},
-         .sides = Sides<3>::all(Side::wall),
-         .gravity = {0, 0, -9.81},
-         .density = row.at("rho_f"),
-         .viscosity = row.at("mu_f")});
+    Oil oil({.grid = {.cells = {across, across, up}, .spacing = Vec3(0.1 / across, 0.1 / across, 0.16 / up)},
+             .sides = Sides<3>::all(Side::wall),
+             .gravity = {0, 0, -9.81},
+             .density = row.at("rho_f"),
+             .viscosity = row.at("mu_f")});
+    oil.open_energy_account();
     Scene scene;
     scene.gravity = {0, 0, -9.81};
     scene.add_wall({0, 0, 0}, {0, 0, 1});
@@ -36,6 +36,14 @@ Peak settle(const ReferenceRow& row, Real cells, Real end) {
         peak.speed = std::max(peak.speed, -now.particles().velocity[0].z());
         peak.residual = std::max(peak.residual, now.ledger().residual_relative());
     });
+    // What the solids' ledger was given the water's has given, but for what is younger than the exchange.
+    const WaterEnergy& water = sim.fluid_model().energy();
+    CHECK(water.residual_relative() < 1e-12);
+    CHECK(water.solids == doctest::Approx(-sim.ledger().flow_work).epsilon(0.02));
+    CHECK(std::abs(water.numerical - water.advection) < 0.06 * water.solids);
+    MESSAGE("water got " << water.solids << " J: kinetic " << water.kinetic << ", higher by "
+                         << water.potential - water.potential_start << ", viscous " << water.viscous
+                         << ", on the sphere " << water.solid_friction << ", numerical " << water.numerical);
     return peak;
 }
 

@@ -46,9 +46,53 @@ public:
         });
     }
 
+    std::vector<SolidVolume> volumes(bool only_new) const {
+        std::vector<SolidVolume> found;
+        const auto add = [&](const CoveredFace& f, Real share) {
+            if (f.mass > 0) found.push_back({f.face, f.axis, f.mass * share / stage_.density});
+        };
+        for (const CoveredFace& f : faces_.all())
+            if (!only_new || (f.body < bodies_.size() && is_new(f.body))) add(f, f.share);
+        const SpreadCloud& cloud = faces_.cloud();
+        for (std::size_t n = 0; only_new && n < cloud.count(); ++n)
+            for (int a = 0; a < 3 && is_new(cloud.which()[n]); ++a)
+                for (const SpreadPart& part : cloud.parts(n, a))
+                    add(faces_.of_cloud()[part.face], part.share);
+        return found;
+    }
+    /// Bodies that are below the surface as a whole have their own place, others that of their cells.
+    Vec3 moment(const Grid<3>& grid, const Field<Real>* fraction, bool only_new) const {
+        Vec3 sum = Vec3::Zero();
+        const auto below = [&](Offset cell) { return fraction ? (*fraction)[cell] : 1; };
+        for (std::size_t b = 0; b < covers().size(); ++b) {
+            const SolidCover& cover = covers()[b];
+            const bool of_cloud = b == bodies_.size();
+            if (only_new && (of_cloud || !is_new(b))) continue;
+            if (!of_cloud && cover.averaged) continue;
+            const auto drowned = [&](const SolidPart& p) { return below(p.cell) == 1; };
+            if (!of_cloud && !cover.cut && std::ranges::all_of(cover.parts, drowned)) {
+                sum += bodies_[b].volume * bodies_[b].position;
+                continue;
+            }
+            for (const SolidPart& p : cover.parts)
+                sum += below(p.cell) * p.volume * grid.centre(grid.layout().number(p.cell));
+        }
+        const SpreadCloud& cloud = faces_.cloud();
+        for (std::size_t n = 0; only_new && n < cloud.count(); ++n) {
+            const std::size_t b = cloud.which()[n];
+            for (int a = 0; a < 3 && is_new(b); ++a)
+                for (const SpreadPart& part : cloud.parts(n, a))
+                    sum += faces_.of_cloud()[part.face].mass * part.share / (3 * stage_.density) *
+                           bodies_[b].position;
+        }
+        return sum;
+    }
+    Real lost_to_friction() const noexcept { return lost_to_friction_; }
+
     static void fields(auto&& field) {
         field("memory", &BodiesInFlow::memory_), field.bytes("fluxes", &BodiesInFlow::fluxes_);
         field("beyond", "m/s", &BodiesInFlow::beyond_), field("fastest", "m/s", &BodiesInFlow::fastest_);
+        field("here", &BodiesInFlow::here_);
     }
 
 protected:
@@ -82,6 +126,9 @@ protected:
     /// Bodies of less than `resolved_from` cells to a diameter make a cloud; the others have a core.
     void stand(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                Real resolved_from, const FaceField<3>* open_area, Real retracted = 0) {
+        seen_ = std::exchange(here_, {});
+        for (const FlowBody& body : bodies) here_.push_back(body.id);
+        std::ranges::sort(here_);
         bodies_.assign(bodies.begin(), bodies.end()), motion_.assign(bodies.size() + 1, {});
         faces_.place(grid, sides, bodies, resolved_from, open_area, retracted);
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -186,7 +233,8 @@ protected:
         std::ranges::sort(next, {}, &Memory::id);
         memory_ = std::move(next);
     }
-    void find_fastest() {
+
+    void finish() {
         fastest_ = 0;
         for (const FlowBody& body : bodies_) fastest_ = std::max(fastest_, body.velocity.norm());
     }
@@ -207,10 +255,12 @@ protected:
     std::vector<Motion> motion_;  ///< [body], and 0 of the cloud
     CoveredFaces faces_;
     FlowStage stage_;
+    Real lost_to_friction_ = 0;  ///< in the last step [J]
 
 private:
     static constexpr Real of_a_sphere = 0.5;  ///< added mass over that of its place [-]
 
+    bool is_new(std::size_t b) const noexcept { return !std::ranges::binary_search(seen_, bodies_[b].id); }
     /// Of the control volume of a face, as far as walls leave it open and it lies below the surface [kg].
     Real mass_of(const CoveredFace& f) const noexcept {
         if (f.open == 0) return 0;
@@ -230,6 +280,7 @@ private:
     std::vector<SolidFlux> fluxes_;  ///< as the last step left them
     std::vector<Real> beyond_;       ///< mixture's velocity beyond the water's at these faces [m/s]
     Real fastest_ = 0;
+    std::vector<Index> seen_, here_;  ///< ids of the bodies of the last step and of this one, sorted
 };
 
 }  // namespace abrade

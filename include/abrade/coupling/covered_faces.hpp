@@ -87,6 +87,9 @@ public:
         return std::span(faces_).subspan(first_[body], first_[body + 1] - first_[body]);
     }
     const SpreadCloud& cloud() const noexcept { return cloud_; }
+    std::span<const CoveredFace> of_cloud() const noexcept {
+        return std::span(faces_).subspan(first_[covers_.size() - 1]);
+    }
     std::span<CoveredFace> of_cloud() noexcept { return of(covers_.size() - 1); }
     const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }
     std::span<const SolidCover> covers() const noexcept { return covers_; }

@@ -112,11 +112,12 @@ public:
                          [&](const CoveredFace& f) {
                              u[f.axis][f.face] += f.held * (detail::along(f, motion_[f.body].q) - f.velocity);
                          });
+        find_loss(u);
         find_fluxes([&](const CoveredFace& f) { return -f.held * (f.solid - f.velocity); });
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {
             return Six(pressed + motion_[b].by_friction + motion_[b].push);
         });
-        find_fastest();
+        finish();
     }
 
 private:
@@ -147,14 +148,12 @@ private:
         Six brought = Six::Zero();  // to the body: brought - drag q
         for (CoveredFace& f : faces_.of(b)) {
             const Real mixed = u[f.axis][f.face];
-            const Real water = f.velocity - stage_.dt * f.gradient(pressure);
-            const Real all = 1 - f.water / std::max(f.open, tiny);
+            f.target = f.velocity - stage_.dt * f.gradient(pressure);  // the water's by itself
             f.held = core_of(f);
-            const Real mass = f.mass * (1 - all);
+            const Real mass = f.mass * f.water / std::max(f.open, tiny);
             const Six c = detail::coefficient(f);
             drag += mass * f.held * c * c.transpose();
-            const Real part = all > 0 ? f.covered / all : 0;
-            brought += mass * (f.held * mixed - part * (mixed - water)) * c;
+            brought += (mass * f.held * mixed - f.mass * part_of(f) * (mixed - f.target)) * c;
         }
         if (body.inverse_mass > 0) {
             const Matrix6 inertia = detail::inertia_of(body);
@@ -162,6 +161,21 @@ private:
             motion.q = (inertia + drag).ldlt().solve(inertia * motion.q + by_pressure + brought);
         }
         motion.push = (brought - drag * motion.q) / stage_.dt;
+    }
+
+    /// What water gains by mixing and replacing it gains from a body that moves with `q`.
+    void find_loss(const FaceField<3>& u) noexcept {
+        lost_to_friction_ = 0;
+        for (const CoveredFace& f : faces_.all()) {
+            const Real now = u[f.axis][f.face], gained = now - f.target;
+            lost_to_friction_ +=
+                f.mass * part_of(f) * gained * (detail::along(f, motion_[f.body].q) - 0.5 * (now + f.target));
+        }
+    }
+    /// Water in a face, its part beside this one of the bodies that cover it [-].
+    static Real part_of(const CoveredFace& f) noexcept {
+        const Real water = f.water / std::max(f.open, tiny), all = 1 - water;
+        return all > 0 ? water * f.covered / all : 0;
     }
 
     static constexpr bool mixes = std::same_as<Density, MixtureDensity>;

@@ -5,6 +5,9 @@
 #include <abrade/fluid/water_content.hpp>
 #include <abrade/fluid/water_energy.hpp>
 
+#include <algorithm>
+#include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -46,6 +49,9 @@ public:
             o.volume = flow.liquid->moved()[o.axis][o.face(flow.grid)];
             o.pressure = static_cast<Real>(pressure_at(flow, o));
         }
+        if constexpr (requires { flow.liquid->solid_moved(); })
+            for (const SolidVolume& s : flow.liquid->solid_moved())
+                if (Opening* o = opening_at(flow, s.axis, s.face)) o->volume -= s.volume;
     }
     void walls_took(const typename WallFriction<Dim>::PerFace& taken) { taken_ = taken; }
 
@@ -60,6 +66,8 @@ public:
         if (!flow.liquid)
             change.advection =
                 carried - 0.5 * (advection(flow, flow.before, dt) + advection(flow, flow.stage, dt));
+        change.solid_friction = flow.solid_friction;
+        change.reshaped = -kinetic(flow, flow.new_solids) - potential(flow, flow.new_solid_moment);
         const Real before = energy_.total();
         look(flow);
         change.numerical = change.supplied() - change.dissipated() - (energy_.total() - before);
@@ -67,8 +75,12 @@ public:
         energy_.sides += change.sides, energy_.body_force += change.body_force;
         energy_.viscous += change.viscous, energy_.turbulent += change.turbulent;
         energy_.wall_friction += change.wall_friction, energy_.numerical += change.numerical;
-        energy_.advection += change.advection;
+        energy_.reshaped += change.reshaped;
+        energy_.advection += change.advection, energy_.solid_friction += change.solid_friction;
     }
+
+    /// What solids were given by the water, once it is known [J].
+    void solids_took(Real work) { energy_.solids -= work, energy_.numerical -= work; }
 
     /// Other walls stand in the box, between steps.
     void reshaped(const View& flow) {
@@ -102,6 +114,30 @@ private:
 
     void look(const View& flow) {
         energy_.kinetic = content_.kinetic(flow, mid_), energy_.potential = content_.potential(flow);
+        energy_.kinetic -= kinetic(flow, flow.solids);  // what solids take up is no water
+        energy_.potential -= potential(flow, flow.solid_moment);
+    }
+
+    /// Of water in the place of solids.
+    Real kinetic(const View& flow, std::span<const SolidVolume> solids) const {
+        return 0.5 * in_solids(flow, solids, [&](int a, Offset c) {
+                   const auto now = static_cast<Real>(flow.velocity[a][c]);
+                   return square(flow.liquid ? 0.5 * (now + static_cast<Real>(mid_[a][c])) : now);
+               });
+    }
+    Real potential(const View& flow, const Point<Dim>& moment) const {
+        return -flow.params.density * content_.gravity().dot(moment);
+    }
+    /// Density times the sum over what is solid of control volumes.
+    static Real in_solids(const View& flow, std::span<const SolidVolume> solids, auto&& of_face) {
+        Real sum = 0;
+        for (const SolidVolume& s : solids) sum += s.volume * of_face(s.axis, s.face);
+        return flow.params.density * sum;
+    }
+    Opening* opening_at(const View& flow, int axis, Offset face) noexcept {
+        const auto found = std::ranges::find_if(
+            openings_, [&](const Opening& o) { return o.axis == axis && o.face(flow.grid) == face; });
+        return found == openings_.end() ? nullptr : &*found;
     }
 
     /// Of a full box, the velocity in the middle of the step and what it carried through openings.
@@ -116,6 +152,11 @@ private:
                        flow.grid.size(o.axis, cell[o.axis]);
             o.pressure = pressure_at(flow, o);
         }
+        for (const SolidFlux& s : flow.solid_fluxes)
+            if (Opening* o = opening_at(flow, s.axis, s.face)) {
+                const CellNumber<Dim> cell = flow.grid.layout().number(o->cell);
+                o->volume -= dt * s.speed * flow.grid.volume(cell) / flow.grid.size(s.axis, cell[s.axis]);
+            }
     }
 
     /// By cells, half of each face's velocity: so the half volumes at sides have their part.
@@ -141,6 +182,9 @@ private:
                     }
                     return sum;
                 });
+            change.body_force -= dt * push[a] * in_solids(flow, flow.solids, [&](int axis, Offset c) {
+                                     return axis == a ? static_cast<Real>(mid_[a][c]) : 0;
+                                 });
         }
     }
 
@@ -150,13 +194,13 @@ private:
         const Real nu = flow.params.viscosity / flow.params.density;
         if (nu > 0) {
             change.viscous = -stage_work<Upwind, false>(flow, {mid_, still_, dt, nu});
-            change.viscous -= work_in_openings(flow);
+            change.viscous += work_in_solids(flow) - work_in_openings(flow);
             change.sides = work_of_sides(flow, dt * flow.params.viscosity);
             change.viscous += change.sides;
         }
         if (flow.eddies) {
             change.turbulent = -stage_work<Upwind, true>(flow, {mid_, still_, dt, 0});
-            change.turbulent -= work_in_openings(flow);
+            change.turbulent += work_in_solids(flow) - work_in_openings(flow);
         }
     }
     /// Work of the momentum that a velocity brings about its own control volumes, on `mid_`.
@@ -212,6 +256,18 @@ private:
         }
         return flow.params.density * work;
     }
+    /// Friction of what is no water, in faces that `stage_work` has been at.
+    Real work_in_solids(const View& flow) const {
+        constexpr int inner = Layout<Dim>::inner, outer = Layout<Dim>::outer, across = 3 - inner - outer;
+        return in_solids(flow, flow.solids, [&](int a, Offset c) {
+            const CellNumber<Dim> n = flow.grid.layout().number(c);
+            if (!flow.grid.has(n)) return Real(0);
+            const RowRange& r = flow.faces[a].row(n[outer], Dim == 3 ? n[across] : 0);
+            const auto mid = static_cast<Real>(mid_[a][c]);
+            const bool moved = n[inner] >= r.begin && n[inner] < r.end;
+            return moved ? (static_cast<Real>(scratch_[a][c]) - mid) * mid : 0;
+        });
+    }
     static Real share_of_openings(const View& flow, int a, const CellNumber<Dim>& cell) noexcept {
         const auto open = [](Side side) { return side == Side::inflow || side == Side::outflow; };
         const auto& ends = flow.params.sides[a];
@@ -243,12 +299,18 @@ private:
     }
 
     void wall_friction(const View& flow, WaterEnergy& change) {
+        std::unordered_map<Offset, Real> solid;
+        const auto key = [](int a, Offset c) { return Dim * c + a; };
+        for (const SolidVolume& s : flow.solids) solid[key(s.axis, s.face)] += s.volume;
         Real work = 0;
         flow.friction.for_each(taken_, [&](int a, Offset c, Real taken) {
             if (taken == 0) return;
+            const auto found = solid.find(key(a, c));
+            const Real liquid =
+                content_.liquid_of_face(flow, a, c) - (found == solid.end() ? 0 : found->second);
             const CellNumber<Dim> cell = flow.grid.layout().number(c);
             const auto mid = static_cast<Real>(mid_[a][c]), now = static_cast<Real>(flow.velocity[a][c]);
-            work += share_of_openings(flow, a, cell) * content_.liquid_of_face(flow, a, c) * taken *
+            work += share_of_openings(flow, a, cell) * std::max(liquid, Real(0)) * taken *
                     (flow.liquid ? 0.5 * (mid + now) : mid);
         });
         change.wall_friction = flow.params.density * work;

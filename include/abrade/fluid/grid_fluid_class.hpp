@@ -207,12 +207,7 @@ public:
 
     /// Opens the energy account (WaterEnergy), or opens it anew: terms count from here. Without it steps do
     /// nothing for it.
-    void open_energy_account() {
-        FaceField<Dim, State> before = velocity_;
-        if constexpr (has_surface)
-            if (steps_ > 0) rows()->copy(record_.velocity(), before), sides_.fill(before);
-        energy_.emplace(energy_view(), std::move(before));
-    }
+    void open_energy_account();
     bool has_energy_account() const noexcept { return energy_.has_value(); }
     /// Throws std::logic_error where no account was opened.
     const WaterEnergy& energy() const {
@@ -220,13 +215,17 @@ public:
         return energy_->energy();
     }
 
+    /// All that solids were given so far, by the ledger of who moves them [J].
+    void solids_took(Real work) requires Solids::present;
+
     static void fields(auto&& field) {
         field("sides", &GridFluid::sides_), field("velocity", "m/s", &GridFluid::velocity_);
         field("stage", "m/s", &GridFluid::stage_), field("pressure", "m2/s2", &GridFluid::pressure_);
         field("energy", &GridFluid::energy_), field.bytes("report", &GridFluid::report_);
         field("time", "s", &GridFluid::time_), field("fastest", "1/s", &GridFluid::fastest_);
         field("enters", "1/s", &GridFluid::enters_), field("first_step", "s", &GridFluid::first_step_);
-        field("late", &GridFluid::late_), field("steps", &GridFluid::steps_);
+        field("late", &GridFluid::late_), field("given", "J", &GridFluid::given_),
+            field("steps", &GridFluid::steps_);
         if constexpr (Turbulence::has_eddies) field("eddies", &GridFluid::eddies_);
         if constexpr (has_surface) {
             field("record", &GridFluid::record_), field("water", &GridFluid::water_);
@@ -393,6 +392,7 @@ private:
     typename Projection<Dim, State>::Report report_;
     Real time_ = 0, fastest_ = 0, enters_ = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Real first_step_ = 0;                       ///< in which what first moves it does not cross a cell [s]
+    Real given_ = 0;                            ///< to solids [J]
     detail::LateSteps late_;                    ///< when steps grow is told from them
     Index steps_ = 0;
 };

@@ -280,40 +280,69 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::check(Real dt) 
 
 template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
           SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::open_energy_account() {
+    FaceField<Dim, State> before = velocity_;
+    if constexpr (has_surface)
+        if (steps_ > 0) rows()->copy(record_.velocity(), before), sides_.fill(before);
+    energy_.emplace(energy_view(), std::move(before));
+}
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::solids_took(
+    Real work) requires Solids::present {
+    const Real before = std::exchange(given_, work);
+    if (energy_) energy_->solids_took(work - before);
+}
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
 typename GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::EnergyAccount::View
 GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::energy_view() const {
     const Field<State>* eddies = nullptr;
     if constexpr (Turbulence::has_eddies) eddies = &eddies_->field();
+    const auto with_solids = [&](typename EnergyAccount::View view) {
+        if constexpr (Solids::present) {
+            view.solids = solids_.volumes(false), view.new_solids = solids_.volumes(true);
+            view.solid_fluxes = solids_.fluxes();
+            view.solid_friction = solids_.lost_to_friction();
+            const Field<Real>* fraction = nullptr;
+            if constexpr (has_surface) fraction = &water_->liquid().fraction();
+            view.solid_moment = solids_.moment(*grid_, fraction, false);
+            view.new_solid_moment = solids_.moment(*grid_, fraction, true);
+        }
+        return view;
+    };
     if constexpr (has_surface) {
         const auto& water = *water_;
-        return {.grid = *grid_,
-                .params = params_,
-                .friction = water.friction(),
-                .faces = water.faces(),
-                .before = record_.velocity(),
-                .stage = stage_,
-                .velocity = velocity_,
-                .pressure = pressure_,
-                .time = time_,
-                .eddies = eddies,
-                .liquid = &water.liquid(),
-                .walls = water.walls(),
-                .rows = &water.rows(),
-                .held_before = &water.held_before(),
-                .held = &water.held(),
-                .wet = &water.wet(),
-                .open_friction = water.open_friction()};
+        return with_solids({.grid = *grid_,
+                            .params = params_,
+                            .friction = water.friction(),
+                            .faces = water.faces(),
+                            .before = record_.velocity(),
+                            .stage = stage_,
+                            .velocity = velocity_,
+                            .pressure = pressure_,
+                            .time = time_,
+                            .eddies = eddies,
+                            .liquid = &water.liquid(),
+                            .walls = water.walls(),
+                            .rows = &water.rows(),
+                            .held_before = &water.held_before(),
+                            .held = &water.held(),
+                            .wet = &water.wet(),
+                            .open_friction = water.open_friction()});
     } else {
-        return {.grid = *grid_,
-                .params = params_,
-                .friction = side_friction_,
-                .faces = projection_.faces(),
-                .before = saved_velocity_,
-                .stage = stage_,
-                .velocity = velocity_,
-                .pressure = pressure_,
-                .time = time_,
-                .eddies = eddies};
+        return with_solids({.grid = *grid_,
+                            .params = params_,
+                            .friction = side_friction_,
+                            .faces = projection_.faces(),
+                            .before = saved_velocity_,
+                            .stage = stage_,
+                            .velocity = velocity_,
+                            .pressure = pressure_,
+                            .time = time_,
+                            .eddies = eddies});
     }
 }
 

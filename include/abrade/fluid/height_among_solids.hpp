@@ -91,8 +91,10 @@ void HeightOfFluid<Dim>::add_solid(const SolidFlux& flux, Real dt) {
     const Real size = grid_.size(vertical, k);
     const Real share = std::clamp((surface - grid_.face(vertical, k)) / size, Real(0), Real(1));
     const Real area = columns_.plan() / grid_.size(flux.axis, 0) * size;
-    moved_[flux.axis][flux.face] +=
+    const Real moved =
         share * flux.speed * area * dt * (open_faces_ ? (*open_faces_)[flux.axis][flux.face] : 1);
+    moved_[flux.axis][flux.face] += moved;
+    solid_moved_.push_back({flux.face, flux.axis, moved});
 }
 
 }  // namespace abrade

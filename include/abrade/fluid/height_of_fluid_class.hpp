@@ -140,6 +140,7 @@ public:
         fluxes_.find(flow);
         fluxes_.limit(flow);
         fluxes_.sum(flow, next_);
+        solid_moved_.clear();
         for (const SolidFlux& f : std::exchange(solid_fluxes_, {})) add_solid(f, dt);
         hold_slopes(dt);
         renew();
@@ -178,6 +179,7 @@ public:
     void set_steps(Index steps) noexcept { steps_ = steps; }
     const FaceField<Dim>& moved() const noexcept { return moved_; }
     FaceField<Dim>& moved() noexcept { return moved_; }
+    std::span<const SolidVolume> solid_moved() const noexcept { return solid_moved_; }  ///< part of it
     const Field<Real>& surplus() const noexcept { return surplus_; }
     Field<Real>& surplus() noexcept { return surplus_; }
     bool has_surplus() const noexcept { return brim_; }  ///< some column reaches the top of the box
@@ -383,6 +385,7 @@ private:
     std::vector<Surface> risen_;                ///< [column] where the step leads
     std::vector<std::uint8_t> near_solid_;      ///< [column]
     detail::SolidsInColumns<Dim> solids_, solids_before_;
+    std::vector<SolidVolume> solid_moved_;
     std::span<const SolidFlux> solid_fluxes_;  ///< of the step to come
     Overturning overturning_;
     Point<Dim> gravity_ = Point<Dim>::Zero();

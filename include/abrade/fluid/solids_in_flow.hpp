@@ -25,6 +25,13 @@ struct SolidFlux {
     Real speed = 0;  ///< of the solid, times its share of what walls leave open [m/s]
 };
 
+/// Solid in the control volume of a face, or that went through it along the axis.
+struct SolidVolume {
+    Offset face = 0;
+    int axis = 0;
+    Real volume = 0;  ///< [m3]
+};
+
 /// One step of the water's.
 struct FlowStage {
     Real density = 1;    ///< [kg/m3]
@@ -53,7 +60,9 @@ struct FlowStage {
 ///   The `old` pressure does not push at sides where water leaves;
 /// - within the search for phi `add_product`, the same for the operator, which must stay symmetric;
 /// - `settle`: the water's velocity from the mixture's, and what is to be remembered; cells within solids get the
-///   pressure that goes on from around them.
+///   pressure that goes on from around them;
+/// - `volumes` and `moment` for an energy account: what they, or those that the last step was the first of, take of control volumes as far as there is water, and
+///   of cells, times their places [m4]; `lost_to_friction`, what friction between the two took in the step [J].
 /// A body's velocity is part of the solution, so it is that of the water's and the contacts' work together.
 template <class S>
 concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3>& u, Field<Real>& p, Poisson<3>& m,
@@ -73,6 +82,9 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     still.correct(u, p, Real{}, int{}, true), still.correct(u, e, Real{}, int{}, false);
     { s.add_product(e, e) } -> std::same_as<Real>;
     s.settle(u, p);
+    { still.volumes(bool{}) } -> std::same_as<std::vector<SolidVolume>>;
+    { still.moment(grid, &p, bool{}) } -> std::same_as<Vec3>;
+    { still.lost_to_friction() } -> std::same_as<Real>;
     { still.fastest() } -> std::same_as<Real>;
     { still.bodies() } -> std::same_as<std::span<const FlowBody>>;
 };

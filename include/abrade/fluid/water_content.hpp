@@ -4,6 +4,7 @@
 #include <abrade/fluid/grid_fluid_params.hpp>
 #include <abrade/fluid/level_table.hpp>
 #include <abrade/fluid/liquid_centroid.hpp>
+#include <abrade/fluid/solids_in_flow.hpp>
 #include <abrade/fluid/wet_rows.hpp>
 
 #include <cstddef>
@@ -32,6 +33,11 @@ struct EnergyView {
     const Field<Real>* held = nullptr;         ///< and now
     const Field<std::uint8_t>* wet = nullptr;
     const PerAxis<FaceField<Dim, float>, Dim>* open_friction = nullptr;
+    std::vector<SolidVolume> solids{}, new_solids{};  ///< in control volumes; of those that came in the step
+    Point<Dim> solid_moment = Point<Dim>::Zero();     ///< volume in the water times place [m4]
+    Point<Dim> new_solid_moment = Point<Dim>::Zero();
+    std::span<const SolidFlux> solid_fluxes{};  ///< of a full box
+    Real solid_friction = 0;                    ///< lost in the step [J]
 };
 
 /// Sum of of_row(plane, row, range) over the rows that are not dry. The same bits for any number of threads.

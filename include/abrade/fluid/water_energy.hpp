@@ -12,7 +12,8 @@ namespace abrade {
 
 /// All in joules, in two dimensions per metre of width. The balance over any time is
 ///   kinetic + potential - (kinetic_start + potential_start)
-///     = inflow - outflow + sides + body_force + reshaped - viscous - turbulent - wall_friction - numerical.
+///     = inflow - outflow + sides + body_force + reshaped + solids - viscous - turbulent - wall_friction -
+///     numerical.
 /// Every term but `numerical` is measured on its own; `numerical` is the remainder of each step: what
 /// advection, time steps, the surface's reconstruction and the pressure's tolerance lose (below 0: gain).
 /// In a full box `advection` measures the largest part of it on its own, from the fluxes of momentum.
@@ -26,15 +27,17 @@ struct WaterEnergy {
     Real kinetic_start = 0, potential_start = 0;
 
     // since then
-    Real inflow = 0;         ///< kinetic and potential energy and work of the pressure, through inflows
-    Real outflow = 0;        ///< the same through outflows; what comes back there is taken off
-    Real sides = 0;          ///< work of sides that move along themselves
-    Real body_force = 0;     ///< work of `body_force`, and of gravity along periodic axes
-    Real reshaped = 0;       ///< what `set_wall` changed
-    Real viscous = 0;        ///< dissipated by the molecular viscosity
-    Real turbulent = 0;      ///< handed to eddies that the grid does not resolve
-    Real wall_friction = 0;  ///< lost to walls inside cells and to logarithmic sides
-    Real numerical = 0;      ///< the remainder
+    Real inflow = 0;          ///< kinetic and potential energy and work of the pressure, through inflows
+    Real outflow = 0;         ///< the same through outflows; what comes back there is taken off
+    Real sides = 0;           ///< work of sides that move along themselves
+    Real body_force = 0;      ///< work of `body_force`, and of gravity along periodic axes
+    Real reshaped = 0;        ///< what `set_wall` changed, and solids that came took the place of
+    Real solids = 0;          ///< work of solids that move in it, as `solids_took` has told it
+    Real viscous = 0;         ///< dissipated by the molecular viscosity
+    Real turbulent = 0;       ///< handed to eddies that the grid does not resolve
+    Real wall_friction = 0;   ///< lost to walls inside cells and to logarithmic sides
+    Real solid_friction = 0;  ///< lost between water and solids that move in it
+    Real numerical = 0;       ///< the remainder
 
     Real advection = 0;  ///< part of `numerical`, measured: loss by the advection scheme; full boxes only
 
@@ -44,18 +47,19 @@ struct WaterEnergy {
             field("potential_start", "J", &WaterEnergy::potential_start),
             field("inflow", "J", &WaterEnergy::inflow), field("outflow", "J", &WaterEnergy::outflow),
             field("sides", "J", &WaterEnergy::sides), field("body_force", "J", &WaterEnergy::body_force),
-            field("reshaped", "J", &WaterEnergy::reshaped), field("viscous", "J", &WaterEnergy::viscous),
-            field("turbulent", "J", &WaterEnergy::turbulent),
+            field("reshaped", "J", &WaterEnergy::reshaped), field("solids", "J", &WaterEnergy::solids),
+            field("viscous", "J", &WaterEnergy::viscous), field("turbulent", "J", &WaterEnergy::turbulent),
             field("wall_friction", "J", &WaterEnergy::wall_friction),
+            field("solid_friction", "J", &WaterEnergy::solid_friction),
             field("numerical", "J", &WaterEnergy::numerical),
             field("advection", "J", &WaterEnergy::advection);
     }
 
     Real total() const noexcept { return kinetic + potential; }
     Real gained() const noexcept { return total() - kinetic_start - potential_start; }
-    Real supplied() const noexcept { return inflow - outflow + sides + body_force + reshaped; }
+    Real supplied() const noexcept { return inflow - outflow + sides + body_force + reshaped + solids; }
     /// By physics; `numerical` is not.
-    Real dissipated() const noexcept { return viscous + turbulent + wall_friction; }
+    Real dissipated() const noexcept { return viscous + turbulent + wall_friction + solid_friction; }
 
     /// Zero but for round-off: a term that is left out of a step, or booked twice, shows here.
     Real residual() const noexcept { return gained() - supplied() + dissipated() + numerical; }
@@ -72,8 +76,9 @@ struct WaterEnergy {
         f("kinetic", kinetic), f("potential", potential);
         f("kinetic_start", kinetic_start), f("potential_start", potential_start);
         f("inflow", inflow), f("outflow", outflow), f("sides", sides), f("body_force", body_force);
-        f("reshaped", reshaped);
+        f("reshaped", reshaped), f("solids", solids);
         f("viscous", viscous), f("turbulent", turbulent), f("wall_friction", wall_friction);
+        f("solid_friction", solid_friction);
         f("numerical", numerical), f("advection", advection);
     }
 };

@@ -220,6 +220,7 @@ private:
         FlowBodies<P> flow(state_);
         fluid.advance(now_, flow.bodies());
         state_.accounts.flow_work += flow.give_back(state_);
+        if constexpr (requires { fluid.solids_took(Real{}); }) fluid.solids_took(state_.accounts.flow_work);
     }
 
     /// Forces, if asked for, and motion, if asked for, of all slabs. A chunk's first slab comes last: the
