@@ -168,11 +168,13 @@ inline std::string colour_bar(const Axis& axis, Palette palette, const Range& fo
 /// Collects blocks of data and the plot command that reads them.
 class Plot {
 public:
+    /// `first` is the number of the first block, where another plot's data stand before it in the file.
+    explicit Plot(std::size_t first = 0) : first_(first) {}
     /// Starts a block that is drawn `with` the given style from the columns `usage`.
     void begin(const std::string& usage, const std::string& with, const std::string& title) {
         if (blocks_ > 0) data_ += "\n\n";
         command_ += (blocks_ == 0 ? "plot " : ", \\\n     ") + std::string{"data index "} +
-                    std::to_string(blocks_) + " using " + usage + " with " + with +
+                    std::to_string(first_ + blocks_) + " using " + usage + " with " + with +
                     (title.empty() ? " notitle" : " title " + gnuplot_text(title));
         titles_.push_back(title);
         ++blocks_;
@@ -201,6 +203,7 @@ public:
         return true;
     }
     const std::string& data() const { return data_; }
+    std::size_t blocks() const { return blocks_; }
     /// The titles of what is drawn.
     const std::vector<std::string>& titles() const { return titles_; }
     /// The plot command; a note in an empty frame where there is nothing to draw.
@@ -215,7 +218,7 @@ private:
     std::string data_{};
     std::string command_{};
     std::vector<std::string> titles_{};
-    std::size_t blocks_ = 0;
+    std::size_t first_ = 0, blocks_ = 0;
 };
 
 }  // namespace charts

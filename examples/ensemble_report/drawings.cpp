@@ -84,17 +84,40 @@ std::string seed_points() {
 Real drawn_error(const Statistics& s) { return std::isfinite(s.standard_error) ? s.standard_error : 0; }
 
 /// Rows with names to the left of the axis, the first on top at y = 0.
+std::string row_names(const std::vector<std::string>& names) {
+    std::string tics;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        tics += (i == 0 ? "" : ", ") + gnuplot_text(names[i]) + " " + to_text(-static_cast<Real>(i));
+    return "set ytics (" + tics + ")\n";
+}
+/// The same, and room for them in the layout.
 std::string row_names(const std::vector<std::string>& names, charts::Layout& layout) {
     std::size_t longest = 0;
-    std::string tics;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        longest = std::max(longest, names[i].size());
-        tics += (i == 0 ? "" : ", ") + gnuplot_text(names[i]) + " " + to_text(-static_cast<Real>(i));
-    }
+    for (const std::string& name : names) longest = std::max(longest, name.size());
     layout.left = std::clamp(40 + 11 * static_cast<int>(longest), 120, 700);
     layout.width = std::max(layout.width, layout.left + 730);
     layout.height = layout.top + layout.bottom + 60 + 44 * static_cast<int>(names.size());
-    return "set ytics (" + tics + ")\n";
+    return row_names(names);
+}
+
+const std::vector<std::string> titles_of_cases{"each seed", "mean and its standard error"};
+
+/// A metric of all cases, one row below the other; nothing where no run has it.
+charts::Plot plot_of_cases(const Ensemble& e, const Metric& metric, std::size_t first_block) {
+    charts::Plot plot(first_block);
+    const bool any = std::any_of(e.cases.begin(), e.cases.end(),
+                                 [&](const EnsembleCase& one) { return one.of(metric.name).count > 0; });
+    if (!any) return plot;
+    plot.begin("1:2", seed_points(), titles_of_cases[0]);
+    for (std::size_t i = 0; i < e.cases.size(); ++i)
+        for (const Real x : e.cases[i].by_seed(metric.name))
+            plot.row({metric.factor * x, -static_cast<Real>(i) - 0.18});
+    plot.begin("1:2:3", error_bars("x"), titles_of_cases[1]);
+    for (std::size_t i = 0; i < e.cases.size(); ++i) {
+        const Statistics s = scaled(e.cases[i].of(metric.name), metric.factor);
+        plot.row({s.mean, -static_cast<Real>(i), drawn_error(s)});
+    }
+    return plot;
 }
 
 }  // namespace
@@ -161,23 +184,47 @@ void draw_against_value(const Ensemble& e, const Metric& metric, const fs::path&
            axis_of(metric), {}, "", picture);
 }
 
-void draw_cases(const Ensemble& e, const Metric& metric, const fs::path& picture) {
-    charts::Plot plot;
-    plot.begin("1:2", seed_points(), "each seed");
-    for (std::size_t i = 0; i < e.cases.size(); ++i)
-        for (const Real x : e.cases[i].by_seed(metric.name))
-            plot.row({metric.factor * x, -static_cast<Real>(i) - 0.18});
-    plot.begin("1:2:3", error_bars("x"), "mean and its standard error");
+void draw_cases(const Ensemble& e, const std::vector<Metric>& metrics, const fs::path& picture) {
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < e.cases.size(); ++i) {
-        const Statistics s = scaled(e.cases[i].of(metric.name), metric.factor);
-        plot.row({s.mean, -static_cast<Real>(i), drawn_error(s)});
-        names.push_back(e.cases[i].label());
+    for (const EnsembleCase& one : e.cases) names.push_back(one.label());
+    charts::Layout page;
+    const std::string tics = row_names(names, page),
+                      no_names = row_names(std::vector<std::string>(names.size()));
+    const int count = static_cast<int>(metrics.size()), across = std::min(count, 3), gap = 45,
+              wide = count > 1 ? 440 : page.width - page.left - page.right,
+              high = page.height - page.top - page.bottom;
+    page.width = page.left + across * (wide + gap) - gap + page.right;
+    charts::legend(titles_of_cases, page);  // sets the room at the top
+    if (count > 1) page.top += 26;          // a panel is too narrow for the two titles side by side
+    page.height = page.top + (count + across - 1) / across * (high + page.bottom);
+    charts::Layout same = page;
+    const std::string key = charts::legend(titles_of_cases, same);
+
+    std::string script = count > 1 ? "set multiplot\n" : "", data;
+    std::size_t blocks = 0;
+    for (int panel = 0; panel < count; ++panel) {
+        const Metric& metric = metrics[static_cast<std::size_t>(panel)];
+        const int column = panel % across;
+        charts::Layout at = page;
+        at.left = page.left + column * (wide + gap), at.right = page.width - at.left - wide;
+        at.top = page.top + panel / across * (high + page.bottom), at.bottom = page.height - at.top - high;
+        const charts::Plot plot = plot_of_cases(e, metric, blocks);
+        if (plot.blocks() > 0) data += (blocks > 0 ? "\n\n" : "") + plot.data();
+        blocks += plot.blocks();
+        Axis x = axis_of(metric);
+        x.logarithmic = count > 1 && metric.logarithmic;
+        const bool negative = std::any_of(e.cases.begin(), e.cases.end(), [&](const EnsembleCase& one) {
+            return one.of(metric.name).min < 0;
+        });
+        if (count > 1 && !x.logarithmic && !negative) x.min = 0;
+        if (panel > 0) script += "unset label\nunset logscale\n";
+        script += charts::frame(count > 1 ? "" : metric.title, x,
+                                {.label = "", .min = 0.5 - static_cast<Real>(names.size()), .max = 0.5});
+        script += panel == 0 ? key : "unset key\n";
+        script += (column == 0 ? tics : no_names) + at.margins() + plot.command();
     }
-    charts::Layout layout;
-    const std::string tics = row_names(names, layout);
-    finish(plot, metric.title, axis_of(metric),
-           {.label = "", .min = 0.5 - static_cast<Real>(e.cases.size()), .max = 0.5}, layout, tics, picture);
+    if (count > 1) script += "unset multiplot\n";
+    make_picture(picture, script, data, page.width, page.height);
 }
 
 void draw_tornado(const Ensemble& e, const Metric& metric, const fs::path& picture) {

@@ -2,6 +2,7 @@
 // The charts of an ensemble: depth lines of all seeds, a metric against what was swept, a tornado.
 
 #include "ensemble.hpp"
+#include "metrics.hpp"
 
 #include "../common/charts.hpp"
 #include "../invert_channel/results.hpp"
@@ -11,14 +12,6 @@
 #include <vector>
 
 namespace abrade::examples {
-
-/// A number that an ensemble is judged by.
-struct Metric {
-    std::string name;   ///< in summary.json
-    std::string title;  ///< for a reader
-    std::string unit{};
-    Real factor = 1;  ///< from the unit of summary.json to this one
-};
 
 /// Depth along or across the channel with the physical bracket [mm/m3]. `half` columns to each side are
 /// averaged first: single spheres are hit by chance.
@@ -41,8 +34,8 @@ void draw_means(const DepthChart& chart, const std::vector<const EnsembleCase*>&
 /// Mean and standard error of a metric over the one number that was swept.
 void draw_against_value(const Ensemble& e, const Metric& metric, const std::filesystem::path& picture);
 
-/// A row for each case: each seed a point, their mean with its standard error.
-void draw_cases(const Ensemble& e, const Metric& metric, const std::filesystem::path& picture);
+/// A panel for each metric, in it a row for each case: each seed a point, their mean with its standard error.
+void draw_cases(const Ensemble& e, const std::vector<Metric>& metrics, const std::filesystem::path& picture);
 
 /// How far each value of each sweep moves the metric's mean from the base; the parameter that moves it most
 /// on top.

@@ -1,6 +1,7 @@
 #pragma once
 // An ensemble as it lies in its folder: the plan, the log of GNU parallel, and what each run left.
 
+#include "metrics.hpp"
 #include "statistics.hpp"
 
 #include <abrade/core/require.hpp>
@@ -105,6 +106,9 @@ struct Ensemble {
     std::string title;
 
     bool one_at_a_time() const { return mode == "one at a time"; }
+    bool compares_fluids() const {
+        return std::find(swept.begin(), swept.end(), "fluid.model") != swept.end();
+    }
     std::size_t count(bool (EnsembleRun::*is)() const) const {
         std::size_t sum = 0;
         for (const EnsembleCase& one : cases) sum += one.count(is);
@@ -165,6 +169,27 @@ inline std::vector<Real> numbers(const nlohmann::ordered_json& json) {
     return values;
 }
 
+/// Throws InputError where a summary is not that of the run, or lacks a figure that the report shows.
+inline void check_summary(const nlohmann::ordered_json& summary, const EnsembleRun& run,
+                          const Ensemble& ensemble) {
+    constexpr auto remedy = "delete the folder of this run, and the same command makes it again";
+    const auto scene = [](const std::string& file, const std::string& seed) {
+        return "of " + file + " under seed " + seed;
+    };
+    const std::string expected = scene(ensemble.file, run.seed),
+                      got = scene(summary.value("configuration", "no file"),
+                                  summary.contains("seed") ? summary["seed"].dump() : "none");
+    if (got != expected) fail({"summary.json", expected, {}, remedy}, got);
+    for (const Metric& one : known_metrics)
+        if (const auto found = summary.find(one.name);
+            found == summary.end() || !(found->is_number() || found->is_null()))
+            fail({"summary.json: " + one.name,
+                  "a number, or null where there was nothing to measure",
+                  {},
+                  remedy},
+                 found == summary.end() ? "nothing" : found->dump());
+}
+
 /// What the run left: its figures and depth lines, or why there are none.
 inline void read_run(const std::filesystem::path& folder, EnsembleRun& run, Reach& reach,
                      Ensemble& ensemble) {
@@ -182,6 +207,7 @@ inline void read_run(const std::filesystem::path& folder, EnsembleRun& run, Reac
             return nlohmann::ordered_json::parse(in);
         };
         const auto summary = parse("summary.json"), profiles = parse("profiles.json");
+        check_summary(summary, run, ensemble);
         flatten(summary, "", run, ensemble.metrics);
         ensemble.title = summary.at("title").get<std::string>();
         run.along = {numbers(profiles.at("x_m")), numbers(profiles.at("centre_depth_mm_per_m3"))};
@@ -190,6 +216,8 @@ inline void read_run(const std::filesystem::path& folder, EnsembleRun& run, Reac
                  profiles.at("compared_from_m").get<Real>(), profiles.at("compared_to_m").get<Real>()};
     } catch (const nlohmann::json::exception& error) {
         run.error = std::string("its results cannot be read: ") + error.what();
+    } catch (const InputError& error) {
+        run.error = error.what();
     }
 }
 

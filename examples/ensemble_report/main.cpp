@@ -3,6 +3,7 @@
 //
 //   examples/run ensemble_report [FOLDER] [--metric NAME]
 //
+// metrics        the figures of a run that are shown
 // ensemble       the folder: the plan, the log of GNU parallel, what each run left
 // statistics     mean, standard deviation, standard error
 // ensemble_json  every figure, for programs
@@ -30,26 +31,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::array<Metric, 12> known_metrics{
-    {{"centre_depth_mm_per_m3", "depth at the centre per converted sediment", "mm/m3"},
-     {"worn_volume_m3", "worn volume", "cm3", 1e6},
-     {"worn_band_width_m", "width of the worn band", "m"},
-     {"max_depth_mm", "greatest depth", "mm"},
-     {"energy_lost_sliding_J", "energy lost in sliding on concrete", "J"},
-     {"energy_lost_normal_J", "energy lost in impacts on concrete", "J"},
-     {"bonds_broken", "bonds broken"},
-     {"largest_collision_share", "largest share of a cell that one collision wore"},
-     {"mean_stone_speed_m_per_s", "mean speed of the stones", "m/s"},
-     {"sediment_passed_m3", "sediment past the gauge", "m3"},
-     {"stones_fed", "stones fed"},
-     {"wall_s", "wall time of a run", "s"}}};
 constexpr std::size_t metrics_beside = 4;  ///< columns of the table of cases
 constexpr std::size_t most_means = 7;      ///< curves that one chart can tell apart
+constexpr auto ledger_residual = "ledger_residual_relative";
+constexpr Real closed_ledger = 1e-9;  ///< round-off of millions of steps is far below
 
-Metric metric_of(const std::string& name) {
-    const auto found = std::find_if(known_metrics.begin(), known_metrics.end(),
-                                    [&](const Metric& one) { return one.name == name; });
-    return found == known_metrics.end() ? Metric{name, name} : *found;
+/// The metric itself first, then those that stand beside it.
+std::vector<Metric> shown_metrics(const Ensemble& e, const Metric& metric) {
+    std::vector<Metric> shown{metric};
+    const auto add = [&](const Metric& one) {
+        if (one.name != metric.name) shown.push_back(one);
+    };
+    if (e.compares_fluids())
+        for (const std::string_view name : fluid_metrics) add(metric_of(name));
+    else
+        for (std::size_t i = 0; shown.size() <= metrics_beside; ++i) add(known_metrics[i]);
+    return shown;
 }
 
 std::string with_unit(const Metric& m) { return m.unit.empty() ? m.title : m.title + " [" + m.unit + "]"; }
@@ -84,9 +81,7 @@ ReportTable table_of_one_case(const Ensemble& e) {
 }
 
 ReportTable table_of_cases(const Ensemble& e, const Metric& metric) {
-    std::vector<Metric> shown{metric};
-    for (const Metric& m : known_metrics)
-        if (m.name != metric.name && shown.size() <= metrics_beside) shown.push_back(m);
+    const std::vector<Metric> shown = shown_metrics(e, metric);
     ReportTable table{.title = "Mean ± standard error of each case", .columns = {"case", "runs"}};
     for (const Metric& m : shown) table.columns.push_back(with_unit(m));
     if (e.one_at_a_time())
@@ -188,8 +183,12 @@ void add_metric_chart(const Ensemble& e, const Metric& metric, const fs::path& c
     } else if (sweeps_one_number(e)) {
         draw_against_value(e, metric, charts_folder / "metric.png");
         report.figures.push_back({charts_folder / "metric.png", "Against " + e.swept.front() + "."});
+    } else if (e.compares_fluids()) {
+        draw_cases(e, shown_metrics(e, metric), charts_folder / "metric.png");
+        report.figures.push_back({charts_folder / "metric.png",
+                                  "What each level of fluid changes, and the wall time that it costs."});
     } else {
-        draw_cases(e, metric, charts_folder / "metric.png");
+        draw_cases(e, {metric}, charts_folder / "metric.png");
         report.figures.push_back({charts_folder / "metric.png", "All cases."});
     }
 }
@@ -206,6 +205,21 @@ std::string explanation(const Ensemble& e) {
            "and take "
            "two for different where they are apart by more than twice the standard error of their "
            "difference.";
+}
+
+/// Whether every run closed its energy ledger.
+std::string ledger_note(const Ensemble& e) {
+    Real largest = 0;
+    std::string where;
+    for (const EnsembleCase& one : e.cases)
+        for (const EnsembleRun& run : one.runs)
+            if (run.ok() && !std::isnan(largest) && !(run.of.at(ledger_residual) <= largest))
+                largest = run.of.at(ledger_residual), where = one.label() + ", seed " + run.seed;
+    const std::string residual = "the largest relative residual is " + short_number(largest, 2) +
+                                 (where.empty() ? "" : " (" + where + ")");
+    return largest <= closed_ledger ? "The energy ledger closes in every run: " + residual + "."
+                                    : "Warning: the energy ledger does not close: " + residual +
+                                          ", more than round-off (" + short_number(closed_ledger) + ").";
 }
 
 int evaluate(const fs::path& folder, const std::string& wanted) {
@@ -237,6 +251,7 @@ int evaluate(const fs::path& folder, const std::string& wanted) {
         add_metric_chart(e, metric, charts_folder, report);
         add_depth_charts(e, charts_folder, report);
     }
+    if (ok > 0) report.notes.push_back(ledger_note(e));
     report.notes.push_back(
         "Each run has a report of its own, with all parameters, in runs/CASE/seed_N/results.");
     report.versions = build_versions();

@@ -325,6 +325,8 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
     draw_centre_line(c, r, centre);
     draw_ledger(r, ledger);
     const bool flows = r.water && !r.water->depth_map.empty();
+    const bool feels_stones =
+        c.fluid.model == "shallow" || c.fluid.model == "unresolved" || c.fluid.model == "resolved";
     if (flows) draw_water(c, *r.water, folder.path("water.png"));
 
     const Bracket bracket;
@@ -393,9 +395,12 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
         "The measured curve of the original experiment is not available in the text that this model was "
         "built from. The result is judged by the bracket, by the closed ledger and by the hydraulics.",
         std::string(!r.water ? "There is no water."
-                    : flows  ? "The water runs by itself: it drives the stones and does not feel them."
-                             : "The water is prescribed: it drives the stones and does not feel them.") +
-            " Stones drag like spheres of the same volume.",
+                    : !flows ? "The water is prescribed: it drives the stones and does not feel them."
+                    : feels_stones
+                        ? "The water runs by itself: it drives the stones and feels them."
+                        : "The water runs by itself: it drives the stones and does not feel them.") +
+            " Stones drag like spheres of the same volume" +
+            (c.fluid.model == "resolved" ? ", but for those that the water flows around." : "."),
         "Parameters marked as assumptions are open in the source; they are choices, not data."};
     report.versions = build_versions();
     report.versions.push_back({"configuration", c.source, ""});

@@ -71,6 +71,51 @@ grep -qxF "$first" broken_off/jobs.log || fail "a run that was done is run again
 [ "$(cut -f 1 broken_off/jobs.log | sort | uniq -d | wc -l)" -eq 0 ] || fail "a run stands twice in jobs.log"
 grep -q '"ok": 3' broken_off/ensemble.json || fail "not all runs count"
 
+# --- levels of fluid: each runs to its end and closes its ledger, and the report says what each costs and changes
+levels=(none uniform shallow grid unresolved resolved) end_time=0.1
+# Stones of 3 cells, that water flows around where it is resolved, and smaller ones.
+of_levels=(--fluid all --seeds 1 --set fluid.spacing=0.04 --set sediment.rate=0.03 --set 'sediment.sizes=[0.05,0.12]' --set 'sediment.fractions=[0.3,0.7]')
+run levels "${of_levels[@]}"
+[ $code -eq 0 ] || fail "all levels of fluid: exit code $code: $(cat levels.log)"
+holds "all levels are done" "$(value levels/ensemble.json ok) == 6 && $(value levels/ensemble.json failed) == 0"
+level() { echo "levels/runs/$1_fluid.model=${levels[$1 - 1]}/seed_1"; }  # NUMBER: its folder
+of_level() { value "$(level "$1")/results/summary.json" "$2"; }
+largest=0
+for number in 1 2 3 4 5 6; do
+    name="${levels[number - 1]}"
+    holds "$name: stones wear" "$(of_level $number worn_volume_m3) > 0"
+    holds "$name: the ledger closes" "$(of_level $number ledger_residual_relative) < 1e-12"
+    largest="$(awk "BEGIN { x = $(of_level $number ledger_residual_relative); printf \"%.2g\", (x > $largest ? x : $largest) }")"
+    row="$(grep -F ">fluid.model = $name<" levels/report.html)" || fail "$name is not in the table"
+    for key in wall_s energy_lost_normal_J energy_lost_sliding_J sampled_stone_speed_m_per_s stones_off_bed_share; do
+        shown="$(printf '%.4g' "$(of_level $number $key)")"
+        [[ "$row" == *">$shown (one value)<"* ]] || fail "$name: the table has no $key of $shown: $row"
+        drawn="$(of_level $number $key)"
+        grep -qF "${drawn%.0} " levels/charts/metric.dat || fail "$name: the picture has no $key"
+    done
+done
+grep -qF "ledger closes in every run: the largest relative residual is $largest (" levels/report.html || fail "the report does not say that the ledgers close: $largest"
+[ "$(for n in 1 2 3 4; do of_level $n fluid; done | paste -sd " ")" = '"NoFluid" "UniformFlow" "TwoWayShallow" "GridFluid"' ] || fail "levels do not run in fluids of their own"
+holds "unresolved: no stone is" "$(of_level 5 stones_resolved) == 0"
+holds "resolved: large stones are" "$(of_level 6 stones_resolved) > 0 && $(of_level 6 stones_averaged) > 0"
+holds "water drives stones" "$(of_level 1 sampled_stone_speed_m_per_s) < $(of_level 6 sampled_stone_speed_m_per_s)"
+# ... a summary of another scene, or without a figure of the table, is named, and its remedy helps
+sed -i 's/"configuration": "quick.toml"/"configuration": "paper.toml"/' "$(level 1)/results/summary.json"
+sed -i '/"stones_off_bed_share"/d' "$(level 2)/results/summary.json"
+code=0
+"$programs/ensemble_report" levels >mixed.log 2>&1 || code=$?
+[ $code -eq 3 ] || fail "summaries of others: exit code $code: $(cat mixed.log)"
+grep -q 'model=none, seed 1.*summary.json must be of quick.toml under seed 1, got of paper.toml under seed 1; delete the folder' mixed.log || fail "another scene is not named: $(cat mixed.log)"
+grep -q 'model=uniform, seed 1.*summary.json: stones_off_bed_share must be a number.*, got nothing; delete the folder' mixed.log || fail "a missing figure is not named: $(cat mixed.log)"
+holds "neither counts" "$(value levels/ensemble.json ok) == 4"
+cp levels/jobs.log before.log
+rm -r "$(level 1)" "$(level 2)"
+run levels "${of_levels[@]}"
+[ $code -eq 0 ] || fail "levels made again: exit code $code: $(cat levels.log)"
+holds "all levels are done again" "$(value levels/ensemble.json ok) == 6"
+[ "$(grep -cxFf before.log levels/jobs.log)" -eq 5 ] || fail "other levels than the two that were deleted are run again"
+end_time=0.05
+
 # --- failed runs are named and leave the others alone; they are run again only when asked
 fails=(--seeds 2 --sweep contact.stiffness=30 --sweep contact.friction=0.3 --one-at-a-time)
 run failing "${fails[@]}" --metric worn_volume_m3
@@ -165,6 +210,9 @@ refused "nothing to vary" '--one-at-a-time must come with' --one-at-a-time
 refused "unknown option" 'no option --sed; did you mean --se' --sed 3
 refused "two fluids" 'fluid.model must be given once' --fluid shallow --sweep 'fluid.model="grid"'
 refused "unknown fluid" 'fluid.model.*shallow' --fluid shalow
+refused "unknown fluid among several" 'fluid.model.*shallow' --fluid none,shalow
+refused "fluid twice" 'fluid.model must list different values, got "none" twice' --fluid none,grid,none
+refused "fluids twice" 'fluid.model must be given once' --fluid all --set 'fluid.model="grid"'
 refused "two files" 'one FILE.toml must be given' paper.toml
 refused "missing programs" '--programs must be a folder' --programs "$folder/homes"
 scene=nowhere.toml
