@@ -79,14 +79,16 @@ public:
                       (1 / body.inverse_mass + m.added);
             const Vec3 by_added = added_mass_ * pressed + (m.added_momentum - m.added * m.v) / stage.dt;
             body.velocity = m.v;
-            if (!covers[cloud.which()[n]].cut) body.load = {pressed + m.by_drag + by_added, Vec3::Zero()};
+            const Vec3 after_blow = m.struck.taken_by(m.added, body, stage.dt);
+            if (!covers[cloud.which()[n]].cut)
+                body.load = {pressed + m.by_drag + by_added + after_blow, Vec3::Zero()};
             m.pressed = pressed;
             m.reaction = stage.dt * by_added - m.reaction;
         });
         memory_.clear();
         for (std::size_t n = 0; n < motion_.size(); ++n)
-            memory_.push_back(
-                {bodies[cloud.which()[n]].id, motion_[n].v, motion_[n].pressed, motion_[n].reaction});
+            memory_.push_back({bodies[cloud.which()[n]].id, motion_[n].v, motion_[n].pressed,
+                               motion_[n].reaction, motion_[n].struck.velocity});
         std::ranges::sort(memory_, {}, &Memory::id);
     }
 
@@ -103,14 +105,16 @@ private:
         Vec3 pushed = Vec3::Zero();          ///< of the water by that impulse, over its share [m/s]
         Real rate = 0;                       ///< beta / (rho V) [1/s]
         Real added = 0;                      ///< C_m rho V, as far as there is water [kg]
+        Struck struck;                       ///< by contacts
     };
     /// What is known of a body from the last step.
     struct Memory {
         Index id = 0;
         Vec3 v = Vec3::Zero(), pressed = Vec3::Zero(), reaction = Vec3::Zero();
+        Vec3 struck = Vec3::Zero();  ///< velocity by contacts [m/s]
         static void fields(auto&& field) {
             field("id", &Memory::id), field.bytes("v", &Memory::v), field.bytes("pressed", &Memory::pressed);
-            field.bytes("reaction", &Memory::reaction);
+            field.bytes("reaction", &Memory::reaction), field.bytes("struck", &Memory::struck);
         }
     };
     static constexpr Real tiny = 1e-300;
@@ -188,6 +192,7 @@ private:
         const Vec3 last = before ? before->pressed : pressed_by(n, faces, cloud, old, stage.density);
         if (falls) {
             m.begun = body.velocity / body.inverse_mass - dt * body.load.force;
+            if (before) m.struck = {body, before->v, before->struck, stage.falls, dt};
             const Vec3 drags = dt * m.rate * weight;
             const Vec3 heavy = Vec3::Constant(1 / body.inverse_mass + m.added) + drags;
             const Vec3 gains = dt * (1 + added_mass_) * last + drags.cwiseProduct(flow);

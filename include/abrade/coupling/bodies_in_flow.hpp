@@ -106,20 +106,22 @@ protected:
         Six by_friction = Six::Zero();  ///< [N], [N m]
         Real curvature = 0;
         Real covers = 0;  ///< mass of water in the body's place [kg]
+        Struck struck;    ///< by contacts
     };
     /// What is known of a body from the last step.
     struct Memory {
         Index id = 0;
-        Six q = Six::Zero();        ///< velocity and spin that it left [m/s], [rad/s]
-        Six gained = Six::Zero();   ///< by these in the step [m/s2], [rad/s2]
-        Real covers = 0;            ///< mass of water in the body's place [kg]
-        Six slip = Six::Zero();     ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
-        Six pressed = Six::Zero();  ///< force and torque of the pressure [N], [N m]
+        Six q = Six::Zero();         ///< velocity and spin that it left [m/s], [rad/s]
+        Six gained = Six::Zero();    ///< by these in the step [m/s2], [rad/s2]
+        Real covers = 0;             ///< mass of water in the body's place [kg]
+        Six slip = Six::Zero();      ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
+        Six pressed = Six::Zero();   ///< force and torque of the pressure [N], [N m]
+        Vec3 struck = Vec3::Zero();  ///< velocity by contacts [m/s]
 
         static void fields(auto&& field) {
             field("id", &Memory::id), field.bytes("q", &Memory::q), field.bytes("gained", &Memory::gained);
             field("covers", "kg", &Memory::covers), field.bytes("slip", &Memory::slip);
-            field.bytes("pressed", &Memory::pressed);
+            field.bytes("pressed", &Memory::pressed), field.bytes("struck", &Memory::struck);
         }
     };
 
@@ -202,6 +204,8 @@ protected:
                 expected.template head<3>() += added * (before->q + dt * before->gained).template head<3>();
             else
                 expected.template head<3>() += added * body.velocity;
+            if (before)
+                motion.struck = {body, before->q.template head<3>(), before->struck, stage_.falls, dt};
             motion.held = (heavier + drag).ldlt().solve(begun + expected + brought);
             motion.q = inertia.ldlt().solve(begun + brought - drag * motion.held);
         }
@@ -223,12 +227,15 @@ protected:
             FlowBody& body = bodies_[b];
             const Six& q = motion_[b].q;
             const Six pressed = stage_.density * detail::pressed(faces_.cover(b), pressure);
-            const Six load = load_of(b, pressed);
+            Six load = load_of(b, pressed);
+            load.template head<3>() +=
+                motion_[b].struck.taken_by(of_a_sphere * motion_[b].covers, body, stage_.dt);
             body.velocity = q.template head<3>(), body.angular_velocity = q.template tail<3>();
             if (!faces_.cover(b).cut) body.load = {load.template head<3>(), load.template tail<3>()};
             const Memory* const before = with_id(memory_, body.id);
             const Six gained = before ? Six(q - before->q) / stage_.dt : Six(Six::Zero());
-            next.push_back({body.id, q, gained, motion_[b].covers, slip_of(b, u), pressed});
+            next.push_back(
+                {body.id, q, gained, motion_[b].covers, slip_of(b, u), pressed, motion_[b].struck.velocity});
         }
         std::ranges::sort(next, {}, &Memory::id);
         memory_ = std::move(next);

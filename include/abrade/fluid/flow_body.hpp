@@ -42,6 +42,25 @@ struct FlowBody {
     Real diameter() const noexcept { return std::cbrt(6 / pi * volume); }  ///< of a sphere as large [m]
 };
 
+/// Velocity that contacts gave a body since the last exchange, and what is left of it if it was a blow:
+/// what the last time had of it as well is a force that lasts.
+struct Struck {
+    Vec3 velocity = Vec3::Zero(), blow = Vec3::Zero();  ///< [m/s]
+
+    Struck() = default;
+    /// `had`: velocity after the last exchange, of a body that has fallen since then.
+    Struck(const FlowBody& body, const Vec3& had, const Vec3& before, const Vec3& falls, Real dt)
+        : velocity(body.velocity - had - dt * (falls + body.inverse_mass * body.load.force)), blow(velocity) {
+        for (int a = 0; a < 3; ++a)
+            if (velocity[a] * before[a] > 0)
+                blow[a] -= std::copysign(std::min(std::abs(velocity[a]), std::abs(before[a])), velocity[a]);
+    }
+    /// The part of added mass in it [N]: the water took it at once, and does not go on to.
+    Vec3 taken_by(Real added, const FlowBody& body, Real dt) const noexcept {
+        return added / ((1 + added * body.inverse_mass) * dt) * blow;
+    }
+};
+
 /// Of records in the order of their ids; null: it has none.
 template <class Record>
 const Record* with_id(const std::vector<Record>& records, Index id) noexcept {
