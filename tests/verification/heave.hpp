@@ -25,8 +25,7 @@ struct Heave {
 };
 /// Let go a fifth of its radius above its place at rest, in a pool 12 radii wide and 6 deep: its waves take
 /// more than a period to the sides and back. The surface lies `off` cells above a face, and steps are
-/// `step_of` sqrt(R / g): what the water alone allows is a tenth of the period, too long for a body that
-/// swings.
+/// `step_of` sqrt(R / g): the water alone allows 0.4, too long for a body that swings.
 inline Heave heave_of(Real ratio, Real cells, Real off, Real step_of = 0.025) {
     constexpr Real radius = 0.1, g = 9.81;
     const Real h = 2 * radius / cells, level = 6 * radius + off * h;
