@@ -20,6 +20,14 @@ TEST_CASE("drag over Reynolds number and cells to a diameter") {
     }
 }
 
+TEST_CASE("drag on 8 cells to a diameter") {
+    for (const auto& [reynolds, curve] : {std::pair{20.0, 2.61}, std::pair{100.0, 1.09}}) {
+        const Drag drag = drag_in({.cells = 8, .reynolds = reynolds, .off = 0.3}, 12);
+        MESSAGE("8 cells, Re " << reynolds << ": " << drag.mean << ", curve " << curve);
+        CHECK(std::abs(drag.mean / curve - 1) < 0.05);
+    }
+}
+
 TEST_CASE("a sphere that is led along the stream: its drag varies little as it crosses the grid") {
     for (const auto& [cells, most] : {std::pair{4.0, 0.02}, std::pair{6.0, 0.008}}) {
         const Drag drag = drag_in({.cells = cells, .led = 0.2}, 12);
