@@ -31,6 +31,24 @@ TEST_CASE("a fixed ball that pierces the surface has the buoyancy of what is bel
     }
 }
 
+TEST_CASE("a surface at the height of cells' centres, where a ball pierces it, is as any other") {
+    for (const Real off : {0.0, 1e-7, 1e-3})
+        for (const Real z : {0.6, 0.625, 0.645})
+            for (const Real ratio : {0.0, 0.5}) {
+                auto params = pool().params();
+                params.water = [off](const Vec3& x) { return 0.625 + off - x.z(); };
+                params.largest_step = 0.005;
+                Pool water(params, {}, MonolithicSolids<>({.resolved_from = 0}));
+                Ball ball({0.515, 0.505, z}, 0.1, 1000 * ratio);
+                advance(water, ball, 0.5);
+                CAPTURE(off);
+                CAPTURE(z);
+                CAPTURE(ratio);
+                CHECK(fastest(water) < (ratio == 0 ? 0.05 : 0.5));
+                if (ratio > 0) CHECK(std::abs(ball.body.velocity.z()) < 0.5);
+            }
+}
+
 TEST_CASE("a ball that rises swims as deep as Archimedes has it; no water is lost") {
     struct Start {
         Real ratio, z;

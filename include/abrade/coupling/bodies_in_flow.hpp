@@ -214,7 +214,7 @@ protected:
 
     /// The water's velocity by all but pressure and weight.
     Real unpushed(const CoveredFace& f, const Field<Real>& old) const noexcept {
-        return f.velocity + stage_.dt * (f.gradient(old) - stage_.falls[f.axis]);
+        return f.velocity + stage_.dt * (f.gradient(old) - f.weight * stage_.falls[f.axis]);
     }
 
     /// Once velocities are known: `q` and `load` of resolved bodies are handed out, and what the next step

@@ -21,6 +21,7 @@ struct CoveredFace : SolidFace {
     Real lighter = 1;  ///< the water's density over the face's, where `weigh` asks for it [-]
     Real heavier = 0;  ///< what the body adds to the face's density, over this [-]
     Real per_gap = 0;  ///< 1 over the distance of the pressures to both sides [1/m]
+    Real weight = 1;   ///< share of the face's inertia that is below the surface [-]
     bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
     bool leaves = false;  ///< at a side where water leaves: only what is added to a pressure pushes there
     Real mass = 0;        ///< of its control volume, as far as walls leave it open and it is wet [kg]
@@ -236,7 +237,7 @@ private:
                 CoveredFace& f = faces_[i->second];
                 f.open = 1, f.water = left, f.covered = f.share, f.per_gap = std::abs(open.slope);
                 f.high_wet = open.cell == f.face, f.low_wet = open.cell == f.low;
-                f.leaves = open.plain == 0;
+                f.leaves = open.plain == 0, f.weight = open.weight;
             }
             surface_[key(open.axis, open.face)] = left;
         }

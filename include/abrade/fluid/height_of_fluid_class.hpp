@@ -169,6 +169,9 @@ public:
     /// After a step that went wrong.
     void take_back_solids() { solids_ = solids_before_; }
 
+    /// Somewhere in the cell's column.
+    bool has_solid(Offset cell) const noexcept { return solids_.has(columns_.column(layout_.number(cell))); }
+
     bool can_advance(const FaceField<Dim>& u, Real dt) const { return dt * outflow_rate(u) <= courant_end; }
     Real stable_step(const FaceField<Dim>& velocity) const {
         const Real rate = outflow_rate(velocity);

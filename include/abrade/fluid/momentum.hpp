@@ -193,7 +193,6 @@ private:
                    lower = lower_half_[a].row(row), upper = upper_half_[a].row(row);
         const auto gravity = static_cast<State>(s_.time_step * s_.acceleration[a]);
         const auto sliver = static_cast<State>(s_.bounded_below);
-        const State jumps = sliver < 1 ? 0 : 1;
         const auto kept = static_cast<State>(s_.kept), fresh = static_cast<State>(1 - s_.kept);
         const auto early = static_cast<State>(s_.kept == 0), late = 1 - early;
         const State* const __restrict p = s_.pressure.data() + start;
@@ -248,15 +247,13 @@ private:
                     };
                     widen(begin[i]), widen(outer_below[i]), widen(outer_above[i]), widen(velocity[i - 1]);
                     widen(velocity[i + 1]), widen(middle_below[i]), widen(middle_above[i]);
-                    // A surface that jumps to where it is told, in a body, makes full what was not.
-                    const State cut = mass + jumps * ((mass_before < mass ? mass_before : mass) - mass);
                     const State some = mass > State(least_mass) ? mass : State(least_mass);
                     const State carried =
                         (mass_before * (begin[i] + late * faster) + change(i)) / some - late * faster;
                     const State raised = carried < least ? least : carried;
                     const State bounded = raised > most ? most : raised;
                     const State moved = mass < State(least_mass) ? begin[i]
-                                        : cut < sliver           ? bounded
+                                        : mass < sliver          ? bounded
                                                                  : carried;
                     value[k] = kept * velocity[i] + fresh * (moved + faster) - late * by_pressure;
                 }

@@ -356,23 +356,23 @@ private:
     }
 
     /// A cell's pressure that is 0 at its surface pushes all that enters the cell through that face. Where
-    /// walls leave less of the face than of another one of the cell it would shoot out: so the face has the
-    /// inertia of half the way to the next centre at least, of which only what lies below the surface has
-    /// weight. At rest that is the same.
+    /// walls leave less of the face than of another one of the cell, or solids take some of either, it would
+    /// shoot out: so the face has the inertia of half the way to the next centre at least, of which only what
+    /// lies below the surface has weight. At rest that is the same.
     OpenFace open_face(OpenFace open, Real share) const {
         constexpr Real least_way = 0.5;
-        if (!walls_ || share >= least_way) return open;
+        if (share >= least_way) return open;
+        bool shoots = false;
+        if constexpr (requires { liquid_.has_solid(open.cell); }) shoots = liquid_.has_solid(open.cell);
         const CellNumber<Dim> cell = layout().number(open.cell);
         const auto area = [&](int a, Offset face) {
             return walls_->open_area()[a][face] / grid_->size(a, cell[a]);
         };
-        const Real own = area(open.axis, open.face);
-        for (int a = 0; a < Dim; ++a)
+        const Real own = walls_ ? area(open.axis, open.face) : 0;
+        for (int a = 0; a < Dim && walls_; ++a)
             for (const Offset face : {open.cell, open.cell + layout().stride[a]})
-                if (area(a, face) > own) {
-                    open.slope = open.plain / least_way, open.weight = share / least_way;
-                    return open;
-                }
+                shoots |= area(a, face) > own;
+        if (shoots) open.slope = open.plain / least_way, open.weight = share / least_way;
         return open;
     }
 
