@@ -17,20 +17,20 @@ int main(int argc, char** argv) {
         const fs::path folder = argc > 1 ? argv[1] : "out/charts/sphere_drag";
         fs::create_directories(folder);
         const fs::path measured = argc > 2 ? argv[2] : "bench/peers/sphere_measured.csv";
-        charts::PanelChart chart{
-            .title = "Drag of a fixed sphere in a stream, grids of 2 cells to a diameter on",
-            .x = {.label = "time on one processor",
-                  .unit = "s",
-                  .min = 0.02,
-                  .max = 400.0,
-                  .logarithmic = true},
-            .y = {.label = "error of the drag, root mean square over places",
-                  .unit = "",
-                  .min = 0.005,
-                  .max = 1.0,
-                  .logarithmic = true},
-            .panels = {{.title = "Re 100"}, {.title = "Re 20"}}};
+        charts::PanelChart chart{.title = "Drag of a fixed sphere in a stream, 2 to 6 cells to a diameter",
+                                 .x = {.label = "time on one processor",
+                                       .unit = "s",
+                                       .min = 0.02,
+                                       .max = 100.0,
+                                       .logarithmic = true},
+                                 .y = {.label = "error of the drag, rms over places",
+                                       .unit = "",
+                                       .min = 0.01,
+                                       .max = 2.0,
+                                       .logarithmic = true},
+                                 .panels = {{.title = "Re 100"}, {.title = "Re 20"}}};
         for (const ReferenceRow& row : reference_table(fs::relative(measured, ABRADE_TEST_DATA).string())) {
+            if (row.is("variant", "graded")) continue;  // as exact in long steps, which take less
             const std::string name =
                 (row.is("code", "abrade") ? "Abrade: " : "OpenFOAM: ") + row.texts.at("variant");
             const auto found = std::ranges::find(chart.names, name);
