@@ -75,10 +75,13 @@ struct Stream {
     Real reynolds = 100;  ///< of the stream
     Real off = 0;         ///< of the sphere's centre from a corner of cells [cell]
     Real led = 0;         ///< its speed
+    Real step = 0;        ///< largest of time; 0: what is stable
+    Real courant = 0.5, tolerance = 1e-5;
 };
 struct Drag {
     Real mean = 0;    ///< C_d against the speed that meets it [-]
     Real varies = 0;  ///< root mean square of its change as the sphere crosses the grid, over the mean [-]
+    Index cells = 0, steps = 0;
 };
 /// Means over the last quarter of `end`.
 template <class Solids = MonolithicSolids<>>
@@ -90,7 +93,9 @@ Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_f
                                  .sides = Sides<3>::all(Side::slip),
                                  .density = 1,
                                  .viscosity = 1 / stream.reynolds,
-                                 .tolerance = 1e-5};
+                                 .courant = stream.courant,
+                                 .largest_step = stream.step,
+                                 .tolerance = stream.tolerance};
     params.sides[0] = {Side::inflow, Side::outflow};
     params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
     params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
@@ -105,7 +110,8 @@ Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_f
         sum += drag, squares += square(drag), ++count;
     }
     const Real mean = sum / count;
-    return {mean, std::sqrt(std::max(squares / count - square(mean), 0.0)) / mean};
+    return {mean, std::sqrt(std::max(squares / count - square(mean), 0.0)) / mean,
+            water.grid().layout().cell_count(), water.steps()};
 }
 
 }  // namespace resolved
