@@ -241,6 +241,13 @@ protected:
         memory_ = std::move(next);
     }
 
+    /// Sums up what friction takes at each face [J].
+    void find_loss(auto&& of_face) {
+        const std::span<CoveredFace> all = faces_.all();
+        lost_to_friction_ = parallel_sum<Real>(static_cast<Index>(all.size()), [&](Index i) {
+            return of_face(std::as_const(all[static_cast<std::size_t>(i)]));
+        });
+    }
     void finish() {
         fastest_ = 0;
         for (const FlowBody& body : bodies_) fastest_ = std::max(fastest_, body.velocity.norm());
@@ -262,7 +269,6 @@ protected:
     std::vector<Motion> motion_;  ///< [body], and 0 of the cloud
     CoveredFaces faces_;
     FlowStage stage_;
-    Real lost_to_friction_ = 0;  ///< in the last step [J]
 
 private:
     static constexpr Real of_a_sphere = 0.5;  ///< added mass over that of its place [-]
@@ -287,6 +293,7 @@ private:
     std::vector<SolidFlux> fluxes_;  ///< as the last step left them
     std::vector<Real> beyond_;       ///< mixture's velocity beyond the water's at these faces [m/s]
     Real fastest_ = 0;
+    Real lost_to_friction_ = 0;       ///< in the last step [J]
     std::vector<Index> seen_, here_;  ///< ids of the bodies of the last step and of this one, sorted
 };
 

@@ -77,10 +77,9 @@ public:
                 f.target = detail::along(f, motion_[b].held), f.solid = detail::along(f, motion_[b].q);
         });
         averaged_.force(faces_.of_cloud(), faces_.cloud(), bodies_, pressure, stage_);
-        lost_to_friction_ = 0;
-        for (const CoveredFace& f : faces_.all())
-            lost_to_friction_ +=
-                f.mass * f.water * f.held * (1 - 0.5 * f.held) * square(f.target - f.velocity);
+        find_loss([](const CoveredFace& f) {
+            return f.mass * f.water * f.held * (1 - 0.5 * f.held) * square(f.target - f.velocity);
+        });
         faces_.by_planes(
             [&](const CoveredFace& f) { u[f.axis][f.face] += f.held * (f.target - f.velocity) + f.given; },
             [&](CoveredFace& f) { f.velocity = u[f.axis][f.face]; },

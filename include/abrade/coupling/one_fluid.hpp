@@ -112,7 +112,11 @@ public:
                          [&](const CoveredFace& f) {
                              u[f.axis][f.face] += f.held * (detail::along(f, motion_[f.body].q) - f.velocity);
                          });
-        find_loss(u);
+        // What water gains by mixing and replacing it gains from a body that moves with `q`.
+        find_loss([&](const CoveredFace& f) {
+            const Real now = u[f.axis][f.face], moves = detail::along(f, motion_[f.body].q);
+            return f.mass * part_of(f) * (now - f.target) * (moves - 0.5 * (now + f.target));
+        });
         find_fluxes([&](const CoveredFace& f) { return -f.held * (f.solid - f.velocity); });
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {
             return Six(pressed + motion_[b].by_friction + motion_[b].push);
@@ -163,15 +167,6 @@ private:
         motion.push = (brought - drag * motion.q) / stage_.dt;
     }
 
-    /// What water gains by mixing and replacing it gains from a body that moves with `q`.
-    void find_loss(const FaceField<3>& u) noexcept {
-        lost_to_friction_ = 0;
-        for (const CoveredFace& f : faces_.all()) {
-            const Real now = u[f.axis][f.face], gained = now - f.target;
-            lost_to_friction_ +=
-                f.mass * part_of(f) * gained * (detail::along(f, motion_[f.body].q) - 0.5 * (now + f.target));
-        }
-    }
     /// Water in a face, its part beside this one of the bodies that cover it [-].
     static Real part_of(const CoveredFace& f) noexcept {
         const Real water = f.water / std::max(f.open, tiny), all = 1 - water;
