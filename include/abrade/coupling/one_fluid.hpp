@@ -55,7 +55,8 @@ public:
         Real retracted = 0.3;  ///< r [cell]
         void validate() const {
             require(retracted >= 0 && retracted < 1,
-                    {"OneFluidSolids.retracted", "from 0 to below 1", "cells", "0.3 is calibrated on drag"},
+                    {"OneFluidSolids.retracted", "from 0 to below 1", "cells",
+                     "0.3 is a compromise of slow and fast flow"},
                     retracted);
         }
         void visit(auto&& f) const { f("retracted", retracted, "cell"); }
@@ -69,12 +70,11 @@ public:
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                const FaceField<3>* open_area, Real density) {
         stand(grid, sides, bodies, 0, open_area, params_.retracted);
-        ratio_.clear();
-        for (const FlowBody& body : bodies_) ratio_.push_back(Density::of(body, density) / density);
+        density_ = density, ratio_.assign(bodies.size(), 1);
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) {
         faces_.close(m, surface);
-        parallel_for_resolved([&](std::size_t b) { load_wet_part(b); });
+        parallel_for_resolved([&](std::size_t b) { find_ratio(b); });
         faces_.weigh(m, [&](std::size_t b) { return ratio_[b]; });
     }
 
@@ -126,8 +126,9 @@ public:
 
 private:
     /// What lies below the surface carries what does not.
-    void load_wet_part(std::size_t b) noexcept {
-        if (bodies_[b].inverse_mass == 0) return;
+    void find_ratio(std::size_t b) noexcept {
+        ratio_[b] = Density::of(bodies_[b], density_) / density_;
+        if (!mixes || bodies_[b].inverse_mass == 0) return;
         Real wet = 0;
         for (const CoveredFace& f : faces_.of(b))
             if (f.axis == Grid<3>::vertical && f.open > 0) wet += f.share * f.area / f.per_gap;
@@ -177,6 +178,7 @@ private:
     static constexpr Real tiny = 1e-300, least_wet = 1e-3;
 
     Params params_;
+    Real density_ = 1;         ///< of the water [kg/m3]
     std::vector<Real> ratio_;  ///< [body] density in the pressure's equation, over the water's [-]
 };
 
