@@ -132,6 +132,29 @@ TEST_CASE("a ball that contacts hold on the floor feels no kick at the exchange"
     }
 }
 
+TEST_CASE("added mass takes its part of a blow once: the load does not go on with it") {
+    for (const Real radius : {0.12, 0.2}) {  // averaged, resolved
+        auto params = box(16, 0.1, Side::slip);
+        params.gravity.setZero();
+        Water water(params);
+        std::vector<Ball> balls{{Vec3(0.81, 0.77, 0.8), radius, 2650}};
+        FlowBody& body = balls[0].body;
+        const Real dt = 1e-3, mass = 1 / body.inverse_mass;
+        step(water, balls, dt);
+        body.velocity.z() += 1;
+        step(water, balls, dt);
+        const Real after = body.velocity.z();
+        CAPTURE(radius);
+        CHECK(after == doctest::Approx(2.65 / 3.15).epsilon(0.03));
+        CHECK(std::abs(body.load.force.z()) < 0.15 * mass * (1 - after) / dt);
+        for (int k = 0; k < 3; ++k) {
+            step(water, balls, dt);
+            CHECK(body.velocity.z() == doctest::Approx(after).epsilon(0.03));
+            CHECK(std::abs(body.load.force.z()) < 0.05 * mass * (1 - after) / dt);
+        }
+    }
+}
+
 TEST_CASE("a ball that goes with the stream leaves the box as if there were no side") {
     for (const Real radius : {0.06, 0.21}) {  // averaged, resolved
         auto params = box(12, 0.1, Side::slip);
