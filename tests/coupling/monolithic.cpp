@@ -1,44 +1,13 @@
 // Bodies whose velocities are found together with the pressure: rest, added mass, momentum, drag, contact
 // with the floor, the ledger of both.
-#include "resolved_bodies.hpp"
-
-#include <doctest/doctest.h>
+#include "exchange_checks.hpp"
 
 #include <string>
 
 using namespace resolved;
 
-namespace {
-
-constexpr Real g = 9.81;
-
-Water::Params box(int n, Real h, Side side) {
-    return {.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(h)},
-            .sides = Sides<3>::all(side),
-            .gravity = {0, 0, -g},
-            .density = 1000,
-            .viscosity = 1e-3,
-            .tolerance = 1e-8};
-}
-
-}  // namespace
-
 TEST_CASE("buoyancy is rho g V wherever a fixed ball is, and does not turn it") {
-    for (const Real cells : {0.6, 2.0, 4.0})
-        for (const Real off : {0.0, 0.3, 0.5}) {
-            auto params = box(16, 0.1, Side::slip);
-            params.tolerance = 1e-12;
-            Water water(params);
-            std::vector<Ball> balls{
-                {Vec3(0.8 + 0.1 * off, 0.8 - 0.04 * off, 0.8 + 0.07 * off), 0.05 * cells, 0}};
-            for (int k = 0; k < 20; ++k) step(water, balls, 0.05);
-            const FlowBody& body = balls[0].body;
-            const Real weight = 1000 * g * body.volume;
-            CAPTURE(cells);
-            CAPTURE(off);
-            CHECK((body.load.force - Vec3(0, 0, weight)).norm() < 1e-7 * weight);
-            CHECK(body.load.torque.norm() < 1e-7 * weight * 0.1);
-        }
+    check_buoyancy<MonolithicSolids<>>();
 }
 
 TEST_CASE(
@@ -78,37 +47,7 @@ TEST_CASE("a box that falls with its ball has no weight: nothing moves against a
 }
 
 TEST_CASE("momentum of water and balls: kept to the pressure's tolerance while they cross the grid") {
-    auto params = box(16, 0.1, Side::periodic);
-    params.gravity.setZero(), params.viscosity = 2, params.tolerance = 1e-9;
-    Water water(params);
-    std::vector<Ball> balls{{Vec3(0.63, 0.8, 0.78), 0.2, 2650, 0}, {Vec3(1.1, 0.81, 1.15), 0.16, 500, 1}};
-    balls[0].body.velocity = {0.9, 0.2, 0}, balls[0].body.angular_velocity = {0, 3, 0};
-    const auto momentum = [&] {
-        Vec3 sum = Vec3::Zero();
-        for (int a = 0; a < 3; ++a)
-            water.grid().for_each([&](const auto&, Offset c) { sum[a] += water.velocity()[a][c]; });
-        sum *= 1000 * cube(0.1);
-        for (const Ball& ball : balls) {
-            const Real mass = 1 / ball.body.inverse_mass;
-            sum += mass * ball.body.velocity;
-        }
-        return sum;
-    };
-    // The water's velocity fills the whole control volume: what of it is solid is taken off.
-    const auto within = [&] {
-        Vec3 sum = Vec3::Zero();
-        for (const SolidCover& cover : water.solids().covers())
-            for (const SolidFace& f : cover.faces)
-                sum[f.axis] += 1000 * f.share * f.volume() * water.velocity()[f.axis][f.face];
-        return sum;
-    };
-    step(water, balls, 0.02);
-    const Vec3 start = momentum() - within();
-    for (int k = 0; k < 50; ++k) {
-        step(water, balls, 0.02);
-        CHECK((momentum() - within() - start).norm() < 1e-6 * start.norm());
-    }
-    CHECK(balls[0].body.position.x() > 0.9);
+    check_momentum<MonolithicSolids<>>();
 }
 
 TEST_CASE("a ball that contacts hold on the floor feels no kick at the exchange") {

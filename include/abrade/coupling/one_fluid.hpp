@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <concepts>
-#include <limits>
 #include <span>
 
 namespace abrade {
@@ -52,7 +51,7 @@ public:
     static constexpr bool present = true;
 
     struct Params {
-        Real retracted = 0.3;  ///< r [cell]
+        Real retracted = 0.3;  ///< by how much the surface of what is replaced is [cell]
         void validate() const {
             require(retracted >= 0 && retracted < 1,
                     {"OneFluidSolids.retracted", "from 0 to below 1", "cells",
