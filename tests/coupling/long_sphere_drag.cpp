@@ -2,6 +2,8 @@
 // docs/verification/resolved_bodies.md. Bounds are what was measured and some more, not what is wanted.
 #include "resolved_bodies.hpp"
 
+#include <abrade/coupling/one_fluid.hpp>
+
 #include <doctest/doctest.h>
 
 using namespace resolved;
@@ -49,4 +51,22 @@ TEST_CASE("added mass on 8 cells, of a ball of a hundredth of the water's densit
     const Real a = balls[0].body.velocity.z() / 1e-3, exact = 9.81 * 0.99 / 0.51;
     MESSAGE("off by " << 100 * (a / exact - 1) << " %");
     CHECK(a == doctest::Approx(exact).epsilon(0.03));
+}
+
+TEST_CASE("direct forcing, mean over three places on the grid") {
+    struct Measured {
+        Real reynolds, cells, drag;
+    };
+    for (const Measured& m :
+         {Measured{100, 2, 1.49}, Measured{100, 3, 1.38}, Measured{100, 4, 1.42}, Measured{100, 6, 1.29},
+          Measured{20, 2, 1.91}, Measured{20, 3, 2.07}, Measured{20, 4, 2.33}, Measured{20, 6, 2.44}}) {
+        Real mean = 0;
+        for (const Real off : {0.0, 0.25, 0.5})
+            mean += drag_in({.cells = m.cells, .reynolds = m.reynolds, .off = off}, m.reynolds == 20 ? 6 : 10,
+                            DirectForcing())
+                        .mean /
+                    3;
+        MESSAGE("Re " << m.reynolds << ", " << m.cells << " cells: " << mean);
+        CHECK(mean == doctest::Approx(m.drag).epsilon(0.02));
+    }
 }

@@ -181,7 +181,7 @@ private:
     std::vector<Real> ratio_;  ///< [body] density in the pressure's equation, over the water's [-]
 };
 
-/// The paper's exchange, and the cheap one.
+/// The paper's exchange, and that whose pressure knows the water's density alone.
 using MixtureSolids = OneFluidSolids<MixtureDensity>;
 using DirectForcing = OneFluidSolids<WaterDensity>;
 
