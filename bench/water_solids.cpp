@@ -104,7 +104,7 @@ void resolved(benchmark::State& state) {
 void lengths(benchmark::internal::Benchmark* of) {
     of->ArgNames({"cells", "threads"})
         ->ArgsProduct({{225}, {1, 2}})
-        ->Args({1786, 2})  // 1,000 stones
+        ->ArgsProduct({{1786}, {1, 2}})  // 1,000 stones
         ->Iterations(20)
         ->UseRealTime()
         ->Unit(benchmark::kMillisecond);

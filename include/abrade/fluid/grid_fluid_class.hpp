@@ -91,6 +91,7 @@ public:
         } else {
             saved_velocity_ = velocity_;
         }
+        if constexpr (Solids::present) mixture_ = stage_;
         if constexpr (Solids::present && !has_surface)
             find_pressure_of_weight(1e-12);  // bodies feel it first
     }
@@ -346,9 +347,8 @@ private:
 
     /// What carries the water, from its velocity.
     void mix(const FaceField<Dim, State>& u, auto&& with_solids) requires Solids::present {
-        parallel_tasks(Dim, [&](Index a) { mixture_[static_cast<int>(a)] = u[static_cast<int>(a)]; });
-        with_solids();
-        sides_.fill(mixture_);
+        sides_.copy(u, mixture_, rows());
+        with_solids(), sides_.fill(mixture_, rows());
     }
 
     /// What moves the water alone.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,12 +36,13 @@ inline Real carried_share(const Field<Real>& open, Offset before, Offset side) n
 
 }  // namespace detail
 
-/// A side of the box, or what of it lies beside rows that are wet.
+/// A side of the box, or what of it lies beside rows that are wet, or beside some planes.
 template <int Dim>
 struct SidePart {
     int axis = 0;
     bool high = false;
-    const WetRows<Dim>* rows = nullptr;  ///< none: all of it
+    const WetRows<Dim>* rows = nullptr;                                      ///< none: all of it
+    RowRange planes{-Layout<Dim>::ghosts, std::numeric_limits<int>::max()};  ///< of a side along them, in 3-D
 };
 
 /// Fills ghosts of a staggered velocity, and its normal component on sides that fix it. Tangential ghosts
@@ -117,20 +119,28 @@ public:
     /// `rows`: where water is and what it may reach; none: everywhere.
     template <class State>
     void fill(FaceField<Dim, State>& u, const WetRows<Dim>* rows = nullptr) const {
-        parallel_tasks(Dim, [&](Index component) {
-            const int a = static_cast<int>(component);
-            // Axis by axis, ghosts of the former ones included: so corners get theirs.
-            for (int b = 0; b < Dim; ++b) {
-                if (sides_.periodic(b)) {
-                    wrap_axis(u[a], grid_->layout(), b);
-                    continue;
-                }
-                for (const bool high : {false, true}) {
-                    const SidePart<Dim> side{b, high, rows};
-                    a == b ? normal(u[a], side) : tangential(u[a], a, side);
-                }
+        // Axis by axis, ghosts of the former ones included: so corners get theirs.
+        for (int b = 0; b < Dim; ++b) {
+            if (sides_.periodic(b)) {
+                parallel_tasks(Dim, [&](Index a) { wrap_axis(u[a], grid_->layout(), b); });
+                continue;
             }
-        });
+            for_planes_along(b, [&](const RowRange& planes) {
+                for (int a = 0; a < Dim; ++a)
+                    for (const bool high : {false, true}) {
+                        const SidePart<Dim> side{b, high, rows, planes};
+                        a == b ? normal(u[a], side) : tangential(u[a], a, side);
+                    }
+            });
+        }
+    }
+
+    /// What `fill` does not find by itself.
+    template <class State>
+    void copy(const FaceField<Dim, State>& from, FaceField<Dim, State>& to, const WetRows<Dim>* rows) const {
+        if (!rows) return parallel_tasks(Dim, [&](Index a) { to[a] = from[a]; });
+        rows->copy(from, to);
+        for_upper_outflows([&](int a, Offset face) { to[a][face] = from[a][face]; });
     }
 
     /// Faces through which water leaves go on as the ones before them; where walls leave more of them `open`,
@@ -200,7 +210,10 @@ public:
             return side.rows->row(inside(0), Dim == 3 ? inside(Dim - 1) : 0);
         };
         CellNumber<Dim> number = corner;
-        for (int i = 0; i < first; ++i) {
+        const bool by_planes = Dim == 3 && axis != Layout<Dim>::outer;  // a line in each
+        const int begin = by_planes ? side.planes.begin + g : 0;
+        const int end = by_planes && side.planes.end < first - g ? side.planes.end + g : first;
+        for (int i = begin; i < end; ++i) {
             const Offset line = from + i * step(p.first);
             const auto count = static_cast<std::size_t>(i) * static_cast<std::size_t>(second);
             RowRange part{0, second};
@@ -227,6 +240,19 @@ public:
     }
 
 private:
+    /// Calls body(planes) for parts of a side, in parallel.
+    void for_planes_along(int axis, auto&& body) const {
+        constexpr int g = Layout<Dim>::ghosts;
+        if (Dim == 2 || axis == Layout<Dim>::outer) return body(SidePart<Dim>{}.planes);
+        const int planes = grid_->layout().planes() + 2 * g;
+        parallel_blocks(
+            planes,
+            [&](Index, Index first, Index last) {
+                body(RowRange{static_cast<int>(first) - g, static_cast<int>(last) - g});
+            },
+            planes_in_block);
+    }
+    static constexpr Index planes_in_block = 32;
     void for_upper_outflows(auto&& body) const {
         for_sides(Side::outflow, [&](int a, bool high) {
             if (high) along_side({a, high}, [&](Offset c, std::size_t) { body(a, c + step(a)); });
