@@ -80,8 +80,10 @@ public:
             const Vec3 by_added = added_mass_ * pressed + (m.added_momentum - m.added * m.v) / stage.dt;
             body.velocity = m.v;
             const Vec3 after_blow = m.struck.taken_by(m.added, body, stage.dt);
-            if (!covers[cloud.which()[n]].cut)
-                body.load = {pressed + m.by_drag + by_added + after_blow, Vec3::Zero()};
+            if (!covers[cloud.which()[n]].cut) {
+                body.load.force = pressed + m.by_drag + by_added + after_blow, body.load.torque.setZero();
+                m.struck.hand_out(body, m.added, stage.dt);
+            }
             m.pressed = pressed;
             m.reaction = stage.dt * by_added - m.reaction;
         });
@@ -191,8 +193,9 @@ private:
         m.added_momentum = m.added * (had + dt * stage.falls);
         const Vec3 last = before ? before->pressed : pressed_by(n, faces, cloud, old, stage.density);
         if (falls) {
-            m.begun = body.velocity / body.inverse_mass - dt * body.load.force;
             if (before) m.struck = {body, before->v, before->struck, stage.falls, dt};
+            m.begun = body.velocity / body.inverse_mass - dt * (body.load.force + body.load.shared) +
+                      body.load.along * m.struck.velocity;
             const Vec3 drags = dt * m.rate * weight;
             const Vec3 heavy = Vec3::Constant(1 / body.inverse_mass + m.added) + drags;
             const Vec3 gains = dt * (1 + added_mass_) * last + drags.cwiseProduct(flow);

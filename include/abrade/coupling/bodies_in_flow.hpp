@@ -191,8 +191,12 @@ protected:
         motion.held = motion.q = detail::velocity_of(body);
         if (body.inverse_mass > 0) {
             const Matrix6 inertia = detail::inertia_of(body);
+            if (before)
+                motion.struck = {body, before->q.template head<3>(), before->struck, stage_.falls, dt};
+            Six went = Six::Zero();  // what contacts gave to the water along with the body
+            went.template head<3>() = body.load.along * motion.struck.velocity - dt * body.load.shared;
             const Six begun =
-                inertia * motion.q - dt * (Six() << body.load.force, body.load.torque).finished();
+                inertia * motion.q - dt * (Six() << body.load.force, body.load.torque).finished() + went;
             // Friction meets the last force of the pressure, whatever cells have become wet or dry since, and
             // what added mass makes of the rest.
             Matrix6 heavier = inertia;
@@ -204,8 +208,6 @@ protected:
                 expected.template head<3>() += added * (before->q + dt * before->gained).template head<3>();
             else
                 expected.template head<3>() += added * body.velocity;
-            if (before)
-                motion.struck = {body, before->q.template head<3>(), before->struck, stage_.falls, dt};
             motion.held = (heavier + drag).ldlt().solve(begun + expected + brought);
             motion.q = inertia.ldlt().solve(begun + brought - drag * motion.held);
         }
@@ -231,7 +233,10 @@ protected:
             load.template head<3>() +=
                 motion_[b].struck.taken_by(of_a_sphere * motion_[b].covers, body, stage_.dt);
             body.velocity = q.template head<3>(), body.angular_velocity = q.template tail<3>();
-            if (!faces_.cover(b).cut) body.load = {load.template head<3>(), load.template tail<3>()};
+            if (!faces_.cover(b).cut) {
+                body.load.force = load.template head<3>(), body.load.torque = load.template tail<3>();
+                motion_[b].struck.hand_out(body, of_a_sphere * motion_[b].covers, stage_.dt);
+            }
             const Memory* const before = with_id(memory_, body.id);
             const Six gained = before ? Six(q - before->q) / stage_.dt : Six(Six::Zero());
             next.push_back(

@@ -15,9 +15,16 @@ namespace abrade {
 struct FlowLoad {
     Vec3 force = Vec3::Zero();   ///< [N]
     Vec3 torque = Vec3::Zero();  ///< [N m]
+    Real along = 0;              ///< mass of water that goes along as contacts move the body [kg]
+    Vec3 shared = Vec3::Zero();  ///< its part of the contacts' force, as `force` counts it already [N]
 
     static void fields(auto&& field) {
         field("force", "N", &FlowLoad::force), field("torque", "N m", &FlowLoad::torque);
+        field("along", "kg", &FlowLoad::along), field("shared", "N", &FlowLoad::shared);
+    }
+    /// What acts on a body of that mass beside its contacts' whole force [N].
+    Vec3 force_among(const Vec3& contacts, Real mass) const noexcept {
+        return force + shared - along / (mass + along) * contacts;
     }
     FlowLoad& operator+=(const FlowLoad& o) noexcept { return force += o.force, torque += o.torque, *this; }
     friend FlowLoad operator-(const FlowLoad& a, const FlowLoad& b) noexcept {
@@ -50,14 +57,24 @@ struct Struck {
     Struck() = default;
     /// `had`: velocity after the last exchange, of a body that has fallen since then.
     Struck(const FlowBody& body, const Vec3& had, const Vec3& before, const Vec3& falls, Real dt)
-        : velocity(body.velocity - had - dt * (falls + body.inverse_mass * body.load.force)), blow(velocity) {
+        : velocity(body.velocity - had -
+                   dt * (falls + body.inverse_mass * (body.load.force + body.load.shared))),
+          blow(velocity) {
         for (int a = 0; a < 3; ++a)
             if (velocity[a] * before[a] > 0)
                 blow[a] -= std::copysign(std::min(std::abs(velocity[a]), std::abs(before[a])), velocity[a]);
     }
     /// The part of added mass in it [N]: the water took it at once, and does not go on to.
     Vec3 taken_by(Real added, const FlowBody& body, Real dt) const noexcept {
+        if (body.load.along > 0) return Vec3::Zero();  // it went along
         return added / ((1 + added * body.inverse_mass) * dt) * blow;
+    }
+    /// Hands out how much water goes along from here on, and its part of the contacts' force.
+    void hand_out(FlowBody& body, Real added, Real dt) const noexcept {
+        if (body.inverse_mass == 0) return;
+        const Real mass = 1 / body.inverse_mass;
+        body.load.shared = added / (mass + added) * (mass + body.load.along) / dt * velocity;
+        body.load.along = added;
     }
 };
 

@@ -275,8 +275,7 @@ private:
     /// it.
     FluidStep smooth(FluidStep step) const {
         if constexpr (Solids::present)
-            if (const Real speed = solids_.fastest(); speed > 0)
-                step.lower(params_.courant * grid_->smallest() / speed, "solids");
+            step.lower(detail::step_of_solids(*grid_, params_, solids_.fastest(), has_surface), "solids");
         if (!params_.body_force || !std::isfinite(step.seconds)) return step;
         try {
             step.lower(detail::smooth_step<Dim>(params_.body_force, time_, step.seconds), "body force");

@@ -4,6 +4,7 @@
 #include <abrade/fluid/flow_body.hpp>
 #include <abrade/sim/state.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -13,8 +14,16 @@ namespace abrade {
 /// theirs.
 class FluidDue {
 public:
-    Real of(const auto& fluid) {
-        if (fluid.time() != begins_) begins_ = fluid.time(), ends_ = begins_ + fluid.stable_step().seconds;
+    /// Before the first exchange the fluid does not know how fast bodies are: they go half their radius.
+    template <class P>
+    Real of(const auto& fluid, const State<P>& state) {
+        if (fluid.time() == begins_) return ends_;
+        begins_ = fluid.time(), ends_ = begins_ + fluid.stable_step().seconds;
+        const Particles& p = state.particles;
+        for (std::size_t b = 0; state.accounts.flow_work == 0 && b < p.velocity.size(); ++b) {
+            const Real way = 0.5 * p.radius[static_cast<std::size_t>(p.first_sphere[b])];
+            ends_ = std::min(ends_, begins_ + way / p.velocity[b].norm());
+        }
         return ends_;
     }
 

@@ -59,6 +59,12 @@ inline void book(Ledger& to, const MotionSums& motion, const Vec3& gravity) noex
     to.buoyancy_work += motion.buoyancy, to.flow_work += motion.flow;
 }
 
+/// Contacts move the water along that a body takes with it: its added mass.
+inline void take_along(FlowLoad& fluid, const Vec3& contacts, Real mass) noexcept {
+    if (fluid.along > 0) fluid.force = fluid.force_among(contacts, mass);
+}
+inline void take_along(const auto&, const Vec3&, Real) noexcept {}
+
 /// What a kick does to a single sphere, and the works it does: a force is paired with the mean of the
 /// velocities before and after, so works add up to the change in kinetic energy exactly.
 struct KickedSphere {

@@ -215,7 +215,7 @@ private:
     /// The fluid comes to where the solids are, if a step to `t` would have it take more than one of its own.
     void exchange_before(Real t) {
         auto& fluid = state_.policies.fluid;
-        if (!(fluid.time() < now_) || fluid_due_.of(fluid) >= t) return;
+        if (!(fluid.time() < now_) || fluid_due_.of(fluid, state_) >= t) return;
         make_whole();
         FlowBodies<P> flow(state_);
         fluid.advance(now_, flow.bodies());
