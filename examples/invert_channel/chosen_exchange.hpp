@@ -4,14 +4,21 @@
 #include <abrade/coupling/monolithic.hpp>
 #include <abrade/coupling/one_fluid.hpp>
 
+#include <span>
 #include <string_view>
-#include <variant>
+#include <utility>
 
 namespace abrade::examples {
 
 /// One of the library's exchanges. Each call is handed on; it does its work on planes of faces or on all
 /// bodies, so what a choice costs is not seen.
 class ChosenExchange {
+    static decltype(auto) visit(auto& self, auto&& use) {
+        if (self.choice_ == 1) return use(self.mixture_);
+        if (self.choice_ == 2) return use(self.direct_);
+        return use(self.monolithic_);
+    }
+
 public:
     static constexpr std::string_view name = "ChosenExchange";
     static constexpr bool present = true;
@@ -74,11 +81,6 @@ public:
     }
 
 private:
-    static decltype(auto) visit(auto& self, auto&& use) {
-        if (self.choice_ == 1) return use(self.mixture_);
-        if (self.choice_ == 2) return use(self.direct_);
-        return use(self.monolithic_);
-    }
     const BodiesInFlow& base() const {
         if (choice_ == 1) return mixture_;
         if (choice_ == 2) return direct_;
