@@ -91,7 +91,7 @@ for number in 1 2 3 4 5 6; do
         shown="$(printf '%.4g' "$(of_level $number $key)")"
         [[ "$row" == *">$shown (one value)<"* ]] || fail "$name: the table has no $key of $shown: $row"
         drawn="$(of_level $number $key)"
-        grep -qF "${drawn%.0} " levels/charts/metric.dat || fail "$name: the picture has no $key"
+        awk -v drawn="$drawn" 'NF && $1 + 0 == drawn + 0 { found = 1 } END { exit !found }' levels/charts/metric.dat || fail "$name: the picture has no $key"
     done
 done
 grep -qF "ledger closes in every run: the largest relative residual is $largest (" levels/report.html || fail "the report does not say that the ledgers close: $largest"

@@ -51,8 +51,8 @@ TEST_CASE("stones are told apart, and one that rolls hops nowhere") {
 }
 
 TEST_CASE("the regression at the shear of the channel") {
-    // 59 Pa, tau*_c = 0.03 (0.045): 1.9 (1.3) m/s for 0.04 m, 1.7 (1.1) for 0.05 m, 0.8 (none) for 0.1 m, none
-    // for 0.15 m.
+    // 59 Pa, tau*_c = 0.03 (0.045): 1.9 (1.3) m/s for 0.04 m, 1.7 (1.1) for 0.05 m, 0.8 (none) for 0.1 m,
+    // none for 0.15 m.
     const auto speed = [](Real diameter, Real critical) {
         return Saltation{.shear = 59, .critical = critical}.speed({diameter, 2650});
     };
