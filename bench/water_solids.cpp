@@ -1,9 +1,10 @@
-// What stones in water on a grid cost: the validation's channel below a height, in cells of 0.02 m, with its
-// mixture of stones in the flow, against the same water alone.
+// What stones in water on a grid cost, by exchange: the validation's channel below a height, in cells of 0.02
+// m, with its mixture of stones in the flow, against the same water alone.
 
 #include "../tests/verification/channel_water.hpp"
 
 #include <abrade/coupling/monolithic.hpp>
+#include <abrade/coupling/one_fluid.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -101,6 +102,12 @@ void by_size(benchmark::State& state) { steps(state, Stones{}, stones_in(static_
 void resolved(benchmark::State& state) {
     steps(state, Stones({.resolved_from = 0}), stones_in(static_cast<int>(state.range(0))));
 }
+void mixture(benchmark::State& state) {
+    steps(state, MixtureSolids{}, stones_in(static_cast<int>(state.range(0))));
+}
+void direct(benchmark::State& state) {
+    steps(state, DirectForcing{}, stones_in(static_cast<int>(state.range(0))));
+}
 void lengths(benchmark::internal::Benchmark* of) {
     of->ArgNames({"cells", "threads"})
         ->ArgsProduct({{225}, {1, 2}})
@@ -113,5 +120,7 @@ BENCHMARK(alone)->Name("water_solids_none")->Apply(lengths);
 BENCHMARK(unresolved)->Name("water_solids_unresolved")->Apply(lengths);
 BENCHMARK(by_size)->Name("water_solids_by_size")->Apply(lengths);
 BENCHMARK(resolved)->Name("water_solids_resolved")->Apply(lengths);
+BENCHMARK(mixture)->Name("water_solids_mixture")->Apply(lengths);
+BENCHMARK(direct)->Name("water_solids_direct")->Apply(lengths);
 
 }  // namespace

@@ -2,9 +2,9 @@
 // The charts of an ensemble: depth lines of all seeds, a metric against what was swept, a tornado.
 
 #include "ensemble.hpp"
-#include "metrics.hpp"
 
 #include "../common/charts.hpp"
+#include "../common/metrics.hpp"
 #include "../invert_channel/results.hpp"
 
 #include <filesystem>

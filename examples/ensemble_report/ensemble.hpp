@@ -1,8 +1,9 @@
 #pragma once
 // An ensemble as it lies in its folder: the plan, the log of GNU parallel, and what each run left.
 
-#include "metrics.hpp"
 #include "statistics.hpp"
+
+#include "../common/metrics.hpp"
 
 #include <abrade/core/require.hpp>
 
@@ -107,7 +108,8 @@ struct Ensemble {
 
     bool one_at_a_time() const { return mode == "one at a time"; }
     bool compares_fluids() const {
-        return std::find(swept.begin(), swept.end(), "fluid.model") != swept.end();
+        return std::ranges::any_of(
+            swept, [](const std::string& key) { return key == "fluid.model" || key == "fluid.exchange"; });
     }
     std::size_t count(bool (EnsembleRun::*is)() const) const {
         std::size_t sum = 0;
@@ -154,6 +156,7 @@ inline std::string last_error(const std::filesystem::path& log) {
 inline void flatten(const nlohmann::ordered_json& json, const std::string& prefix, EnsembleRun& run,
                     std::vector<std::string>& names) {
     for (const auto& [key, value] : json.items()) {
+        if (prefix + key == "level") continue;  // figures that stand by themselves as well
         if (value.is_object()) flatten(value, prefix + key + ".", run, names);
         if (!value.is_number() && !value.is_null()) continue;
         if (key == "seed" || key == "threads") continue;

@@ -3,7 +3,6 @@
 //
 //   examples/run ensemble_report [FOLDER] [--metric NAME]
 //
-// metrics        the figures of a run that are shown
 // ensemble       the folder: the plan, the log of GNU parallel, what each run left
 // statistics     mean, standard deviation, standard error
 // ensemble_json  every figure, for programs
@@ -48,8 +47,6 @@ std::vector<Metric> shown_metrics(const Ensemble& e, const Metric& metric) {
         for (std::size_t i = 0; shown.size() <= metrics_beside; ++i) add(known_metrics[i]);
     return shown;
 }
-
-std::string with_unit(const Metric& m) { return m.unit.empty() ? m.title : m.title + " [" + m.unit + "]"; }
 
 /// "0.27 ± 0.04": the error with two digits, the mean to the same place.
 std::string with_error(const Statistics& s, Real factor) {

@@ -1,9 +1,10 @@
 #pragma once
-// What has passed along the channel, where stones run across it, and the bed as it was when enough had
-// passed.
+// What has passed along the channel, where stones run across it and how those of each size do, and the bed as
+// it was when enough had passed.
 
 #include "config.hpp"
 #include "results.hpp"
+#include "travel.hpp"
 
 #include <abrade/dem/particles.hpp>
 #include <abrade/wear/concrete.hpp>
@@ -132,11 +133,23 @@ inline BedDepth measure_depth(const ChannelConfig& c, const Concrete& concrete, 
 /// milestones.
 class BedRecord {
 public:
-    explicit BedRecord(const ChannelConfig& c) : config_(c), passed_(c.invert.length) {
+    explicit BedRecord(const ChannelConfig& c) : config_(c), passed_(c.invert.length), travel_(c) {
         history_.x_m = c.comparison.gauges;
         history_.passed_m3.resize(history_.x_m.size());
         for (const Real x : {c.comparison.from, c.comparison.to})
             for (const Real volume : c.comparison.converted) wanted_.push_back({volume, x});
+    }
+
+    /// Between two looks of `operator()`, to see touches that are over by then.
+    template <class Sim>
+    void see_hops(const Sim& sim) {
+        travel_.see_hops(sim.particles(), on_concrete(sim));
+    }
+    /// Whether a look is due, `every` [s] after the last one.
+    bool due(Real time, Real time_step, Real every) {
+        if (time < next_look_ - 0.5 * time_step) return false;
+        next_look_ += every;
+        return true;
     }
 
     template <class Sim>
@@ -149,7 +162,8 @@ public:
         across_ = sim.concrete().lattice().count_across;
         for (auto* values : {&stones_, &impacts_, &sliding_})
             values->resize(static_cast<std::size_t>(across_), 0);
-        note_stones(sim.particles(), note_losses(sim));
+        note_losses(sim);
+        note_stones(sim.particles(), on_concrete(sim));
         for (Wanted& one : wanted_) {
             if (one.reached) continue;
             const Real converted = config_.wear.params().acceleration * passed_.past(one.past);
@@ -172,6 +186,7 @@ public:
         r.passed = history_, r.milestones = milestones_;
         r.stones_across = share_of(stones_, sum(stones_));
         r.sampled_stone_speed_m_per_s = speed_ / seen_, r.stones_off_bed_share = off_bed_ / seen_;
+        r.travel = travel_.results();
         const Real losses = sum(impacts_) + sum(sliding_);
         r.impacts_across = share_of(impacts_, losses), r.sliding_across = share_of(sliding_, losses);
     }
@@ -182,6 +197,7 @@ public:
             field("stones", &BedRecord::stones_), field("impacts", &BedRecord::impacts_),
             field("sliding", &BedRecord::sliding_), field("wanted", &BedRecord::wanted_),
             field("milestones", &BedRecord::milestones_), field("seen", &BedRecord::seen_);
+        field("travel", &BedRecord::travel_), field("next_look", "s", &BedRecord::next_look_);
         field("speed", "m/s", &BedRecord::speed_), field("off_bed", &BedRecord::off_bed_);
     }
 
@@ -226,33 +242,31 @@ private:
             if (p.kind[b] != Kind::stone || !compared(p.position[b])) continue;
             across(stones_, p.position[b]) += p.volume[b];
             seen_ += 1, speed_ += p.velocity[b].norm(), off_bed_ += on_bed[b] ? 0 : 1;
+            travel_.note(p, b, on_bed[b]);
         }
     }
 
     /// The power that contacts with concrete take up now. Elastic energy comes back, so over many looks the
-    /// mean is what is lost. Returns which bodies touch concrete.
+    /// mean is what is lost.
     template <class Sim>
-    std::vector<bool> note_losses(const Sim& sim) {
+    void note_losses(const Sim& sim) {
         const Particles& p = sim.particles();
-        std::vector<bool> touches(p.position.size(), false);
         sim.world().each_contact([&](Index first, Index second, const auto& contact, const auto& load) {
             const Real all = -load.force.dot(contact.velocity);
             const Real normal = -load.force.dot(contact.normal) * contact.velocity.dot(contact.normal);
             for (const Index body : {first, second}) {
                 if (body < 0 || p.site[static_cast<std::size_t>(body)] < 0) continue;
-                if (const Index other = first + second - body; other >= 0)
-                    touches[static_cast<std::size_t>(other)] = true;
                 const Vec3& x = p.position[static_cast<std::size_t>(body)];
                 if (compared(x)) across(impacts_, x) += normal, across(sliding_, x) += all - normal;
             }
         });
-        return touches;
     }
 
     const ChannelConfig& config_;
     PassedVolume passed_;
+    TravelRecord travel_;
     PassedHistory history_;
-    Real next_note_ = 0;  ///< [s]
+    Real next_note_ = 0, next_look_ = 0;  ///< [s]
     Index across_ = 0;
     std::vector<Real> stones_;                 ///< [across] volume, summed over looks
     std::vector<Real> impacts_, sliding_;      ///< [across] power, summed over looks

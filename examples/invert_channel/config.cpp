@@ -11,7 +11,7 @@ namespace abrade::examples {
 namespace {
 
 constexpr std::array<std::string_view, 3> levels{"static", "rigid", "dynamic"},
-    contact_laws{"hysteretic", "linear", "elastic_plastic"};
+    contact_laws{"hysteretic", "linear", "elastic_plastic"}, exchanges{"monolithic", "mixture", "direct"};
 constexpr std::array<std::string_view, 4> worn_outs{"fines", "grain", "recorded", "recedes"},
     overflows{"crater", "patch", "epoch", "drop"}, wear_laws{"sub_particle", "archard", "ishibashi", "none"};
 
@@ -297,7 +297,22 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
         {.fallback = feels_stones ? "height" : "volume",
          .help = "of the grid's water, volume: of any shape, height: one over each place, which is faster"});
     c.fluid.resolved_from = std::numeric_limits<Real>::infinity();
-    if (c.fluid.model == "resolved")
+    const bool resolves = c.fluid.model == "resolved";
+    const std::string model = "fluid.model = \"" + c.fluid.model + "\"";
+    if (!resolves) refuse(in, {"fluid.exchange", "fluid.resolved_from"}, model);
+    if (feels_stones) c.fluid.exchange = exchanges.front();
+    if (resolves)
+        c.fluid.exchange = in.choice(
+            "fluid.exchange", exchanges,
+            {.fallback = std::string(exchanges.front()),
+             .help = "of momentum with the stones, monolithic: their velocities are found with the pressure; "
+                     "one fluid whose velocity is made rigid in their place, mixture: the source's, whose "
+                     "pressure knows their density, direct: whose pressure knows the water's alone"});
+    const bool one_fluid = resolves && c.fluid.exchange != exchanges.front();
+    if (one_fluid)
+        refuse(in, {"fluid.resolved_from"},
+               "fluid.exchange = \"" + c.fluid.exchange + "\", which resolves all stones,");
+    if (resolves && !one_fluid)
         c.fluid.resolved_from =
             in.number("fluid.resolved_from",
                       {.unit = "cells",
@@ -462,6 +477,9 @@ void read_comparison(TomlReader& in, ChannelConfig& c) {
                                             "compare.from and compare.to; the last ends the run",
                                     .bound = Bound::positive});
     std::sort(compare.converted.begin(), compare.converted.end());
+    compare.hops = in.flag("compare.hops", {.fallback = true,
+                                            .help = "whether hops of stones are recorded, for which all are "
+                                                    "looked at every few steps"});
     compare.measured =
         in.file("compare.measured",
                 {.fallback = "", .help = "CSV of measured points of your own: x [m], depth [mm/m3]"});

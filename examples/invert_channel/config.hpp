@@ -26,6 +26,7 @@ struct Comparison {
     Real half_width = 0;             ///< of the strip that counts as the centre [m]
     std::vector<Real> gauges;        ///< x where the volume that has passed is recorded [m]
     std::vector<Real> converted;     ///< volumes at which the bed is kept; the last ends the run [m3]
+    bool hops = true;                ///< whether hops of stones are recorded
     std::filesystem::path measured;  ///< CSV of the user's own points, or empty
 };
 
@@ -35,6 +36,7 @@ struct WaterChoice {
     std::string surface;          ///< of a grid's water: volume or height
     bool energy = true;           ///< whether a grid's water keeps its energy account
     Real spacing = 0;             ///< of a grid [m]
+    std::string exchange;         ///< of momentum with stones, on a grid; a name of `exchanges`
     Real resolved_from = 0;       ///< stones that it flows around: of so many cells to a diameter
     Real inflow_depth = 0;        ///< at the centre line [m]; 0: of uniform flow
     bool begins_uniform = false;  ///< or dry

@@ -8,6 +8,7 @@
 // run_channel  a run with one of them
 // channel      from the configuration to a simulation, and from a simulation to results
 // bed          what has passed along the channel, and the bed when enough had
+// travel       how stones of each size travel
 // recorder     what is written while it runs
 // interruption checkpoints, and how a run goes on from one
 // pictures     what is drawn when it is done
@@ -20,6 +21,7 @@
 #include "../common/gnuplot.hpp"
 #include "../common/interrupt.hpp"
 #include "../common/measured_points.hpp"
+#include "../common/saltation.hpp"
 
 #include <abrade/core/parallel.hpp>
 #include <abrade/io/state_file.hpp>
@@ -109,7 +111,28 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         {"worn_out", name_of(c.concrete.worn_out)},
         {"overflow", name_of(c.concrete.overflow)},
         {"validity", validity(c, r)},
+        {"passed_share_of_fed", r.passed_share()},
         {"passed_volume", {{"x_m", r.passed.x_m}, {"time_s", r.passed.time_s}, {"m3", r.passed.passed_m3}}}};
+    for (const TravelOfSize& one : r.travel) {
+        nlohmann::ordered_json& travel = summary["stones_by_size"].emplace_back();
+        travel = {{"size_m", one.size_m},
+                  {"looks", one.looks},
+                  {"speed_m_per_s", one.speed_m_per_s},
+                  {"off_bed_share", one.off_bed_share},
+                  {"clear_of_bed_share", one.clear_share}};
+        if (c.comparison.hops)
+            travel.update(
+                {{"hops", one.hops}, {"hop_height_m", one.hop_height_m}, {"hop_length_m", one.hop_length_m}});
+        if (!r.water) continue;
+        const Saltation saltation{.shear = r.water->bed_shear_Pa, .water = c.water.density};
+        travel.update({{"sklar_dietrich_speed_m_per_s", saltation.speed({one.size_m, c.feed.density})},
+                       {"sklar_dietrich_hop_height_m", saltation.height({one.size_m, c.feed.density})}});
+    }
+    if (const SourceRun source; c.comparison.gauge == source.past_m)
+        summary["source"] = {{"end_s", source.end_s},
+                             {"sediment_fed_m3", source.fed_m3},
+                             {"sediment_passed_m3", source.passed_m3},
+                             {"passed_share_of_fed", source.passed_m3 / source.fed_m3}};
     for (const Milestone& one : r.milestones)
         summary["milestones"].push_back({{"converted_m3", one.converted_m3},
                                          {"past_m", one.past_m},
@@ -126,6 +149,12 @@ void write_summary(const ChannelConfig& c, const ChannelResults& r, const std::f
         summary["water_settled"] = r.water->off_manning() <= ChannelWater::settled_within;
         for (const auto& [name, value] : r.water->figures) summary[name] = value;
     }
+    nlohmann::ordered_json level;
+    const auto figures = level_figures(r);
+    for (std::size_t n = 0; n < figures.size(); ++n) level[std::string(fluid_metrics[n])] = figures[n];
+    level["model"] = c.fluid.model;
+    if (!c.fluid.exchange.empty()) level["exchange"] = c.fluid.exchange;
+    summary["level"] = level;
     std::ofstream file(path);
     file << summary.dump(2) << "\n";
     if (!file.flush()) throw FileError("cannot write '" + path.string() + "'");

@@ -3,6 +3,7 @@
 #include "../common/charts.hpp"
 #include "../common/measured_points.hpp"
 #include "../common/report.hpp"
+#include "../common/saltation.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -284,6 +285,64 @@ std::vector<ReportRow> summary_rows(const ChannelResults& r) {
     return rows;
 }
 
+/// Where there is none, nothing.
+std::string number_or_none(Real value) { return std::isfinite(value) ? short_number(value) : "none"; }
+
+/// One row of the table that an ensemble has of all levels.
+ReportTable level_table(const ChannelConfig& c, const ChannelResults& r) {
+    ReportTable table{.title = "What this level of fluid costs, and what it gives", .columns = {"level"}};
+    table.rows.push_back({"fluid.model = " + c.fluid.model +
+                          (c.fluid.exchange.empty() ? "" : ", fluid.exchange = " + c.fluid.exchange)});
+    const auto figures = level_figures(r);
+    for (std::size_t n = 0; n < figures.size(); ++n) {
+        const Metric metric = metric_of(fluid_metrics[n]);
+        table.columns.push_back(with_unit(metric));
+        table.rows.front().push_back(number_or_none(metric.factor * figures[n]));
+    }
+    return table;
+}
+
+ReportTable travel_table(const ChannelConfig& c, const ChannelResults& r) {
+    ReportTable table{.title = "How stones of each size travel in the compared section",
+                      .columns = {"size [m]", "speed [m/s]", "touches no concrete [-]",
+                                  "a tenth of its size off the bed [-]"}};
+    if (c.comparison.hops)
+        for (const char* column : {"hops", "height [m]", "length [m]"}) table.columns.push_back(column);
+    if (r.water)
+        for (const char* column : {"Sklar & Dietrich: speed [m/s]", "hop height [m]"})
+            table.columns.push_back(column);
+    for (const TravelOfSize& one : r.travel) {
+        std::vector<std::string> row{short_number(one.size_m), number_or_none(one.speed_m_per_s),
+                                     number_or_none(one.off_bed_share), number_or_none(one.clear_share)};
+        if (c.comparison.hops)
+            for (const std::string& text : {std::to_string(one.hops), number_or_none(one.hop_height_m),
+                                            number_or_none(one.hop_length_m)})
+                row.push_back(text);
+        if (r.water) {
+            const Saltation saltation{.shear = r.water->bed_shear_Pa, .water = c.water.density};
+            row.push_back(number_or_none(saltation.speed({one.size_m, c.feed.density})));
+            row.push_back(number_or_none(saltation.height({one.size_m, c.feed.density})));
+        }
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
+ReportTable passed_table(const ChannelConfig& c, const ChannelResults& r) {
+    ReportTable table{
+        .title = "Sediment that has passed",
+        .columns = {"run", "time [s]", "fed [m3]", "past x [m]", "passed [m3]", "of what was fed [-]"}};
+    table.rows.push_back({"this one", short_number(r.simulated_s), short_number(r.sediment_fed_m3),
+                          short_number(c.comparison.gauge), short_number(r.sediment_passed_m3),
+                          number_or_none(r.passed_share())});
+    if (const SourceRun source; c.comparison.gauge == source.past_m)
+        table.rows.push_back({"the source's, as it compares", short_number(source.end_s),
+                              short_number(source.fed_m3), short_number(source.past_m),
+                              short_number(source.passed_m3),
+                              short_number(source.passed_m3 / source.fed_m3, 2)});
+    return table;
+}
+
 /// Whether the bed that stones run on is that of the model.
 std::string bed_validity(const ChannelConfig& c, const ChannelResults& r) {
     const std::string size = short_number(c.lattice.sphere_diameter) + " m";
@@ -353,6 +412,7 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
         report.explanation +=
             " The concrete was worn through before the end of the run: give it more layers.";
     report.summary = summary_rows(r);
+    report.tables = {level_table(c, r), travel_table(c, r), passed_table(c, r)};
     report.figures = {
         {side,
          "Stones, water surface and the middle of the invert at the end, seen from the side. Concrete is "
@@ -402,6 +462,16 @@ void write_report(const ChannelConfig& c, const ChannelResults& r, const OutputF
             " Stones drag like spheres of the same volume" +
             (c.fluid.model == "resolved" ? ", but for those that the water flows around." : "."),
         "Parameters marked as assumptions are open in the source; they are choices, not data."};
+    if (c.comparison.hops)
+        report.notes.push_back(
+            "A hop is from one touch of concrete to the next, and rises by a tenth of the stone's size and "
+            "more. "
+            "It counts where it ends; where a channel is hardly longer than hops, long ones leave it "
+            "before." +
+            std::string(r.water ? " Sklar & Dietrich (2004) fitted mostly subcritical experiments over rough "
+                                  "beds, which scatter by a factor of 1.5 and more: beside each other, not a "
+                                  "test. None: by their critical stress (0.03) such a stone stays."
+                                : ""));
     report.versions = build_versions();
     report.versions.push_back({"configuration", c.source, ""});
     report.versions.push_back(

@@ -3,11 +3,15 @@
 
 #include "config.hpp"
 
+#include "../common/metrics.hpp"
+
 #include <abrade/core/fields.hpp>
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -103,6 +107,24 @@ struct PassedHistory {
     }
 };
 
+/// How stones of one size travel: means over looks at those in the compared section, and over hops that end
+/// there. NaN: there were none.
+struct TravelOfSize {
+    Real size_m = 0;
+    Index looks = 0;
+    Real speed_m_per_s = 0;
+    Real off_bed_share = 0;  ///< touches no concrete
+    Real clear_share = 0;    ///< is farther from the bed than a tenth of its size
+    Index hops = 0;          ///< higher than that
+    Real hop_height_m = 0, hop_length_m = 0;
+};
+
+/// What the source says of its own run: how much it had fed and how much had passed the place at which it
+/// compares (91 m3 of converted sediment over beta), presumably at the end.
+struct SourceRun {
+    Real end_s = 25, fed_m3 = 0.2075, past_m = 10, passed_m3 = 0.019;
+};
+
 struct ChannelResults {
     bool stopped = false;  ///< by a signal
     bool worn_through = false;
@@ -137,6 +159,7 @@ struct ChannelResults {
     std::vector<Real> stones_across;   ///< [across] volume x time of stones [-]
     std::vector<Real> impacts_across;  ///< [across] energy that contacts with concrete take, normal [-]
     std::vector<Real> sliding_across;  ///< [across] and tangential [-]
+    std::vector<TravelOfSize> travel;  ///< [class of stones]
     PassedHistory passed;
     std::vector<Milestone> milestones;
     std::vector<DrawnSphere> spheres;
@@ -149,7 +172,22 @@ struct ChannelResults {
     Real impact_share() const {  ///< of the losses on concrete [-]
         return energy_lost_normal_J / (energy_lost_normal_J + energy_lost_sliding_J);
     }
+    Real passed_share() const { return sediment_passed_m3 / sediment_fed_m3; }  ///< the gauge, of all fed [-]
 };
+
+/// What the level of fluid costs and what it gives: each of `fluid_metrics`.
+inline std::array<Real, fluid_metrics.size()> level_figures(const ChannelResults& r) {
+    static_assert(fluid_metrics ==
+                  std::array<std::string_view, 6>{"wall_s", "centre_depth_mm_per_m3", "energy_lost_normal_J",
+                                                  "energy_lost_sliding_J", "sampled_stone_speed_m_per_s",
+                                                  "stones_off_bed_share"});
+    return {r.wall_s,
+            r.bed.centre_mean_per_m3,
+            r.energy_lost_normal_J,
+            r.energy_lost_sliding_J,
+            r.sampled_stone_speed_m_per_s,
+            r.stones_off_bed_share};
+}
 
 /// What physics allows for the centre line of a worn band: depth per converted sediment [mm/m3].
 /// Lower: only the normal impacts of saltating stones; upper: all stones sliding under their submerged weight

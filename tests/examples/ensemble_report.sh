@@ -91,7 +91,7 @@ for number in 1 2 3 4 5 6; do
         shown="$(printf '%.4g' "$(of_level $number $key)")"
         [[ "$row" == *">$shown (one value)<"* ]] || fail "$name: the table has no $key of $shown: $row"
         drawn="$(of_level $number $key)"
-        grep -qF "${drawn%.0} " levels/charts/metric.dat || fail "$name: the picture has no $key"
+        awk -v drawn="$drawn" 'NF && $1 + 0 == drawn + 0 { found = 1 } END { exit !found }' levels/charts/metric.dat || fail "$name: the picture has no $key"
     done
 done
 grep -qF "ledger closes in every run: the largest relative residual is $largest (" levels/report.html || fail "the report does not say that the ledgers close: $largest"
@@ -99,6 +99,12 @@ grep -qF "ledger closes in every run: the largest relative residual is $largest 
 holds "unresolved: no stone is" "$(of_level 5 stones_resolved) == 0"
 holds "resolved: large stones are" "$(of_level 6 stones_resolved) > 0 && $(of_level 6 stones_averaged) > 0"
 holds "water drives stones" "$(of_level 1 sampled_stone_speed_m_per_s) < $(of_level 6 sampled_stone_speed_m_per_s)"
+# ... and so do exchanges of momentum
+run exchanges --fluid resolved --sweep 'fluid.exchange="mixture","direct"' --seeds 1 --set fluid.spacing=0.04
+[ $code -eq 0 ] || fail "two exchanges: exit code $code: $(cat exchanges.log)"
+for name in mixture direct; do grep -qF ">fluid.exchange = $name<" exchanges/report.html || fail "$name is not in the table"; done
+grep -q 'wall time of a run' exchanges/report.html || fail "the table of exchanges does not say what each costs"
+grep -q '"level\.' exchanges/ensemble.json && fail "figures of the level are in ensemble.json twice"
 # ... a summary of another scene, or without a figure of the table, is named, and its remedy helps
 sed -i 's/"configuration": "quick.toml"/"configuration": "paper.toml"/' "$(level 1)/results/summary.json"
 sed -i '/"stones_off_bed_share"/d' "$(level 2)/results/summary.json"

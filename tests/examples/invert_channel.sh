@@ -27,7 +27,7 @@ for key in wall_s simulated_s represented_h stones concrete_spheres sediment_pas
     worn_volume_from_energy_m3 overflow_volume_m3 largest_collision_share largest_safe_beta centre_depth_mm_per_m3 max_depth_mm mean_depth_mm energy_lost_normal_J \
     energy_lost_sliding_J ledger_residual_relative bonds_broken time_step_s fluid contact bond wear contact_law wear_law \
     concrete_level cluster worn_out overflow worn_through waiting_volume_m3 worn_over_energy spheres_worn_out spheres_let_go impact_share \
-    impact_share_compared_sampled restitution_at_1_m_per_s validity passed_volume; do
+    impact_share_compared_sampled restitution_at_1_m_per_s validity passed_volume passed_share_of_fed stones_by_size level; do
     grep -q "\"$key\":" short/summary.json || fail "summary.json has no $key"
 done
 holds "ledger closes" "$(value short/summary.json ledger_residual_relative) < 1e-6"
@@ -38,6 +38,31 @@ holds "restitution" "($(value short/summary.json restitution_at_1_m_per_s) - 0.6
 holds "the run is as long as asked" "($(value short/summary.json simulated_s) - 0.3)^2 < 1e-18"
 grep -q "assum" short/report.html || fail "the report marks no assumptions"
 grep -qE 'src="http|href="http' short/report.html && fail "the report loads something from outside"
+
+# What a level of fluid costs and gives stands under one header, in the summary and in the report.
+level_stands() { # level_stands FOLDER MODEL [EXCHANGE]
+    local level key
+    level="$(sed -n '/"level": {/,/}/p' "$1/summary.json")"
+    for key in wall_s centre_depth_mm_per_m3 energy_lost_normal_J energy_lost_sliding_J sampled_stone_speed_m_per_s stones_off_bed_share; do
+        [ "$(value <(echo "$level") $key)" = "$(value "$1/summary.json" $key)" ] || fail "$1: the level's $key is not that of the run: $level"
+    done
+    [ "$(value <(echo "$level") model)" = "\"$2\"" ] && [ "$(value <(echo "$level") exchange)" = "${3:+\"$3\"}" ] || fail "$1: the level is not named: $level"
+    grep -qF ">fluid.model = $2${3:+, fluid.exchange = $3}<" "$1/report.html" || fail "$1: the report has no table of the level"
+}
+level_stands short uniform
+# Stones by size: all looks and all hops of the run, in as many rows as there are sizes.
+by_size() { awk -v key="\"$2\":" '/"stones_by_size"/ { inside = 1 } /"level"/ { inside = 0 } inside && $1 == key { sub(",", ""); print $2 }' "$1/summary.json"; }
+[ "$(by_size short size_m | paste -sd ' ')" = "0.04 0.05 0.075 0.1 0.15" ] || fail "stones by size: $(by_size short size_m)"
+mean_by_size() { paste <(by_size "$1" looks) <(by_size "$1" "$2") | awk '$1 > 0 { all += $1; sum += $1 * $2 } END { printf "%.15g", sum / all }'; }
+holds "speeds by size" "($(mean_by_size short speed_m_per_s) / $(value short/summary.json sampled_stone_speed_m_per_s) - 1)^2 < 1e-24"
+holds "off the bed by size" "($(mean_by_size short off_bed_share) / $(value short/summary.json stones_off_bed_share) - 1)^2 < 1e-24"
+holds "small stones hop" "$(by_size short hops | head -1) > 0"
+holds "what hops is off the bed" "$(by_size short hop_height_m | head -1) > 0.1 * 0.04 && $(by_size short clear_of_bed_share | head -1) > 0"
+"$program" "${short[@]}" --set compare.hops=false --out unwatched > /dev/null || fail "a run without hops"
+grep -q '"hop' unwatched/summary.json && fail "hops that nobody asked for"
+for key in worn_volume_m3 energy_lost_normal_J sediment_passed_m3; do
+    [ "$(value unwatched/summary.json $key)" = "$(value short/summary.json $key)" ] || fail "looking for hops changes $key"
+done
 
 share=$(value short/summary.json largest_collision_share) safe=$(value short/summary.json largest_safe_beta)
 holds "at the safe beta a collision wears half a cell" "($safe * $share - 0.5 * 10)^2 < 1e-12"
@@ -103,8 +128,23 @@ for model in unresolved resolved; do
     holds "the ledger closes with $model stones" "$(value $model/summary.json ledger_residual_relative) < 1e-12"
     holds "Manning's depth about $model stones" "($(value $model/summary.json water_depth_m) / $(value $model/summary.json manning_depth_m) - 1)^2 < 0.01"
     holds "small stones are averaged" "$(value $model/summary.json stones_averaged) > 0"
+    level_stands $model $model monolithic
 done
 holds "unresolved: all are" "$(value unresolved/summary.json stones_resolved) == 0"
+for exchange in mixture direct; do
+    "$program" "${short[@]}" --fluid resolved --set "fluid.exchange=\"$exchange\"" --set fluid.spacing=0.04 --set run.end_time=0.05 --out $exchange > $exchange.log || fail "exchange $exchange: $(cat $exchange.log)"
+    level_stands $exchange resolved $exchange
+    holds "the ledger closes with exchange $exchange" "$(value $exchange/summary.json ledger_residual_relative) < 1e-12"
+    holds "$exchange resolves all stones" "$(value $exchange/summary.json stones_averaged) == 0 && $(value $exchange/summary.json stones_resolved) > 0"
+    [ "$(value $exchange/summary.json mean_stone_speed_m_per_s)" != "$(value resolved/summary.json mean_stone_speed_m_per_s)" ] || fail "exchange $exchange is the monolithic one"
+done
+[ "$(value mixture/summary.json mean_stone_speed_m_per_s)" != "$(value direct/summary.json mean_stone_speed_m_per_s)" ] || fail "mixture and direct are one exchange"
+# ... the paper's file keeps no energy account, and stands beside what the source says of its own run
+"$program" paper.toml "${short[@]}" --fluid grid --set sediment.feed_to=0.3 --set fluid.spacing=0.04 --set fluid.settle=0.05 --set run.end_time=0.001 --set 'compare.gauges=[0.2]' --out paper > paper.log 2>&1 || fail "the paper's file: $(cat paper.log)"
+grep -q water_energy paper/summary.json && fail "the paper's file keeps an energy account"
+grep -q '"source"' paper/summary.json && fail "a gauge at 0.2 m stands beside the source's at 10 m"
+"$program" paper.toml --set channel.length=11 --set compare.to=11 --set 'compare.gauges=[10]' --set run.end_time=0.001 --out at_10_m > at_10_m.log 2>&1 || fail "a gauge at 10 m: $(cat at_10_m.log)"
+grep -q '"source"' at_10_m/summary.json && grep -q 'source.*0.2075.*0.019.*0.092' at_10_m/report.html || fail "the source's run does not stand beside this one"
 "$program" "${short[@]}" --fluid none --set run.end_time=0.01 --out none > none.log || fail "a dry channel: $(cat none.log)"
 grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
 
@@ -231,6 +271,9 @@ refused "unknown fluid" 'fluid.model.*shallow' --fluid shalow
 refused "inflow too deep" 'at most critical.*got 2 m' --fluid shallow --set fluid.inflow_depth=2
 refused "a coarse grid" 'fluid.spacing.*at most a quarter.*0.5 m' --fluid shallow --set fluid.spacing=0.5
 refused "an unknown surface" 'fluid.surface.*height' --fluid grid --set 'fluid.surface="heigth"'
+refused "an unknown exchange" 'fluid.exchange.*monolithic.*mixture.*direct' --fluid resolved --set 'fluid.exchange="mixed"'
+refused "an exchange without one" 'fluid.exchange.*left out.*grid.*no use' --fluid grid --set 'fluid.exchange="mixture"'
+refused "one fluid that averages" 'fluid.resolved_from.*left out.*mixture.*no use' --fluid resolved --set 'fluid.exchange="mixture"' --set fluid.resolved_from=3
 refused "a law of its own water" 'fluid.model with contact.law.*uniform with linear.*got grid with linear' --fluid grid --set 'contact.law="linear"'
 refused "a key of another law" 'contact.yield_pressure.*hysteretic.*no use' --set contact.yield_pressure=1e8
 refused "a law without a restitution" 'contact.restitution.*left out.*elastic_plastic' plain.toml --set concrete.stiffness=2e6 --set 'contact.law="elastic_plastic"' --set contact.yield_pressure=1e8 --set contact.restitution=0.5

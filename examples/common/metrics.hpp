@@ -1,5 +1,5 @@
 #pragma once
-// The figures of summary.json that an ensemble shows.
+// The figures of an invert channel's summary.json that reports show, of one run and of many.
 
 #include <abrade/core/types.hpp>
 
@@ -38,8 +38,7 @@ inline const std::array<Metric, 16> known_metrics{
      {"ledger_residual_relative", "ledger residual, relative"},
      {"wall_s", "wall time of a run", "s", 1, true}}};
 
-/// What stands beside a metric where cases differ in `fluid.model`: what a level of fluid costs, and what it
-/// changes.
+/// What a level of fluid costs, and what it changes: the table of a run, and of an ensemble over levels.
 inline constexpr std::array<std::string_view, 6> fluid_metrics{"wall_s",
                                                                "centre_depth_mm_per_m3",
                                                                "energy_lost_normal_J",
@@ -51,6 +50,10 @@ inline Metric metric_of(std::string_view name) {
     const auto found = std::find_if(known_metrics.begin(), known_metrics.end(),
                                     [&](const Metric& one) { return one.name == name; });
     return found == known_metrics.end() ? Metric{std::string(name), std::string(name)} : *found;
+}
+
+inline std::string with_unit(const Metric& m) {
+    return m.unit.empty() ? m.title : m.title + " [" + m.unit + "]";
 }
 
 }  // namespace abrade::examples
