@@ -144,11 +144,15 @@ public:
 private:
     static constexpr Real sliver = 0.1;  ///< of a face: less water has no velocity of its own [-]
 
+    /// Of all that bodies hold the water back at a face, the part of one: each by itself would take all of
+    /// it.
     Real held_by(const CoveredFace& f) const noexcept {
         const Real rate = params_.friction * stage_.viscosity * stage_.dt / square(std::cbrt(f.volume()));
-        const Real stiff = rate * f.share, left = 1 - f.share;
+        const Real others = std::max(f.open - f.water - f.share, 0.0), all = f.share + others;
+        const Real stiff = rate * all, left = std::max(1 - all, 0.0);
         const Real held = stiff > 0 ? stiff / (left + stiff) : 0;
-        return f.open > 0 ? std::max(held, 1 - f.water / (sliver * f.open)) : held;
+        const Real most = f.open > 0 ? std::max(held, 1 - f.water / (sliver * f.open)) : held;
+        return f.share / all * most;
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.
