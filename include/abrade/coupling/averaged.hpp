@@ -79,9 +79,9 @@ public:
                       (1 / body.inverse_mass + m.added);
             const Vec3 by_added = added_mass_ * pressed + (m.added_momentum - m.added * m.v) / stage.dt;
             body.velocity = m.v;
-            const Vec3 after_blow = m.struck.taken_by(m.added, body, stage.dt);
             if (!covers[cloud.which()[n]].cut)
-                body.load = {pressed + m.by_drag + by_added + after_blow, Vec3::Zero()};
+                body.load =
+                    m.struck.goes_on({pressed + m.by_drag + by_added, Vec3::Zero()}, m.added, body, stage.dt);
             m.pressed = pressed;
             m.reaction = stage.dt * by_added - m.reaction;
         });

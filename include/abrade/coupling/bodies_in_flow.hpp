@@ -227,11 +227,11 @@ protected:
             FlowBody& body = bodies_[b];
             const Six& q = motion_[b].q;
             const Six pressed = stage_.density * detail::pressed(faces_.cover(b), pressure);
-            Six load = load_of(b, pressed);
-            load.template head<3>() +=
-                motion_[b].struck.taken_by(of_a_sphere * motion_[b].covers, body, stage_.dt);
+            const Six load = load_of(b, pressed);
             body.velocity = q.template head<3>(), body.angular_velocity = q.template tail<3>();
-            if (!faces_.cover(b).cut) body.load = {load.template head<3>(), load.template tail<3>()};
+            if (!faces_.cover(b).cut)
+                body.load = motion_[b].struck.goes_on({load.template head<3>(), load.template tail<3>()},
+                                                      of_a_sphere * motion_[b].covers, body, stage_.dt);
             const Memory* const before = with_id(memory_, body.id);
             const Six gained = before ? Six(q - before->q) / stage_.dt : Six(Six::Zero());
             next.push_back(

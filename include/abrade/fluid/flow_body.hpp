@@ -11,13 +11,23 @@
 
 namespace abrade {
 
-/// Force and torque about a body's centroid.
+/// Force and torque about a body's centroid. The force goes with what contacts push: added mass M takes the
+/// share M / (m + M) of it at once (m mass of the body), however short a contact is against the water's step.
 struct FlowLoad {
-    Vec3 force = Vec3::Zero();   ///< [N]
-    Vec3 torque = Vec3::Zero();  ///< [N m]
+    Vec3 force = Vec3::Zero();    ///< while contacts push as `expects` [N]
+    Vec3 torque = Vec3::Zero();   ///< [N m]
+    Vec3 expects = Vec3::Zero();  ///< force of contacts [N]
+    Real share = 0;               ///< of added mass in what contacts move [-]
 
     static void fields(auto&& field) {
         field("force", "N", &FlowLoad::force), field("torque", "N m", &FlowLoad::torque);
+        field("expects", "N", &FlowLoad::expects), field("share", &FlowLoad::share);
+    }
+    /// While contacts push with a force [N].
+    FlowLoad among(const Vec3& contacts) const noexcept {
+        FlowLoad now = *this;
+        now.force -= share * (contacts - expects);
+        return now;
     }
     FlowLoad& operator+=(const FlowLoad& o) noexcept { return force += o.force, torque += o.torque, *this; }
     friend FlowLoad operator-(const FlowLoad& a, const FlowLoad& b) noexcept {
@@ -26,8 +36,9 @@ struct FlowLoad {
 };
 
 /// A rigid body among water that flows around it. What is in: shape, pose, mass, and the velocity that
-/// everything but the water has given it, with the `load` that stood for the water meanwhile. What comes out:
-/// the velocity that it has together with the water, and the load that stands for the water from here on.
+/// everything but the water has given it, with the mean `load` that stood for the water meanwhile. What comes
+/// out: the velocity that it has together with the water, and the load that stands for the water from here
+/// on.
 struct FlowBody {
     Index id = 0;                          ///< the same at each exchange, and no other body's
     Vec3 position = Vec3::Zero();          ///< of the centroid [m]
@@ -55,9 +66,14 @@ struct Struck {
             if (velocity[a] * before[a] > 0)
                 blow[a] -= std::copysign(std::min(std::abs(velocity[a]), std::abs(before[a])), velocity[a]);
     }
-    /// The part of added mass in it [N]: the water took it at once, and does not go on to.
-    Vec3 taken_by(Real added, const FlowBody& body, Real dt) const noexcept {
-        return added / ((1 + added * body.inverse_mass) * dt) * blow;
+    /// What the water does from here on, where it did `found`: of a blow added mass took its part at once,
+    /// and does not go on to.
+    FlowLoad goes_on(FlowLoad found, Real added, const FlowBody& body, Real dt) const noexcept {
+        if (body.inverse_mass == 0) return found;
+        found.share = added * body.inverse_mass / (1 + added * body.inverse_mass);
+        found.force += found.share / (body.inverse_mass * dt) * blow;
+        found.expects = (velocity - blow) / (body.inverse_mass * dt);
+        return found;
     }
 };
 

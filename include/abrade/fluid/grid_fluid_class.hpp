@@ -127,8 +127,9 @@ public:
         }
     }
 
-    /// Goes on to exactly `to_time` [s] in steps of its own. Throws FluidError; InputError for no finite
-    /// time.
+    /// In which a body crosses as much of a cell as it may in a step [s].
+    Real step_of_body(Real speed) const { return params_.courant * grid_->smallest() / speed; }
+    /// Goes on to exactly `to_time` [s] in own steps. Throws FluidError; InputError for no finite time.
     void advance(Real to_time) {
         require_finite(to_time, "GridFluid.advance: to_time", "s");
         while (time_ < to_time) {
@@ -143,8 +144,7 @@ public:
     /// (ResolvedFluid). Throws as that does, and leaves the flow as it was before the step that went wrong.
     void advance(Real to_time, std::span<FlowBody> bodies) requires Solids::present;
 
-    /// One step of dt [s]. Throws FluidError where it is longer than `stable_step` or goes wrong, and leaves
-    /// the flow as it was.
+    /// One step of dt [s]. Throws FluidError beyond `stable_step` or where it goes wrong: nothing changes.
     void step(Real dt);
 
     /// Puts another wall in the box, between steps: one that has worn, for instance. No water is lost, and

@@ -37,8 +37,11 @@ template <class P>
             if constexpr (P::has_fluid) {
                 const auto sphere = static_cast<std::size_t>(state.store.sphere_of(static_cast<Index>(slot)));
                 if (const Index body = state.particles.body[sphere]; state.feels_fluid(body)) {
-                    fluid =
-                        state.fluid_on(body, place.centre, motion.velocity, move.time, move.ahead_in_fluid);
+                    if constexpr (P::fluid_resolves)
+                        fluid = state.flow_among(body, load.force, move.kick);
+                    else
+                        fluid = state.fluid_on(body, place.centre, motion.velocity, move.time,
+                                               move.ahead_in_fluid);
                     state.velocity_in_fluid[static_cast<std::size_t>(body)] = motion.velocity;
                 }
             }
@@ -72,15 +75,18 @@ template <class P>
                    last = first + static_cast<std::size_t>(clump.count);
         if (state.pace[first] > Pace::beside_sleeper) continue;
         if (clump.inverse_mass > 0) {
+            const ClumpLoad load = load_of(clump, lines);
             typename P::OnBody fluid{};
             if constexpr (P::has_fluid)
                 if (state.feels_fluid(clump.body)) {
-                    fluid = state.fluid_on(clump.body, clump.position, clump.velocity, move.time,
-                                           move.ahead_in_fluid);
+                    if constexpr (P::fluid_resolves)
+                        fluid = state.flow_among(clump.body, load.force, move.kick);
+                    else
+                        fluid = state.fluid_on(clump.body, clump.position, clump.velocity, move.time,
+                                               move.ahead_in_fluid);
                     state.velocity_in_fluid[static_cast<std::size_t>(clump.body)] = clump.velocity;
                 }
-            const KickedClump after =
-                kick(clump, load_of(clump, lines), fluid, state.scene.gravity, move.kick);
+            const KickedClump after = kick(clump, load, fluid, state.scene.gravity, move.kick);
             sums.interaction.value[0] += after.interaction;
             sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
             if constexpr (P::has_fluid) sums.add(fluid, after.path, after.turn, move.kick);
@@ -136,10 +142,12 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         return true;
     };
     typename P::OnBody fluid{};
-    const auto sample = [&](const Vec3& position, const Vec3& velocity) {
+    const auto sample = [&](const Vec3& position, const Vec3& velocity,
+                            [[maybe_unused]] const Vec3& contacts) {
         if constexpr (P::has_fluid)
             if (state.feels_fluid(body))
                 fluid = state.fluid_on(body, position, velocity, move.time, move.ahead_in_fluid);
+        if constexpr (P::fluid_resolves) fluid = fluid.among(contacts);
     };
     if (clump_index >= 0) {
         const MovingClump& clump = state.store.clumps[static_cast<std::size_t>(clump_index)];
@@ -150,7 +158,7 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         p.position[b] = clump.position, p.orientation[b] = clump.orientation;
         if (at_rest()) return;
         const ClumpLoad load = load_of(clump, lines);
-        sample(clump.position, clump.velocity);
+        sample(clump.position, clump.velocity, load.force);
         const KickedClump after = kick(clump, load, fluid, state.scene.gravity, move.kick);
         p.velocity[b] = after.velocity, p.angular_momentum[b] = after.angular_momentum;
         p.force[b] = load.force + p.mass[b] * state.scene.gravity + force_of(fluid);
@@ -180,7 +188,7 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
                            sums);
         return;
     }
-    sample(place.centre, motion.velocity);
+    sample(place.centre, motion.velocity, load.force);
     const KickedSphere after = kick(motion, load, fluid, detail::quad(state.scene.gravity), move.kick);
     p.velocity[b] = detail::first_three(after.velocity);
     p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * detail::first_three(after.rim);

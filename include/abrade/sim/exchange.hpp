@@ -4,19 +4,26 @@
 #include <abrade/fluid/flow_body.hpp>
 #include <abrade/sim/state.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
 namespace abrade {
 
 /// Until when a fluid's next step would lead, found once for each of them: solids ask before every step of
-/// theirs.
+/// theirs. Water whose cells bodies cross (`step_of_body`) is due sooner where a body is fast.
 class FluidDue {
 public:
+    Real fastest = 0;  ///< of bodies as they moved last [m/s]
+
     Real of(const auto& fluid) {
         if (fluid.time() != begins_) begins_ = fluid.time(), ends_ = begins_ + fluid.stable_step().seconds;
-        return ends_;
+        if constexpr (requires { fluid.step_of_body(fastest); })
+            return std::min(ends_, begins_ + fluid.step_of_body(fastest));
+        else
+            return ends_;
     }
+    static void fields(auto&& field) { field("fastest", "m/s", &FluidDue::fastest); }
 
 private:
     Real begins_ = std::numeric_limits<Real>::quiet_NaN(), ends_ = 0;  ///< [s]
@@ -26,7 +33,8 @@ private:
 template <class P>
 class FlowBodies {
 public:
-    explicit FlowBodies(const State<P>& state) {
+    /// `since`: the last exchange [s].
+    FlowBodies(const State<P>& state, Real since) {
         const Particles& p = state.particles;
         const SphereStore& store = state.store;
         std::vector<std::size_t> first;
@@ -41,6 +49,7 @@ public:
             }
             FlowBody body{.id = p.id[at(b)], .volume = p.volume[at(b)]};
             body.load = state.flow_load[at(b)];
+            body.load.force += state.flow_took[at(b)] / since;
             const bool free = p.inverse_mass[at(b)] > 0 && !state.sleep.asleep(b);
             if (const Index c = store.clump_of(b); c >= 0) {
                 const MovingClump& clump = store.clumps[at(c)];
@@ -74,7 +83,7 @@ public:
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
             const FlowBody& body = bodies_[i];
             const Index b = number_[i];
-            state.flow_load[at(b)] = body.load;
+            state.flow_load[at(b)] = body.load, state.flow_took[at(b)].setZero();
             if (body.inverse_mass == 0) continue;
             const Real mass = state.particles.mass[at(b)];
             if (const Index c = state.store.clump_of(b); c >= 0) {

@@ -284,7 +284,7 @@ private:
             column.resize(to);
         };
         if constexpr (P::has_fluid) compact(state.velocity_in_fluid);
-        if constexpr (P::fluid_resolves) compact(state.flow_load);
+        if constexpr (P::fluid_resolves) compact(state.flow_load), compact(state.flow_took);
         compact(state.past_gauge);
         leave_sleepers(state, departure.gone);
     }
@@ -309,7 +309,9 @@ private:
         if constexpr (P::has_fluid)
             for (std::size_t b = state.velocity_in_fluid.size(); b < p.velocity.size(); ++b)
                 state.velocity_in_fluid.push_back(p.velocity[b]);
-        if constexpr (P::fluid_resolves) state.flow_load.resize(p.velocity.size());
+        if constexpr (P::fluid_resolves)
+            state.flow_load.resize(p.velocity.size()),
+                state.flow_took.resize(p.velocity.size(), Vec3::Zero());
         for (std::size_t b = state.past_gauge.size(); b < p.position.size(); ++b)
             state.past_gauge.push_back(state.scene.gauge && p.position[b].x() >= *state.scene.gauge);
     }

@@ -52,6 +52,7 @@ struct State {
     std::vector<Vec3>
         velocity_in_fluid;  ///< [body] that drag was last reckoned with [m/s]; empty without a fluid
     std::vector<FlowLoad> flow_load;  ///< [body] from the last exchange with a fluid that resolves bodies
+    std::vector<Vec3> flow_took;      ///< [body] since then, by added mass from what contacts pushed [N s]
     Index broken_tension = 0, broken_shear = 0;
     bool pattern_changed = false;  ///< a bond broke
     bool loosened = false;         ///< concrete came loose or is gone
@@ -71,11 +72,11 @@ struct State {
             field("worn_away", &State::worn_away), field("let_go_count", &State::let_go_count),
             field("pieces", &State::pieces), field("feed", &State::feed), field("accounts", &State::accounts),
             field("velocity_in_fluid", "m/s", &State::velocity_in_fluid),
-            field("flow_load", &State::flow_load), field("broken_tension", &State::broken_tension),
-            field("broken_shear", &State::broken_shear), field("pattern_changed", &State::pattern_changed),
-            field("loosened", &State::loosened), field("smallest_radius", "m", &State::smallest_radius),
-            field("size_ratio", &State::size_ratio), field("gauge_volume", "m3", &State::gauge_volume),
-            field("past_gauge", &State::past_gauge);
+            field("flow_load", &State::flow_load), field("flow_took", "N s", &State::flow_took),
+            field("broken_tension", &State::broken_tension), field("broken_shear", &State::broken_shear),
+            field("pattern_changed", &State::pattern_changed), field("loosened", &State::loosened),
+            field("smallest_radius", "m", &State::smallest_radius), field("size_ratio", &State::size_ratio),
+            field("gauge_volume", "m3", &State::gauge_volume), field("past_gauge", &State::past_gauge);
     }
 
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
@@ -145,6 +146,14 @@ struct State {
             return fluid_load(policies.drag, policies.fluid.sample(position, t),
                               {position, now, particles.volume[at(body)]}, scene.gravity);
         }
+    }
+
+    /// The same while contacts push a body with a force for a time [N], [s], which is remembered.
+    FlowLoad flow_among(Index body, const Vec3& contacts, Real time) noexcept requires P::fluid_resolves {
+        const FlowLoad& last = flow_load[at(body)];
+        const FlowLoad load = last.among(contacts);
+        flow_took[at(body)] += time * (load.force - last.force);
+        return load;
     }
 
     /// Lets concrete go whose last bond to the ground broke.

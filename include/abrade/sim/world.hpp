@@ -128,7 +128,7 @@ public:
             field("stored_bonds", "J", &World::stored_bonds_),
             field("stored_at_rest", "J", &World::stored_at_rest_), field("unlooked", &World::unlooked_),
             field("too_deep", &World::too_deep_), field("timed", &World::timed_),
-            field("fluid_seconds", "s", &World::fluid_seconds_);
+            field("fluid_seconds", "s", &World::fluid_seconds_), field("fluid_due", &World::fluid_due_);
     }
 
 private:
@@ -217,7 +217,7 @@ private:
         auto& fluid = state_.policies.fluid;
         if (!(fluid.time() < now_) || fluid_due_.of(fluid) >= t) return;
         make_whole();
-        FlowBodies<P> flow(state_);
+        FlowBodies<P> flow(state_, now_ - fluid.time());
         fluid.advance(now_, flow.bodies());
         state_.accounts.flow_work += flow.give_back(state_);
         if constexpr (requires { fluid.solids_took(Real{}); }) fluid.solids_took(state_.accounts.flow_work);
@@ -254,10 +254,10 @@ private:
         report_overlap(move ? *move : Move{});
         if (move) {
             book(state_.accounts, all.motion);
-            FreeFlight& flight = state_.flight;
-            flight.note(move->kick, move->drift, move->time);
+            state_.flight.note(move->kick, move->drift, move->time);
             state_.sleep.stirred |= all.motion.stirs;
-            const Real way = move->drift * std::max(std::sqrt(all.motion.fastest2), flight.fastest_now());
+            fluid_due_.fastest = std::max(std::sqrt(all.motion.fastest2), state_.flight.fastest_now());
+            const Real way = move->drift * fluid_due_.fastest;
             lists_.note_step(way);
             check(all.motion);
             if (way > state_.smallest_radius)
