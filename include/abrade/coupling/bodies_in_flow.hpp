@@ -167,6 +167,7 @@ protected:
         const Real dt = stage_.dt;
         Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
         Six brought = Six::Zero(), within = Six::Zero();
+        Vec3 flow = Vec3::Zero(), weight = Vec3::Zero();  // of the water in its place
         for (CoveredFace& f : faces_.of(b)) {
             f.held = held_of(std::as_const(f));
             const Real held = f.mass * f.water * f.held, covers = f.mass * f.share;
@@ -174,6 +175,7 @@ protected:
             drag += held * c * c.transpose();
             brought += held * f.velocity * c;
             motion.covers += covers / 3;
+            flow[f.axis] += covers * f.velocity, weight[f.axis] += covers;
             if (before) within += covers * (unpushed(f, old) - detail::along(f, before->q)) * c;
         }
         if (before && before->covers > 0) {
@@ -206,6 +208,9 @@ protected:
                 expected.template head<3>() += added * body.velocity;
             if (before)
                 motion.struck = {body, before->q.template head<3>(), before->struck, stage_.falls, dt};
+            else  // it meets the water at once
+                motion.struck.velocity = motion.struck.blow =
+                    body.velocity - flow.cwiseQuotient(weight.cwiseMax(1e-300));
             motion.held = (heavier + drag).ldlt().solve(begun + expected + brought);
             motion.q = inertia.ldlt().solve(begun + brought - drag * motion.held);
         }

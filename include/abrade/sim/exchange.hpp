@@ -40,7 +40,7 @@ public:
         std::vector<std::size_t> first;
         for (Index b = 0; b < p.bodies(); ++b) {
             const Kind kind = p.kind[at(b)];
-            if (kind == Kind::concrete) continue;
+            if (p.site[at(b)] >= 0 && kind != Kind::grain) continue;  // it stands: the water has walls
             const auto from = at(p.first_sphere[at(b)]), count = at(p.sphere_count[at(b)]);
             first.push_back(spheres_.size());
             for (std::size_t s = from; s < from + count; ++s) {

@@ -149,9 +149,9 @@ struct State {
     }
 
     /// The same while contacts push a body with a force for a time [N], [s], which is remembered.
-    FlowLoad flow_among(Index body, const Vec3& contacts, Real time) noexcept requires P::fluid_resolves {
+    FlowLoad flow_among(Index body, const Vec3& pushed, Real time) noexcept requires P::fluid_resolves {
         const FlowLoad& last = flow_load[at(body)];
-        const FlowLoad load = last.among(contacts);
+        const FlowLoad load = last.among(pushed);
         flow_took[at(body)] += time * (load.force - last.force);
         return load;
     }
