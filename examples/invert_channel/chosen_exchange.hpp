@@ -35,6 +35,10 @@ public:
     auto fluxes() const { return base().fluxes(); }
     void mix_last(FaceField<3>& u) const { base().mix_last(u); }
     void seep(FaceField<3>& u) const { base().seep(u); }
+    void hold(FaceField<3>& u) {
+        visit(*this, [&](auto& one) { one.hold(u); });
+    }
+    void release(FaceField<3>& u, Real share) const { base().release(u, share); }
     void mix(FaceField<3>& u) const { base().mix(u); }
     Real water_share(const OpenFace& open) const { return base().water_share(open); }
     auto volumes(bool only_new) const { return base().volumes(only_new); }

@@ -80,6 +80,7 @@ public:
             for (const SolidFace& f : covers_[at(b)].faces) (faces_[i++] = {f}).body = at(b);
         });
         sort_by_plane(grid.layout().planes());
+        share_out(grid, open_area);
     }
 
     std::span<CoveredFace> all() noexcept { return faces_; }
@@ -192,6 +193,19 @@ private:
             for (const SolidFace& f : covers_[b].faces) taken_[f.axis][f.face] = 0;
     }
 
+    /// What walls and all bodies leave of faces, until `close` knows which of these have a pressure.
+    void share_out(const Grid<3>& grid, const FaceField<3>* open_area) {
+        if (faces_.empty()) return;
+        if (taken_[0].size() == 0) taken_ = face_field<3>(grid.layout());
+        by_planes([&](const CoveredFace& f) { taken_[f.axis][f.face] += f.share; },
+                  [&](CoveredFace& f) {
+                      f.open = open_area ? (*open_area)[f.axis][f.face] : 1;
+                      f.water = std::max(f.open - taken_[f.axis][f.face], 0.0);
+                      f.covered = f.open > 0 ? std::min(f.share / f.open, 1.0) : 0;
+                  },
+                  [&](const CoveredFace& f) { taken_[f.axis][f.face] = 0; });
+    }
+
     static constexpr Real least = 1e-6;  ///< of a face: less conducts nothing
 
     static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
@@ -250,7 +264,7 @@ private:
     std::vector<std::size_t> by_plane_;     ///< `faces_` in the order of their planes
     std::vector<std::size_t> plane_start_;  ///< [plane] in `by_plane_`
     std::unordered_map<Offset, Real> surface_;
-    FaceField<3> taken_;  ///< by resolved bodies, while the others are spread; 0 else [-]
+    FaceField<3> taken_;  ///< by bodies, while what they leave is found; 0 else [-]
 };
 
 }  // namespace abrade

@@ -130,6 +130,7 @@ public:
             if (f.water > 0) u[f.axis][f.face] = f.velocity - stage_.dt * f.gradient(pressure);
         });
         find_fluxes([&](const CoveredFace& f) { return f.covered * (f.solid - u[f.axis][f.face]); });
+        stick(u);
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {
             fill_inside(b, pressed.template head<3>(), pressure);
             return Six(pressed + motion_[b].by_friction);
@@ -142,13 +143,11 @@ public:
     }
 
 private:
-    static constexpr Real sliver = 0.1;  ///< of a face: less water has no velocity of its own [-]
-
     Real held_by(const CoveredFace& f) const noexcept {
         const Real rate = params_.friction * stage_.viscosity * stage_.dt / square(std::cbrt(f.volume()));
         const Real stiff = rate * f.share, left = 1 - f.share;
         const Real held = stiff > 0 ? stiff / (left + stiff) : 0;
-        return f.open > 0 ? std::max(held, 1 - f.water / (sliver * f.open)) : held;
+        return std::max(held, stuck(f));
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.

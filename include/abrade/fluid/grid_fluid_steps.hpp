@@ -140,11 +140,13 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
         sides_.leave(result);
     };
     stage(velocity_, stage_, 0);
+    if constexpr (Solids::present) solids_.hold(stage_);
     if (!side_friction_.empty()) sides_.join(stage_);
     const auto taken = side_friction_.apply(stage_, nullptr, dt, nu());
     if (energy_) energy_->walls_took(taken);
     sides_.fill(stage_);
     stage(stage_, saved_velocity_, 0.5);
+    if constexpr (Solids::present) solids_.release(saved_velocity_, 0.5);
     side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
     std::swap(velocity_, saved_velocity_);
     if (!params_.steady_sides) sides_.fill(velocity_);
@@ -195,6 +197,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     };
     water.find_surface_push(projection_.open_faces(), pressure_, dt, falls);
     stage(velocity_, stage_, 0, -dt);
+    if constexpr (Solids::present) solids_.hold(stage_);
     finish(stage_);
     // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
     const auto taken = water.slow(stage_, dt, nu());
@@ -207,6 +210,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
         water.carry_by(stage_, dt);
     // The old pressure is taken back: below the new surface it pushes anew.
     stage(stage_, velocity_, 0.5, 0.5 * dt);
+    if constexpr (Solids::present) solids_.release(velocity_, 0.5);
     water.clear_surface_push(projection_.open_faces());
     water.friction().take(velocity_, &water.rows(), taken, 0.5);
     water.let_go(velocity_);

@@ -52,6 +52,8 @@ struct FlowStage {
 ///   flows around the shape;
 /// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface among them,
 ///   before the operator is built and after it;
+/// - `hold`: in the first stage their velocity is that of what is hardly water, which the old pressure pushes as it
+///   would a whole face; `release`: after the second, the momentum that this took away, a share of it;
 /// - `mix`: the mixture's velocity from a water's that is not known to the end yet;
 /// - `force`, once the water has been moved on by all but the new pressure: a force per volume on it, and from there
 ///   on the mixture's velocity;
@@ -72,7 +74,7 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     s.close(m, std::span<const OpenFace>{});
     { still.water_share(OpenFace{}) } -> std::same_as<Real>;
     s.keep_wet(m);
-    still.mix(u);
+    s.hold(u), still.release(u, Real{}), still.mix(u);
     still.mix_last(u), still.seep(u);
     { still.parts() } -> std::convertible_to<std::span<const SolidPart>>;
     { still.resolved_parts() } -> std::convertible_to<std::span<const SolidPart>>;
