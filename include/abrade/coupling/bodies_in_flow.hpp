@@ -46,16 +46,6 @@ public:
         });
     }
 
-    /// Water with little of a face carries on no velocity of its own, for the pressure pushes it as it would
-    /// a whole face. The momentum that `hold` takes `release` gives back, a share of it: the bodies get that.
-    void hold(FaceField<3>& u) {
-        faces_.by_planes([&](CoveredFace& f) { f.velocity = u[f.axis][f.face]; },
-                         [&](const CoveredFace& f) { u[f.axis][f.face] -= beyond_solid(f); });
-    }
-    void release(FaceField<3>& u, Real share) const {
-        faces_.by_planes([&](const CoveredFace& f) { u[f.axis][f.face] += share * beyond_solid(f); });
-    }
-
     std::vector<SolidVolume> volumes(bool only_new) const {
         std::vector<SolidVolume> found;
         const auto add = [&](const CoveredFace& f, Real share) {
@@ -117,7 +107,6 @@ protected:
         Real curvature = 0;
         Real covers = 0;  ///< mass of water in the body's place [kg]
         Struck struck;    ///< by contacts
-        Six stuck = Six::Zero();
     };
     /// What is known of a body from the last step.
     struct Memory {
@@ -128,13 +117,11 @@ protected:
         Six slip = Six::Zero();      ///< of that water beyond the body's momentum [kg m/s], [kg m2/s]
         Six pressed = Six::Zero();   ///< force and torque of the pressure [N], [N m]
         Vec3 struck = Vec3::Zero();  ///< velocity by contacts [m/s]
-        Six stuck = Six::Zero();     ///< momentum that water stuck to it had beyond it [kg m/s], [kg m2/s]
 
         static void fields(auto&& field) {
             field("id", &Memory::id), field.bytes("q", &Memory::q), field.bytes("gained", &Memory::gained);
             field("covers", "kg", &Memory::covers), field.bytes("slip", &Memory::slip);
             field.bytes("pressed", &Memory::pressed), field.bytes("struck", &Memory::struck);
-            field.bytes("stuck", &Memory::stuck);
         }
     };
 
@@ -204,7 +191,6 @@ protected:
             motion.covers += covers / 3;
             if (before) within += covers * (unpushed(f, old) - detail::along(f, before->q)) * c;
         }
-        if (before) brought += before->stuck;
         if (before && before->covers > 0) {
             // What has left through the surface has taken its part along; what has come meets the body as it
             // will be, not as it was: it may be heavier than the body.
@@ -268,31 +254,13 @@ protected:
             }
             const Memory* const before = with_id(memory_, body.id);
             const Six gained = before ? Six(q - before->q) / stage_.dt : Six(Six::Zero());
-            next.push_back({body.id, q, gained, motion_[b].covers, slip_of(b, u), pressed,
-                            motion_[b].struck.velocity, motion_[b].stuck});
+            next.push_back(
+                {body.id, q, gained, motion_[b].covers, slip_of(b, u), pressed, motion_[b].struck.velocity});
         }
         std::ranges::sort(next, {}, &Memory::id);
         memory_ = std::move(next);
     }
 
-    /// After `find_fluxes`: water that has little of a face moves with the bodies, however hard the pressure
-    /// of a pocket pushes it. They get its momentum in the next step.
-    void stick(FaceField<3>& u) {
-        faces_.by_planes([&](CoveredFace& f) { f.velocity = u[f.axis][f.face]; },
-                         [&](const CoveredFace& f) { u[f.axis][f.face] -= beyond_solid(f); });
-        parallel_for_resolved([&](std::size_t b) {
-            for (const CoveredFace& f : faces_.of(b))
-                motion_[b].stuck += f.mass * f.water * beyond_solid(f) * detail::coefficient(f);
-        });
-        const std::span<const CoveredFace> all = std::as_const(faces_).all();
-        lost_to_friction_ += parallel_sum<Real>(static_cast<Index>(all.size()), [&](Index n) {
-            const auto i = static_cast<std::size_t>(n);
-            const CoveredFace& f = all[i];
-            const Real beyond = beyond_solid(f), mean = 0.5 * (f.velocity + u[f.axis][f.face]);
-            beyond_[i] += beyond;
-            return f.mass * f.water * beyond * (mean - f.solid);
-        });
-    }
     /// Sums up what friction takes at each face [J].
     void find_loss(auto&& of_face) {
         const std::span<CoveredFace> all = faces_.all();

@@ -66,6 +66,16 @@ public:
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) { faces_.close(m, surface); }
 
+    /// Water with little of a face carries on no velocity of its own, for the pressure pushes it as it would
+    /// a whole face. The momentum that `hold` takes `release` gives back, a share of it: the bodies get that.
+    void hold(FaceField<3>& u) {
+        faces_.by_planes([&](CoveredFace& f) { f.velocity = u[f.axis][f.face]; },
+                         [&](const CoveredFace& f) { u[f.axis][f.face] -= beyond_solid(f); });
+    }
+    void release(FaceField<3>& u, Real share) const {
+        faces_.by_planes([&](const CoveredFace& f) { u[f.axis][f.face] += share * beyond_solid(f); });
+    }
+
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         look_at(u, pressure, stage);
         parallel_for_resolved([&](std::size_t b) {
@@ -130,7 +140,6 @@ public:
             if (f.water > 0) u[f.axis][f.face] = f.velocity - stage_.dt * f.gradient(pressure);
         });
         find_fluxes([&](const CoveredFace& f) { return f.covered * (f.solid - u[f.axis][f.face]); });
-        stick(u);
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {
             fill_inside(b, pressed.template head<3>(), pressure);
             return Six(pressed + motion_[b].by_friction);
@@ -143,11 +152,13 @@ public:
     }
 
 private:
+    /// Of all that bodies hold the water back at a face, the part of one: each by itself would take all of
+    /// it.
     Real held_by(const CoveredFace& f) const noexcept {
         const Real rate = params_.friction * stage_.viscosity * stage_.dt / square(std::cbrt(f.volume()));
-        const Real stiff = rate * f.share, left = 1 - f.share;
-        const Real held = stiff > 0 ? stiff / (left + stiff) : 0;
-        return std::max(held, stuck(f));
+        const Real all = std::max(f.open - f.water, f.share), left = std::max(1 - all, 0.0);
+        const Real stiff = rate * all, held = stiff > 0 ? stiff / (left + stiff) : 0;
+        return own_part(f) * std::max(held, stuck(f));
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.

@@ -42,8 +42,11 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
     if (!(time_ < to_time)) return;
     std::vector<FlowBody> now(bodies.begin(), bodies.end());
     std::vector<Sphere> spheres;
-    for (const FlowBody& body : bodies)
+    Real fastest = 0;  // one that had not been among the water may be faster than all in it
+    for (const FlowBody& body : bodies) {
         spheres.insert(spheres.end(), body.spheres.begin(), body.spheres.end());
+        fastest = std::max(fastest, body.velocity.norm());
+    }
     const auto stand = [&](Real before) {  // where they were, that long before
         auto sphere = spheres.begin();
         for (std::size_t b = 0; b < now.size(); ++b) {
@@ -61,7 +64,8 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
         }
     while (time_ < to_time) {
         const Real left = to_time - time_;
-        const Real steps = std::max(std::ceil(left / stable_step().seconds - 1e-9), 1.0), dt = left / steps;
+        const Real own = std::min(stable_step().seconds, step_of_body(fastest));
+        const Real steps = std::max(std::ceil(left / own - 1e-9), 1.0), dt = left / steps;
         stand(left - dt);
         arriving_ = now;
         step(dt);
@@ -197,12 +201,12 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     };
     water.find_surface_push(projection_.open_faces(), pressure_, dt, falls);
     stage(velocity_, stage_, 0, -dt);
-    if constexpr (Solids::present) solids_.hold(stage_);
     finish(stage_);
     // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
     const auto taken = water.slow(stage_, dt, nu());
     if (energy_) energy_->walls_took(taken);
     if (!params_.steady_sides) sides_.set_time(time_ + dt);
+    if constexpr (Solids::present) solids_.hold(stage_);
     sides_.fill(stage_, rows());
     if constexpr (Solids::present)
         mix(stage_, [&] { solids_.mix(mixture_); }), water.carry_by(mixture_, dt);
