@@ -25,8 +25,8 @@ struct Fall {
     Vec3 off{0, 0, 0};  ///< of the centre from a corner of cells, and of the floor [cell]
 };
 
-/// Speeds are those a fifth of a diameter above the floor: between two exchanges with the water contacts
-/// have moved the sphere alone.
+/// Speeds are those a fifth of a diameter above the floor: there the water has had its exchange after the
+/// contact, whether its steps are longer than that or not.
 struct Rebound {
     Real stokes = 0;    ///< as it comes
     Real wet = 0;       ///< speed after the contact over that before it, over the same without liquid [-]

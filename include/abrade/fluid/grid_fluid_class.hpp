@@ -347,7 +347,8 @@ private:
     /// What carries the water, from its velocity.
     void mix(const FaceField<Dim, State>& u, auto&& with_solids) requires Solids::present {
         sides_.copy(u, mixture_, rows());
-        with_solids(), sides_.fill(mixture_, rows());
+        with_solids();
+        sides_.fill(mixture_, rows());
     }
 
     /// What moves the water alone.

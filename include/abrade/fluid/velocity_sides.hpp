@@ -135,7 +135,8 @@ public:
         }
     }
 
-    /// What `fill` does not find by itself.
+    /// All that `fill` does not find: what lies in `rows` (none: everything) and what leaves through upper
+    /// sides.
     template <class State>
     void copy(const FaceField<Dim, State>& from, FaceField<Dim, State>& to, const WetRows<Dim>* rows) const {
         if (!rows) return parallel_tasks(Dim, [&](Index a) { to[a] = from[a]; });
@@ -240,6 +241,7 @@ public:
     }
 
 private:
+    static constexpr Index planes_in_block = 32;
     /// Calls body(planes) for parts of a side, in parallel.
     void for_planes_along(int axis, auto&& body) const {
         constexpr int g = Layout<Dim>::ghosts;
@@ -252,7 +254,6 @@ private:
             },
             planes_in_block);
     }
-    static constexpr Index planes_in_block = 32;
     void for_upper_outflows(auto&& body) const {
         for_sides(Side::outflow, [&](int a, bool high) {
             if (high) along_side({a, high}, [&](Offset c, std::size_t) { body(a, c + step(a)); });
