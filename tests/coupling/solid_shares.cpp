@@ -15,6 +15,7 @@ struct Held {
     Vec3 moment = Vec3::Zero();  ///< of what pushes along an axis, about the other two [m4]
     Real out = 0, turned = 0;    ///< of what cells give, in all
     Real low = 1, high = 0;      ///< shares
+    Real least_friction = 1e9;   ///< [1/m2]
 };
 Held held(const SolidCover& cover) {
     Held sum;
@@ -22,6 +23,7 @@ Held held(const SolidCover& cover) {
         sum.volume[f.axis] += f.share * f.volume();
         sum.moment += f.share * f.volume() * f.lever();
         sum.low = std::min(sum.low, f.share), sum.high = std::max(sum.high, f.share);
+        sum.least_friction = std::min(sum.least_friction, f.friction);
     }
     Vec3 way = Vec3::Zero(), turn = Vec3::Zero();
     for (const SolidCell& c : cover.cells) way += c.way, turn += c.turn;
@@ -54,7 +56,8 @@ TEST_CASE(
             CAPTURE(cells);
             CHECK((sum.volume - Vec3::Constant(volume)).norm() < 1e-11 * volume);
             CHECK(sum.moment.norm() < 1e-11 * volume * spheres[0].radius);
-            CHECK(sum.low > 0);
+            CHECK(sum.low >= 0);
+            CHECK(sum.least_friction > 0);
             CHECK(sum.high <= 1);
             CHECK(sum.out < 1e-12 * square(spheres[0].radius));
             CHECK(sum.turned < 1e-12 * cube(spheres[0].radius));
@@ -108,8 +111,9 @@ TEST_CASE("shares are those of the sphere: near the truth by counting points, 1 
     const Real volume = 4.0 / 3 * pi * cube(radius);
     const SolidCover cover =
         cover_of(grid, Sides<3>::all(Side::wall), body_of(spheres, centre, volume), nothing_closed);
-    Real squares = 0, worst = 0;
+    Real squares = 0, worst = 0, count = 0;
     for (const SolidFace& f : cover.faces) {
+        if (f.share == 0) continue;
         constexpr int points = 24;
         int in = 0;
         for (int i = 0; i < points; ++i)
@@ -118,10 +122,37 @@ TEST_CASE("shares are those of the sphere: near the truth by counting points, 1 
                     in += (f.arm + h * (Vec3(i + 0.5, j + 0.5, k + 0.5) / points - Vec3::Constant(0.5)))
                               .squaredNorm() < square(radius);
         const Real error = f.share - static_cast<Real>(in) / cube(points);
-        squares += square(error), worst = std::max(worst, std::abs(error));
+        squares += square(error), worst = std::max(worst, std::abs(error)), ++count;
     }
-    const Real mean = std::sqrt(squares / static_cast<Real>(cover.faces.size()));
+    const Real mean = std::sqrt(squares / count);
     MESSAGE("root mean square " << mean << ", worst " << worst);
     CHECK(mean < 0.01);
     CHECK(worst < 0.04);
+}
+
+TEST_CASE(
+    "friction acts at all faces less than a cell from the surface, by the distance in cells across it") {
+    const Vec3 size(0.1, 0.12, 0.09), centre(0.83, 0.97, 0.71);
+    const Grid<3> grid({.cells = {16, 16, 16}, .spacing = size});
+    const std::vector<Sphere> spheres{{centre, 0.24}};
+    const SolidCover cover = cover_of(grid, Sides<3>::all(Side::wall),
+                                      body_of(spheres, centre, 4.0 / 3 * pi * cube(0.24)), nothing_closed);
+    const auto across = [&](const Vec3& arm) { return arm.cwiseProduct(size).norm() / arm.norm(); };
+    for (const SolidFace& f : cover.faces) {
+        const Real h = across(f.arm), d = (f.arm.norm() - 0.24) / h;
+        if (d > -0.99) CHECK(f.friction * square(h) == doctest::Approx((1 - d) / (1 + d)));
+    }
+    for (int a = 0; a < 3; ++a) {
+        Index near = 0;
+        for (const SolidFace& f : cover.faces) near += f.axis == a;
+        for (int i = 0; i < 16; ++i)
+            for (int j = 0; j < 16; ++j)
+                for (int k = 0; k < 16; ++k) {
+                    Vec3 x(i + 0.5, j + 0.5, k + 0.5);
+                    x[a] -= 0.5;
+                    const Vec3 arm = x.cwiseProduct(size) - centre;
+                    near -= arm.norm() - 0.24 < across(arm);
+                }
+        CHECK(near == 0);
+    }
 }

@@ -19,6 +19,8 @@ struct Idle {
     std::span<const SolidFlux> fluxes() const { return {}; }
     Real water_share(const OpenFace&) const { return 1; }
     void keep_wet(const Poisson<3>&) {}
+    void slow(FaceField<3>&, const FlowStage&) {}
+    void give_back(FaceField<3>&, Real) const {}
     void mix(FaceField<3>&) const {}
     void force(FaceField<3>&, const Field<Real>&, const FlowStage&) {}
     void push(const auto&, Real) {}

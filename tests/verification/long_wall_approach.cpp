@@ -21,7 +21,7 @@ TEST_CASE("drag of a sphere that goes towards a wall over gap and cells") {
             const Real deviates = drag.factor / exact - 1, gap_cells = 0.5 * gap * cells;
             MESSAGE(cells << " cells to a diameter, a gap of " << gap << " radii, " << gap_cells
                           << " cells: " << 100 * deviates << " % (" << 100 * drag.unsteady << " % unsteady)");
-            CHECK(std::abs(deviates) < (gap_cells >= 4 ? 0.16 : gap_cells >= 2 ? 0.22 : 0.7));
+            CHECK(std::abs(deviates) < (gap_cells >= 4 ? 0.06 : gap_cells >= 2 ? 0.1 : 0.7));
         }
     }
 }

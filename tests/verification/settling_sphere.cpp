@@ -60,7 +60,7 @@ TEST_CASE("ten Cate: the fastest that the sphere gets") {
             MESSAGE(row.texts.at("case") << ", " << cells << " cells to a diameter: " << peak.speed
                                          << " m/s, " << 100 * (peak.speed / measured - 1) << " % off");
             // E4: 2 % on 24 cells are published, 4.4 % on 11; E1: -6 to 3 %.
-            CHECK(std::abs(peak.speed / measured - 1) < (slow ? 0.06 : 0.045));
+            CHECK(std::abs(peak.speed / measured - 1) < 0.025);
             CHECK(peak.residual < 1e-12);
         }
     }

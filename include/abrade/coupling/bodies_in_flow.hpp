@@ -259,15 +259,13 @@ protected:
     }
     /// What goes through each face. `beyond(face)`: its part of the mixture's velocity beyond the water's.
     void find_fluxes(auto&& beyond) {
-        const std::span<CoveredFace> all = faces_.all();
-        fluxes_.resize(all.size()), beyond_.resize(all.size());
-        parallel_for(static_cast<Index>(all.size()), [&](Index n) {
-            const auto i = static_cast<std::size_t>(n);
-            CoveredFace& f = all[i];
+        fluxes_.clear(), beyond_.clear();
+        for (CoveredFace& f : faces_.all()) {
+            if (f.share == 0) continue;
             if (f.body < bodies_.size()) f.solid = detail::along(f, motion_[f.body].q);
-            fluxes_[i] = {f.face, f.axis, f.covered * f.solid};
-            beyond_[i] = beyond(std::as_const(f));
-        });
+            fluxes_.push_back({f.face, f.axis, f.covered * f.solid});
+            beyond_.push_back(beyond(std::as_const(f)));
+        }
     }
 
     std::vector<FlowBody> bodies_;

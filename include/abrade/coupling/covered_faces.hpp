@@ -15,13 +15,14 @@ namespace abrade {
 /// A face and one of the bodies that cover it.
 struct CoveredFace : SolidFace {
     std::size_t body = 0;
-    Real open = 0;     ///< share of the face that walls leave open; 0: no water passes [-]
-    Real water = 0;    ///< share that bodies leave to the water, too [-]
-    Real covered = 0;  ///< by the one body, of what is open [-]
-    Real lighter = 1;  ///< the water's density over the face's, where `weigh` asks for it [-]
-    Real heavier = 0;  ///< what the body adds to the face's density, over this [-]
-    Real per_gap = 0;  ///< 1 over the distance of the pressures to both sides [1/m]
-    Real weight = 1;   ///< share of the face's inertia that is below the surface [-]
+    Real open = 0;          ///< share of the face that walls leave open; 0: no water passes [-]
+    Real water = 0;         ///< share that bodies leave to the water, too [-]
+    Real covered = 0;       ///< by the one body, of what is open [-]
+    Real all_friction = 0;  ///< of all bodies here [1/m2]
+    Real lighter = 1;       ///< the water's density over the face's, where `weigh` asks for it [-]
+    Real heavier = 0;       ///< what the body adds to the face's density, over this [-]
+    Real per_gap = 0;       ///< 1 over the distance of the pressures to both sides [1/m]
+    Real weight = 1;        ///< share of the face's inertia that is below the surface [-]
     bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
     bool leaves = false;  ///< at a side where water leaves: only what is added to a pressure pushes there
     Real mass = 0;        ///< of its control volume, as far as walls leave it open and it is wet [kg]
@@ -29,6 +30,7 @@ struct CoveredFace : SolidFace {
     Real solid = 0;       ///< velocity of what covers it [m/s]
     Real held = 0;        ///< share of the way to `target` [m/s] that friction takes the water [-]
     Real target = 0;
+    Real taken = 0;  ///< by friction in the first stage [m/s]
     Real given = 0;  ///< to the water beside friction [m/s]
     Real rate = 0;   ///< of friction [1/s]
 
@@ -80,6 +82,7 @@ public:
             for (const SolidFace& f : covers_[at(b)].faces) (faces_[i++] = {f}).body = at(b);
         });
         sort_by_plane(grid.layout().planes());
+        add_up_friction(grid.layout());
     }
 
     std::span<CoveredFace> all() noexcept { return faces_; }
@@ -106,9 +109,10 @@ public:
     void for_each(auto&& visit) {
         parallel_for(static_cast<Index>(faces_.size()), [&](Index i) { visit(faces_[at(i)]); });
     }
-    /// In an order that does not depend on threads: bodies may share a face.
+    /// Those of which bodies cover some, in an order that does not depend on threads: bodies may share a
+    /// face.
     void on_plane(int plane, auto&& visit) const {
-        if (!by_plane_.empty()) visit_plane(*this, plane, visit);
+        if (!by_plane_.empty()) visit_range(*this, at(2 * plane), at(2 * plane + 1), visit);
     }
     /// Plane by plane in parallel, each of the visits to all faces of a plane before the next.
     void by_planes(auto&&... visits) { visit_planes(*this, visits...); }
@@ -121,6 +125,7 @@ public:
         };
         by_planes([&](CoveredFace& f) { f.open = share(f), f.per_gap = 1 / f.gap; },
                   [&](const CoveredFace& f) {
+                      if (f.share == 0) return;
                       const Real left = share(f) - f.share;
                       m.face[f.axis][f.face] =
                           left > least ? static_cast<float>(left * f.area / f.gap) : 0.0f;
@@ -173,7 +178,8 @@ private:
     /// Resolved bodies leave no room for others.
     void spread(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                 std::vector<std::size_t> small, const FaceField<3>* open_area) {
-        if (!small.empty() && taken_[0].size() == 0) taken_ = face_field<3>(grid.layout());
+        const bool some = !small.empty();
+        if (some) make_sums(grid.layout());
         for (const std::size_t b : small) {
             covers_[b].clear();
             for (int a = 0; a < 3; ++a) {
@@ -182,14 +188,14 @@ private:
                                   (!is_closed(sides[a][1]) && x > grid.high(a));
             }
         }
-        for (std::size_t b = 0; b < bodies.size() && !small.empty(); ++b)
-            for (const SolidFace& f : covers_[b].faces) taken_[f.axis][f.face] += f.share;
+        for (std::size_t b = 0; b < bodies.size() && some; ++b)
+            for (const SolidFace& f : covers_[b].faces) sums_[f.axis][f.face] += f.share;
         const auto open = [&](int axis, Offset face) {
-            return std::max((open_area ? (*open_area)[axis][face] : 1) - taken_[axis][face], Real(0));
+            return std::max((open_area ? (*open_area)[axis][face] : 1) - sums_[axis][face], Real(0));
         };
         cloud_.place(grid, sides, bodies, std::move(small), open, covers_.back());
-        for (std::size_t b = 0; b < bodies.size() && taken_[0].size() > 0; ++b)
-            for (const SolidFace& f : covers_[b].faces) taken_[f.axis][f.face] = 0;
+        for (std::size_t b = 0; b < bodies.size() && some; ++b)
+            for (const SolidFace& f : covers_[b].faces) sums_[f.axis][f.face] = 0;
     }
 
     static constexpr Real least = 1e-6;  ///< of a face: less conducts nothing
@@ -197,27 +203,42 @@ private:
     static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
     static Offset key(int axis, Offset face) noexcept { return 4 * face + axis; }
 
-    static void visit_plane(auto& self, Index plane, auto& visit) {
-        for (std::size_t i = self.plane_start_[at(plane)]; i < self.plane_start_[at(plane + 1)]; ++i)
+    static void visit_range(auto& self, std::size_t first, std::size_t last, auto& visit) {
+        for (std::size_t i = self.plane_start_[first]; i < self.plane_start_[last]; ++i)
             visit(self.faces_[self.by_plane_[i]]);
     }
     static void visit_planes(auto& self, auto&... visits) {
         constexpr Index planes_at_once = 4;  // stones lie in heaps
         parallel_blocks(
-            static_cast<Index>(self.plane_start_.size()) - 1,
+            static_cast<Index>(self.plane_start_.size()) / 2,
             [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane) (visit_plane(self, plane, visits), ...);
+                for (Index plane = first; plane < last; ++plane)
+                    (visit_range(self, at(2 * plane), at(2 * plane + 2), visits), ...);
             },
             planes_at_once);
     }
 
+    void make_sums(const Layout<3>& layout) {
+        if (sums_[0].size() == 0) sums_ = face_field<3>(layout);
+    }
+
+    /// Even of one body: it may be near itself, across a periodic side.
+    void add_up_friction(const Layout<3>& layout) {
+        make_sums(layout);
+        by_planes([&](const CoveredFace& f) { sums_[f.axis][f.face] += f.friction; },
+                  [&](CoveredFace& f) { f.all_friction = sums_[f.axis][f.face]; },
+                  [&](const CoveredFace& f) { sums_[f.axis][f.face] = 0; });
+    }
+
+    /// In each plane those come first of which bodies cover some.
     void sort_by_plane(int planes) {
-        plane_start_.assign(at(planes) + 1, 0);
-        for (const SolidFace& f : faces_) ++plane_start_[at(f.plane) + 1];
+        const auto part = [](const SolidFace& f) { return at(2 * f.plane + (f.share == 0)); };
+        plane_start_.assign(at(2 * planes) + 1, 0);
+        for (const SolidFace& f : faces_) ++plane_start_[part(f) + 1];
         for (std::size_t p = 1; p < plane_start_.size(); ++p) plane_start_[p] += plane_start_[p - 1];
         by_plane_.resize(faces_.size());
         std::vector<std::size_t> next = plane_start_;
-        for (std::size_t i = 0; i < faces_.size(); ++i) by_plane_[next[at(faces_[i].plane)]++] = i;
+        for (std::size_t i = 0; i < faces_.size(); ++i) by_plane_[next[part(faces_[i])]++] = i;
     }
 
     /// What of a face between water and air is solid pushes on no water.
@@ -248,9 +269,9 @@ private:
     std::vector<CoveredFace> faces_;        ///< body by body
     std::vector<std::size_t> first_;        ///< [body] in `faces_`
     std::vector<std::size_t> by_plane_;     ///< `faces_` in the order of their planes
-    std::vector<std::size_t> plane_start_;  ///< [plane] in `by_plane_`
+    std::vector<std::size_t> plane_start_;  ///< [2 plane, + 1 of those near by] in `by_plane_`
     std::unordered_map<Offset, Real> surface_;
-    FaceField<3> taken_;  ///< by resolved bodies, while the others are spread; 0 else [-]
+    FaceField<3> sums_;  ///< of what resolved bodies have at a face; 0 but while they are needed
 };
 
 }  // namespace abrade

@@ -17,11 +17,12 @@ namespace abrade {
 ///   [D (1 - sigma) rho^-1 D^T + sum over bodies J M^-1 J^T] p = -D ((1 - sigma) u* + sigma v*),
 /// so the pressure is stable for any ratio of densities and any step. J^T p is its force.
 ///
-/// Before that comes friction: in a control volume covered by sigma water is held back, implicitly in time,
-///   du/dt = C nu / h^2 sigma / (1 - sigma) (v - u),  h^3 the volume,
-/// and its body takes the impulse; C is calibrated on the drag of a sphere. Where bodies leave less than a
-/// tenth of a face the water sticks. How fast a body is when friction acts tells what its added mass lets it
-/// have of its forces: the pressure comes later.
+/// Before that comes friction: water at a distance d from the surface, in cells of size h, is held back,
+/// implicitly in time,
+///   du/dt = C nu / h^2 (1 - d) / (1 + d) (v - u),  -1 < d < 1,
+/// and its body takes the impulse; C is calibrated on the drag of a sphere at Re 20. Where bodies leave less
+/// than a tenth of a face the water sticks. How fast a body is when friction acts tells what its added mass
+/// lets it have of its forces: the pressure comes later.
 ///
 /// Bodies of less than `resolved_from` cells to a diameter are averaged: AveragedBodies.
 template <DenseDragLaw DragOfSmall = DiFelice>
@@ -31,14 +32,14 @@ public:
     static constexpr bool present = true;
 
     struct Params {
-        Real friction = 12;                   ///< C [-]
+        Real friction = 3.8;                  ///< C [-]
         Real resolved_from = 3;               ///< diameter of bodies that are not averaged [cell]
         Real added_mass = 0.5;                ///< C_m of those that are [-]
         typename DragOfSmall::Params drag{};  ///< theirs
         void validate() const {
             require(
                 friction >= 0 && std::isfinite(friction),
-                {"MonolithicSolids.friction", ">= 0 and finite", "", "12 is calibrated, 0 lets water glide"},
+                {"MonolithicSolids.friction", ">= 0 and finite", "", "3.8 is calibrated, 0 lets water glide"},
                 friction);
             require(resolved_from >= 0,
                     {"MonolithicSolids.resolved_from", ">= 0", "cells", "0 resolves all, infinity none"},
@@ -65,6 +66,22 @@ public:
         averaged_.begin(faces_.of_cloud(), faces_.cloud(), bodies_);
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) { faces_.close(m, surface); }
+
+    /// Towards what bodies had for a velocity when they were placed, where there is water that has a pressure.
+    void slow(FaceField<3>& u, const FlowStage& stage) {
+        const Real stiff = params_.friction * stage.viscosity * stage.dt;
+        const auto wet = [&](Offset cell) { return !stage.held || (*stage.held)[cell] >= 0.5; };
+        faces_.by_planes(
+            [&](CoveredFace& f) {
+                const bool flows = f.share < 1 && wet(f.face) && wet(f.low);
+                const Real held = flows ? stiff * f.friction / (1 + stiff * f.all_friction) : 0;
+                f.taken = held * (u[f.axis][f.face] - f.solid);
+            },
+            [&](const CoveredFace& f) { u[f.axis][f.face] -= f.taken; });
+    }
+    void give_back(FaceField<3>& u, Real share) const {
+        faces_.by_planes([&](const CoveredFace& f) { u[f.axis][f.face] += share * f.taken; });
+    }
 
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         look_at(u, pressure, stage);
@@ -127,7 +144,7 @@ public:
 
     void settle(FaceField<3>& u, Field<Real>& pressure) {
         faces_.by_planes([&](const CoveredFace& f) {
-            if (f.water > 0) u[f.axis][f.face] = f.velocity - stage_.dt * f.gradient(pressure);
+            if (f.water > 0 && f.share > 0) u[f.axis][f.face] = f.velocity - stage_.dt * f.gradient(pressure);
         });
         find_fluxes([&](const CoveredFace& f) { return f.covered * (f.solid - u[f.axis][f.face]); });
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {
@@ -144,11 +161,12 @@ public:
 private:
     static constexpr Real sliver = 0.1;  ///< of a face: less water has no velocity of its own [-]
 
+    /// Bodies at one face share what friction does there.
     Real held_by(const CoveredFace& f) const noexcept {
-        const Real rate = params_.friction * stage_.viscosity * stage_.dt / square(std::cbrt(f.volume()));
-        const Real stiff = rate * f.share, left = 1 - f.share;
-        const Real held = stiff > 0 ? stiff / (left + stiff) : 0;
-        return f.open > 0 ? std::max(held, 1 - f.water / (sliver * f.open)) : held;
+        const Real stiff = params_.friction * stage_.viscosity * stage_.dt * f.all_friction;
+        Real held = stiff / (1 + stiff);
+        if (f.open > 0) held = std::max(held, 1 - f.water / (sliver * f.open));
+        return held * f.friction / f.all_friction;
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.

@@ -16,7 +16,8 @@
 
 namespace abrade {
 
-/// A face of whose control volume, which lies half in either cell, a body covers some.
+/// A face of whose control volume, which lies half in either cell, a body covers some, or whose centre is
+/// less than a cell from its surface.
 struct SolidFace {
     Offset face = 0;  ///< of the velocity component
     Offset low = 0;   ///< of the cell below it, across a periodic side where there is one
@@ -24,6 +25,7 @@ struct SolidFace {
     int plane = 0;            ///< of the face, across the longest axis; the last of the upper side's, too
     Real share = 0;           ///< sigma, of the control volume [-]
     Real core = 0;            ///< share of a body whose surface is retracted [-]
+    Real friction = 0;        ///< rate of friction over C nu [1/m2]
     Real area = 0, gap = 0;   ///< of the face [m2]; between the centres of its cells [m]
     Vec3 arm = Vec3::Zero();  ///< from the body's centroid to the face's centre [m]
 
@@ -98,6 +100,9 @@ struct GridNumbers {
 ///   sigma (1 - sigma) (a + b . arm), a and b from linear equations, at most sigma (1 - sigma).
 /// What is closed (walls, what lies beyond them) holds nothing, and the rest takes it over. A body that is
 /// hardly larger than a cell is spread: its spheres grow, and cover a share.
+///
+/// Friction is told by the distance d of a face's centre from the surface, in cells of the size h that the
+/// control volume has across it: s / ((1 - s) h^2), s = (1 - d) / 2 the share of two cells that lies within.
 template <class Closed>
 class SolidCoverFinder : GridNumbers {
 public:
@@ -132,7 +137,7 @@ private:
         Number n;
         std::size_t k;
         Vec3 centre, size;
-        Real core;
+        Real core, friction;
     };
     enum class Kind : char {
         closed,
@@ -219,6 +224,7 @@ private:
         Real distance = std::numeric_limits<Real>::infinity();  ///< to the surface, negative inside [m]
         Real radius = 0;
         Vec3 from = Vec3::Zero();  ///< that sphere's centre [m]
+        Real length = 0;           ///< of that
     };
     /// Of spheres whose surface is no farther than `reach`.
     Near nearest(const Vec3& x, Real reach) const noexcept {
@@ -227,16 +233,20 @@ private:
             const Vec3 from = x - s.centre;
             const Real radius = s.radius + grown_, within = radius + near.distance,
                        square2 = from.squaredNorm();
-            if (within > 0 && square2 < square(within)) near = {std::sqrt(square2) - radius, radius, from};
+            if (!(within > 0 && square2 < square(within))) continue;
+            const Real length = std::sqrt(square2);
+            near = {length - radius, radius, from, length};
         }
         return near;
     }
 
+    /// A box of size s about a point, times the surface's normal.
+    static Vec3 across(const Near& near, const Vec3& s) noexcept {
+        return near.length > 0 ? Vec3(s.cwiseProduct(near.from) / near.length) : Vec3(0, 0, s.z());
+    }
     /// Of a box of size s about a point.
     Real share_of(const Near& near, const Vec3& s) const noexcept {
-        const Real length = near.from.norm();
-        const Vec3 normal = length > 0 ? Vec3(near.from / length) : Vec3(0, 0, 1);
-        const Vec3 across = s.cwiseProduct(normal);
+        const Vec3 across = this->across(near, s);
         const Real curved = (s.squaredNorm() - across.squaredNorm()) / (24 * near.radius);
         return scale_ *
                liquid_fraction<3>(std::array{across[0], across[1], across[2]}, -near.distance - curved);
@@ -245,6 +255,13 @@ private:
     Real core_of(Near near, const Vec3& s) const noexcept {
         near.distance += retracted_ * std::cbrt(s.prod());
         return share_of(near, s);
+    }
+
+    Real friction_of(const Near& near, const Vec3& s) const noexcept {
+        const Real size = across(near, s).norm(), d = near.distance / size;
+        const Real within = scale_ * std::clamp(0.5 * (1 - d), 0.0, 1.0);
+        constexpr Real least = 1e-12;  // of two cells: less is none
+        return within / (std::max(1 - within, least) * square(size));
     }
 
     void find_shares(int axis) {
@@ -258,12 +275,14 @@ private:
         };
         for_each([&](const Number& n, std::size_t k) {
             const Vec3 x = place(axis, n), s = extent(axis, n);
-            const Near near = nearest(x, 0.6 * s.norm());
+            const Near near = nearest(x, std::max(0.6 * s.norm(), s.maxCoeff()));
             if (near.radius == 0) return;
             kind_[axis][k] = kind(axis, n);
             if (kind_[axis][k] == Kind::closed) return;
             share[k] = share_of(near, s);
-            if (share[k] > 0) covered_.push_back({n, k, x, s, retracted_ > 0 ? core_of(near, s) : 0});
+            const Real friction = axis == of_cells ? 0 : friction_of(near, s);
+            if (share[k] > 0 || friction > 0)
+                covered_.push_back({n, k, x, s, retracted_ > 0 ? core_of(near, s) : 0, friction});
         });
         constexpr int most_rounds =
             4;  // one, but where a floor takes so much that shares are at their bounds
@@ -271,6 +290,7 @@ private:
             Mat3 matrix = 1e-12 * body_->volume * Mat3::Identity();
             Vec3 lacks(body_->volume, 0, 0);
             for (const Volume& v : covered_) {
+                if (share[v.k] == 0) continue;
                 const Vec3 x = terms(v.centre);
                 const Real covers = share[v.k] * v.size.prod();
                 lacks -= covers * x;
@@ -280,7 +300,7 @@ private:
             const Vec3 by = matrix.ldlt().solve(lacks);
             for (const Volume& v : covered_) {
                 Real& of = share[v.k];
-                if (of < 1) of += of * (1 - of) * std::clamp(by.dot(terms(v.centre)), -1.0, 1.0);
+                if (of > 0 && of < 1) of += of * (1 - of) * std::clamp(by.dot(terms(v.centre)), -1.0, 1.0);
             }
         }
     }
@@ -288,8 +308,8 @@ private:
     /// After `find_shares`.
     void list_faces(int axis, SolidCover& cover) const {
         const Layout<3>& l = grid.layout();
-        for (const auto& [n, k, centre, s, core] : covered_) {
-            if (kind_[axis][k] != Kind::open || share_[axis][k] == 0) continue;
+        for (const auto& [n, k, centre, s, core, friction] : covered_) {
+            if (kind_[axis][k] != Kind::open) continue;
             const Number inside = inside_box(n);
             Number below = inside;
             below[axis] = wrapped(axis, inside[axis] - 1);
@@ -299,6 +319,7 @@ private:
                                    .plane = std::min(inside[Layout<3>::outer], l.planes() - 1),
                                    .share = share_[axis][k],
                                    .core = retracted_ > 0 ? core : share_[axis][k],
+                                   .friction = friction,
                                    .area = s.prod() / s[axis],
                                    .gap = s[axis],
                                    .arm = centre - body_->position});

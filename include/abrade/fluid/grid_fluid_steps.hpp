@@ -143,9 +143,11 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
     if (!side_friction_.empty()) sides_.join(stage_);
     const auto taken = side_friction_.apply(stage_, nullptr, dt, nu());
     if (energy_) energy_->walls_took(taken);
+    if constexpr (Solids::present) solids_.slow(stage_, {.dt = dt, .viscosity = nu()});
     sides_.fill(stage_);
     stage(stage_, saved_velocity_, 0.5);
     side_friction_.take(saved_velocity_, nullptr, taken, 0.5);
+    if constexpr (Solids::present) solids_.give_back(saved_velocity_, 0.5);
     std::swap(velocity_, saved_velocity_);
     if (!params_.steady_sides) sides_.fill(velocity_);
     if constexpr (Solids::present)
@@ -198,6 +200,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     finish(stage_);
     // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
     const auto taken = water.slow(stage_, dt, nu());
+    if constexpr (Solids::present) solids_.slow(stage_, {.dt = dt, .viscosity = nu(), .held = &water.held()});
     if (energy_) energy_->walls_took(taken);
     if (!params_.steady_sides) sides_.set_time(time_ + dt);
     sides_.fill(stage_, rows());
@@ -209,6 +212,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     stage(stage_, velocity_, 0.5, 0.5 * dt);
     water.clear_surface_push(projection_.open_faces());
     water.friction().take(velocity_, &water.rows(), taken, 0.5);
+    if constexpr (Solids::present) solids_.give_back(velocity_, 0.5);
     water.let_go(velocity_);
     water.find(projection_, pressure_, solids_);
     water.load_carriers(velocity_, record_.wet());

@@ -52,6 +52,8 @@ struct FlowStage {
 ///   flows around the shape;
 /// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface among them,
 ///   before the operator is built and after it;
+/// - `slow`: friction on the water of the first stage, that the second starts from a flow which knows of them, and
+///   `give_back`: a share of it, before `force` does it all: so a steady flow does not depend on the step;
 /// - `mix`: the mixture's velocity from a water's that is not known to the end yet;
 /// - `force`, once the water has been moved on by all but the new pressure: a force per volume on it, and from there
 ///   on the mixture's velocity;
@@ -72,6 +74,7 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     s.close(m, std::span<const OpenFace>{});
     { still.water_share(OpenFace{}) } -> std::same_as<Real>;
     s.keep_wet(m);
+    s.slow(u, FlowStage{}), still.give_back(u, Real{});
     still.mix(u);
     still.mix_last(u), still.seep(u);
     { still.parts() } -> std::convertible_to<std::span<const SolidPart>>;
