@@ -203,9 +203,9 @@ private:
             change.turbulent += work_in_solids(flow) - work_in_openings(flow);
         }
     }
-    /// Work of the momentum that a velocity brings about its own control volumes, on `mid_`.
+    /// Work of the momentum that is carried about the control volumes of a velocity, on `mid_`.
     Real advection(const View& flow, const FaceField<Dim, State>& by, Real dt) {
-        return stage_work<Scheme, false>(flow, {by, by, dt, 0});
+        return stage_work<Scheme, false>(flow, {by, flow.carrier ? *flow.carrier : by, dt, 0});
     }
 
     struct Forces {

@@ -309,6 +309,7 @@ GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::energy_view() const 
         if constexpr (Solids::present) {
             view.solids = solids_.volumes(false), view.new_solids = solids_.volumes(true);
             view.solid_fluxes = solids_.fluxes();
+            if constexpr (!has_surface) view.carrier = &mixture_;
             view.solid_friction = solids_.lost_to_friction();
             const Field<Real>* fraction = nullptr;
             if constexpr (has_surface) fraction = &water_->liquid().fraction();

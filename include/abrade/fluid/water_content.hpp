@@ -37,7 +37,10 @@ struct EnergyView {
     Point<Dim> solid_moment = Point<Dim>::Zero();     ///< volume in the water times place [m4]
     Point<Dim> new_solid_moment = Point<Dim>::Zero();
     std::span<const SolidFlux> solid_fluxes{};  ///< of a full box
-    Real solid_friction = 0;                    ///< lost in the step [J]
+    /// What carried momentum in the second stage among solids [m/s]; none: a stage's own velocity. Of a full
+    /// box.
+    const FaceField<Dim, State>* carrier = nullptr;
+    Real solid_friction = 0;  ///< lost in the step [J]
 };
 
 /// Sum of of_row(plane, row, range) over the rows that are not dry. The same bits for any number of threads.
