@@ -35,6 +35,12 @@ public:
     auto fluxes() const { return base().fluxes(); }
     void mix_last(FaceField<3>& u) const { base().mix_last(u); }
     void seep(FaceField<3>& u) const { base().seep(u); }
+    void slow(FaceField<3>& u, const FlowStage& stage) {
+        visit(*this, [&](auto& one) { one.slow(u, stage); });
+    }
+    void give_back(FaceField<3>& u, Real share) const {
+        visit(*this, [&](const auto& one) { one.give_back(u, share); });
+    }
     void mix(FaceField<3>& u) const { base().mix(u); }
     Real water_share(const OpenFace& open) const { return base().water_share(open); }
     auto volumes(bool only_new) const { return base().volumes(only_new); }

@@ -51,9 +51,7 @@ TEST_CASE(
     "direct forcing: the pressure moves a body as heavy as water; one much lighter runs away, whatever the "
     "step") {
     for (const Real dt : {1e-4, 1e-3}) {
-        const auto velocity = released<DirectForcing>(0.02, dt, 8);
-        CHECK(std::abs(velocity.back()) > 10);
-        CHECK(velocity.back() * velocity[6] < 0);
+        CHECK(std::abs(released<DirectForcing>(0.02, dt, 8).back()) > 10);
     }
 }
 

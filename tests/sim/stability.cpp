@@ -2,6 +2,7 @@
 #include "stable_limits.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
+#include <abrade/dem/rolling_resistance.hpp>
 
 #include <doctest/doctest.h>
 
@@ -268,4 +269,21 @@ TEST_CASE("clumps: a stone pressed between walls is stable at the predicted step
             // Elastic: at most what 24 pressed contacts stored at first, and the spin.
             CHECK(most < 2 * (24 * 0.5 * 1e6 * square(1e-5) + sim.ledger().kinetic_start));
         }
+}
+
+TEST_CASE("a stone that resists rolling on a sphere as large as a hill is as stable as on a plane") {
+    const auto limit = [](bool plane) {
+        Scene scene;
+        scene.gravity = {0, 0, -9.81};
+        if (plane)
+            scene.add_wall({0, 0, 0}, {0, 0, 1});
+        else
+            scene.add_fixed(make_clump("hill", {{Vec3::Zero(), 100}}), {0, 0, -100});
+        scene.add_sphere(0.02, {.position = {0, 0, 0.02 - 1e-5}}, 2650);
+        auto sim = simulate(scene).contact(RollingResistance<LinearSpring>{
+            {.contact = {.stiffness = 1e5, .friction = 0.5}, .friction = 0.1}});
+        sim.run({.end_time = 1e-4});
+        return sim.stable_step_now().seconds;
+    };
+    CHECK(limit(false) == doctest::Approx(limit(true)).epsilon(1e-3));
 }

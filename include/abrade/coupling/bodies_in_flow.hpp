@@ -167,6 +167,7 @@ protected:
         const Real dt = stage_.dt;
         Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
         Six brought = Six::Zero(), within = Six::Zero();
+        Vec3 flow = Vec3::Zero(), weight = Vec3::Zero();  // of the water in its place
         for (CoveredFace& f : faces_.of(b)) {
             f.held = held_of(std::as_const(f));
             const Real held = f.mass * f.water * f.held, covers = f.mass * f.share;
@@ -174,6 +175,7 @@ protected:
             drag += held * c * c.transpose();
             brought += held * f.velocity * c;
             motion.covers += covers / 3;
+            flow[f.axis] += covers * f.velocity, weight[f.axis] += covers;
             if (before) within += covers * (unpushed(f, old) - detail::along(f, before->q)) * c;
         }
         if (before && before->covers > 0) {
@@ -193,6 +195,9 @@ protected:
             const Matrix6 inertia = detail::inertia_of(body);
             if (before)
                 motion.struck = {body, before->q.template head<3>(), before->struck, stage_.falls, dt};
+            else  // it meets the water at once
+                motion.struck.velocity =
+                    body.velocity - dt * stage_.falls - flow.cwiseQuotient(weight.cwiseMax(tiny));
             Six went = Six::Zero();  // what contacts gave to the water along with the body
             went.template head<3>() = body.load.along * motion.struck.velocity - dt * body.load.shared;
             const Six begun =
@@ -275,6 +280,7 @@ protected:
 
 private:
     static constexpr Real of_a_sphere = 0.5;  ///< added mass over that of its place [-]
+    static constexpr Real tiny = 1e-300;
 
     bool is_new(std::size_t b) const noexcept { return !std::ranges::binary_search(seen_, bodies_[b].id); }
     /// Of the control volume of a face, as far as walls leave it open and it lies below the surface [kg].

@@ -82,7 +82,7 @@ public:
             for (const SolidFace& f : covers_[at(b)].faces) (faces_[i++] = {f}).body = at(b);
         });
         sort_by_plane(grid.layout().planes());
-        add_up_friction(grid.layout());
+        share_out(grid.layout(), open_area);
     }
 
     std::span<CoveredFace> all() noexcept { return faces_; }
@@ -222,12 +222,21 @@ private:
         if (sums_[0].size() == 0) sums_ = face_field<3>(layout);
     }
 
-    /// Even of one body: it may be near itself, across a periodic side.
-    void add_up_friction(const Layout<3>& layout) {
+    /// What walls and all bodies leave of faces, until `close` knows which of these have a pressure; and all
+    /// friction, even of one body: it may be near itself, across a periodic side.
+    void share_out(const Layout<3>& layout, const FaceField<3>* open_area) {
+        if (faces_.empty()) return;
         make_sums(layout);
-        by_planes([&](const CoveredFace& f) { sums_[f.axis][f.face] += f.friction; },
-                  [&](CoveredFace& f) { f.all_friction = sums_[f.axis][f.face]; },
-                  [&](const CoveredFace& f) { sums_[f.axis][f.face] = 0; });
+        const auto sum = [&](const CoveredFace& f) -> Real& { return sums_[f.axis][f.face]; };
+        by_planes(
+            [&](const CoveredFace& f) { sum(f) += f.share; },
+            [&](CoveredFace& f) {
+                f.open = open_area ? (*open_area)[f.axis][f.face] : 1;
+                f.water = std::max(f.open - sum(f), 0.0);
+                f.covered = f.open > 0 ? std::min(f.share / f.open, 1.0) : 0;
+            },
+            [&](const CoveredFace& f) { sum(f) = 0; }, [&](const CoveredFace& f) { sum(f) += f.friction; },
+            [&](CoveredFace& f) { f.all_friction = sum(f); }, [&](const CoveredFace& f) { sum(f) = 0; });
     }
 
     /// In each plane those come first of which bodies cover some.
@@ -271,7 +280,7 @@ private:
     std::vector<std::size_t> by_plane_;     ///< `faces_` in the order of their planes
     std::vector<std::size_t> plane_start_;  ///< [2 plane, + 1 of those near by] in `by_plane_`
     std::unordered_map<Offset, Real> surface_;
-    FaceField<3> sums_;  ///< of what resolved bodies have at a face; 0 but while they are needed
+    FaceField<3> sums_;  ///< of what bodies have at a face; 0 but while they are needed
 };
 
 }  // namespace abrade

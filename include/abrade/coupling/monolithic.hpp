@@ -67,14 +67,13 @@ public:
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) { faces_.close(m, surface); }
 
-    /// Towards what bodies had for a velocity when they were placed, where there is water that has a pressure.
+    /// Towards what bodies had for a velocity when they were placed, where there is water that has a
+    /// pressure.
     void slow(FaceField<3>& u, const FlowStage& stage) {
-        const Real stiff = params_.friction * stage.viscosity * stage.dt;
         const auto wet = [&](Offset cell) { return !stage.held || (*stage.held)[cell] >= 0.5; };
         faces_.by_planes(
             [&](CoveredFace& f) {
-                const bool flows = f.share < 1 && wet(f.face) && wet(f.low);
-                const Real held = flows ? stiff * f.friction / (1 + stiff * f.all_friction) : 0;
+                const Real held = wet(f.face) && wet(f.low) ? held_by(f, stage) : 0;
                 f.taken = held * (u[f.axis][f.face] - f.solid);
             },
             [&](const CoveredFace& f) { u[f.axis][f.face] -= f.taken; });
@@ -86,7 +85,7 @@ public:
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         look_at(u, pressure, stage);
         parallel_for_resolved([&](std::size_t b) {
-            find_motion(b, pressure, [&](const CoveredFace& f) { return held_by(f); });
+            find_motion(b, pressure, [&](const CoveredFace& f) { return held_by(f, stage_); });
             if (stage_.pushed)  // or by the `push` to come
                 motion_[b].q += detail::accelerated(
                     bodies_[b], stage_.dt * stage_.density * detail::pressed(faces_.cover(b), pressure));
@@ -159,14 +158,15 @@ public:
     }
 
 private:
-    static constexpr Real sliver = 0.1;  ///< of a face: less water has no velocity of its own [-]
-
-    /// Bodies at one face share what friction does there.
-    Real held_by(const CoveredFace& f) const noexcept {
-        const Real stiff = params_.friction * stage_.viscosity * stage_.dt * f.all_friction;
-        Real held = stiff / (1 + stiff);
-        if (f.open > 0) held = std::max(held, 1 - f.water / (sliver * f.open));
-        return held * f.friction / f.all_friction;
+    /// Share of the way to a body's velocity that friction takes a face's water in a step: bodies share what
+    /// all of them do there. What is left of a face that they nearly close is stuck: the pressure pushes it
+    /// as it would a whole face, by as much more as it is less, so the square.
+    Real held_by(const CoveredFace& f, const FlowStage& stage) const noexcept {
+        constexpr Real sliver = 0.1;  // of what walls leave of a face
+        if (f.all_friction == 0) return 0;
+        const Real stiff = params_.friction * stage.viscosity * stage.dt * f.all_friction;
+        const Real left = f.open > 0 ? std::min(f.water / (sliver * f.open), 1.0) : 1;
+        return std::max(stiff / (1 + stiff), 1 - square(left)) * f.friction / f.all_friction;
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.

@@ -128,8 +128,9 @@ public:
         }
     }
 
-    /// Goes on to exactly `to_time` [s] in steps of its own. Throws FluidError; InputError for no finite
-    /// time.
+    /// In which a body crosses as much of a cell as it may in a step [s].
+    Real step_of_body(Real speed) const { return params_.courant * grid_->smallest() / speed; }
+    /// Goes on to exactly `to_time` [s] in own steps. Throws FluidError; InputError for no finite time.
     void advance(Real to_time) {
         require_finite(to_time, "GridFluid.advance: to_time", "s");
         while (time_ < to_time) {
@@ -274,8 +275,7 @@ private:
     /// A given force may not know the time beyond the run: where it fails, it fails the step that asks for
     /// it.
     FluidStep smooth(FluidStep step) const {
-        if constexpr (Solids::present)
-            step.lower(detail::step_of_solids(*grid_, params_, solids_.fastest(), has_surface), "solids");
+        if constexpr (Solids::present) step.lower(step_of_body(solids_.fastest()), "solids");
         if (!params_.body_force || !std::isfinite(step.seconds)) return step;
         try {
             step.lower(detail::smooth_step<Dim>(params_.body_force, time_, step.seconds), "body force");

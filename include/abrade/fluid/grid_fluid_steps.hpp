@@ -42,8 +42,11 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
     if (!(time_ < to_time)) return;
     std::vector<FlowBody> now(bodies.begin(), bodies.end());
     std::vector<Sphere> spheres;
-    for (const FlowBody& body : bodies)
+    Real fastest = 0;  // one that had not been among the water may be faster than all in it
+    for (const FlowBody& body : bodies) {
         spheres.insert(spheres.end(), body.spheres.begin(), body.spheres.end());
+        fastest = std::max(fastest, body.velocity.norm());
+    }
     const auto stand = [&](Real before) {  // where they were, that long before
         auto sphere = spheres.begin();
         for (std::size_t b = 0; b < now.size(); ++b) {
@@ -61,7 +64,8 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
         }
     while (time_ < to_time) {
         const Real left = to_time - time_;
-        const Real steps = std::max(std::ceil(left / stable_step().seconds - 1e-9), 1.0), dt = left / steps;
+        const Real own = std::min(stable_step().seconds, step_of_body(fastest));
+        const Real steps = std::max(std::ceil(left / own - 1e-9), 1.0), dt = left / steps;
         stand(left - dt);
         arriving_ = now;
         step(dt);

@@ -46,15 +46,6 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
     return step;
 }
 
-/// In which solids of a speed do not cross more of a cell than the Courant number allows, though gravity
-/// makes them faster; below a surface it has set a limit of its own [s].
-template <int Dim>
-Real step_of_solids(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, Real speed, bool surface) {
-    const Real way = params.courant * grid.smallest(), gravity = surface ? 0 : params.gravity.norm();
-    const Real sum = speed + std::sqrt(square(speed) + 4 * way * gravity);
-    return sum > 0 ? 2 * way / sum : std::numeric_limits<Real>::infinity();
-}
-
 /// The longest step up to `longest` [s] within which a body force goes on as it does: its path is no longer
 /// than its change by more than a tenth of its largest value. A force that is no number shows in the step.
 template <int Dim>

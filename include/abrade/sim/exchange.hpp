@@ -11,21 +11,19 @@
 namespace abrade {
 
 /// Until when a fluid's next step would lead, found once for each of them: solids ask before every step of
-/// theirs.
+/// theirs. Water whose cells bodies cross (`step_of_body`) is due sooner where a body is fast.
 class FluidDue {
 public:
-    /// Before the first exchange the fluid does not know how fast bodies are: they go half their radius.
-    template <class P>
-    Real of(const auto& fluid, const State<P>& state) {
-        if (fluid.time() == begins_) return ends_;
-        begins_ = fluid.time(), ends_ = begins_ + fluid.stable_step().seconds;
-        const Particles& p = state.particles;
-        for (std::size_t b = 0; state.accounts.flow_work == 0 && b < p.velocity.size(); ++b) {
-            const Real way = 0.5 * p.radius[static_cast<std::size_t>(p.first_sphere[b])];
-            ends_ = std::min(ends_, begins_ + way / p.velocity[b].norm());
-        }
-        return ends_;
+    Real fastest = 0;  ///< of bodies as they moved last [m/s]
+
+    Real of(const auto& fluid) {
+        if (fluid.time() != begins_) begins_ = fluid.time(), ends_ = begins_ + fluid.stable_step().seconds;
+        if constexpr (requires { fluid.step_of_body(fastest); })
+            return std::min(ends_, begins_ + fluid.step_of_body(fastest));
+        else
+            return ends_;
     }
+    static void fields(auto&& field) { field("fastest", "m/s", &FluidDue::fastest); }
 
 private:
     Real begins_ = std::numeric_limits<Real>::quiet_NaN(), ends_ = 0;  ///< [s]
@@ -41,7 +39,7 @@ public:
         std::vector<std::size_t> first;
         for (Index b = 0; b < p.bodies(); ++b) {
             const Kind kind = p.kind[at(b)];
-            if (kind == Kind::concrete) continue;
+            if (p.site[at(b)] >= 0 && kind != Kind::grain) continue;  // it stands: the water has walls
             const auto from = at(p.first_sphere[at(b)]), count = at(p.sphere_count[at(b)]);
             first.push_back(spheres_.size());
             for (std::size_t s = from; s < from + count; ++s) {

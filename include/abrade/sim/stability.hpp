@@ -280,9 +280,7 @@ private:
             const auto contact = contact_seen_by(law, lines, state_.scene.walls, touching, 0);
             if (!(contact.inverse_mass > 0)) return;
             const ContactRigidity touch = rigidity_of(law, contact, lines.place[at(pair.first)].radius);
-            // The effective radius is less than that of either sphere.
-            const auto link =
-                detail::link_of(touch, 1 / contact.inverse_mass, lines.place[at(pair.first)].radius);
+            const auto link = detail::link_of(touch, 1 / contact.inverse_mass, 1 / contact.curvature);
             const Real first_mass = lines.motion[at(pair.first)].inverse_mass;
             const Real second_mass = pair.second < 0 ? 0 : lines.motion[at(pair.second)].inverse_mass;
             const auto end = [&](Index slot, Real sign, bool partner_moves) {

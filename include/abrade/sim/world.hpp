@@ -128,7 +128,7 @@ public:
             field("stored_bonds", "J", &World::stored_bonds_),
             field("stored_at_rest", "J", &World::stored_at_rest_), field("unlooked", &World::unlooked_),
             field("too_deep", &World::too_deep_), field("timed", &World::timed_),
-            field("fluid_seconds", "s", &World::fluid_seconds_);
+            field("fluid_seconds", "s", &World::fluid_seconds_), field("fluid_due", &World::fluid_due_);
     }
 
 private:
@@ -215,7 +215,7 @@ private:
     /// The fluid comes to where the solids are, if a step to `t` would have it take more than one of its own.
     void exchange_before(Real t) {
         auto& fluid = state_.policies.fluid;
-        if (!(fluid.time() < now_) || fluid_due_.of(fluid, state_) >= t) return;
+        if (!(fluid.time() < now_) || fluid_due_.of(fluid) >= t) return;
         make_whole();
         FlowBodies<P> flow(state_);
         fluid.advance(now_, flow.bodies());
@@ -254,10 +254,10 @@ private:
         report_overlap(move ? *move : Move{});
         if (move) {
             book(state_.accounts, all.motion);
-            FreeFlight& flight = state_.flight;
-            flight.note(move->kick, move->drift, move->time);
+            state_.flight.note(move->kick, move->drift, move->time);
             state_.sleep.stirred |= all.motion.stirs;
-            const Real way = move->drift * std::max(std::sqrt(all.motion.fastest2), flight.fastest_now());
+            fluid_due_.fastest = std::max(std::sqrt(all.motion.fastest2), state_.flight.fastest_now());
+            const Real way = move->drift * fluid_due_.fastest;
             lists_.note_step(way);
             check(all.motion);
             if (way > state_.smallest_radius)
