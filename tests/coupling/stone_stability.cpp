@@ -54,7 +54,7 @@ TEST_CASE("a stone bounces the same over 1 to 2,000 grain steps to a step of the
             MESSAGE("diameter " << diameter << " m, water " << s.water << " s, grains " << s.grain
                                 << " s, stiffness " << s.stiffness << " N/m: comes to " << found.peak
                                 << " m; " << found.grain_steps << " and " << found.water_steps << " steps");
-            CHECK(std::abs(found.peak / first - 1) < 0.16);  // measured: 0.14, 0.06 but for one
+            CHECK(std::abs(found.peak / first - 1) < 0.13);  // measured: 0.12, 0.04 but for one
             CHECK(found.residual < 1e-12);
         }
     }

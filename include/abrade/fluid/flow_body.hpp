@@ -76,9 +76,9 @@ struct Struck {
     /// Hands out how much water goes along from here on, and its part of the contacts' force.
     void hand_out(FlowBody& body, Real added, Real dt) const noexcept {
         if (body.inverse_mass == 0) return;
-        const Real mass = 1 / body.inverse_mass;
-        body.load.shared = added / (mass + added) * (mass + body.load.along) / dt * velocity;
+        const Real mass = 1 / body.inverse_mass, impulse = mass + body.load.along;  // over `velocity`
         body.load.along = near * added;
+        body.load.shared = body.load.along / (mass + body.load.along) * impulse / dt * velocity;
     }
 };
 
