@@ -17,7 +17,8 @@ struct CoveredFace : SolidFace {
     std::size_t body = 0;
     Real open = 0;          ///< share of the face that walls leave open; 0: no water passes [-]
     Real water = 0;         ///< share that bodies leave to the water, too [-]
-    Real covered = 0;       ///< by the one body, of what is open [-]
+    Real covered = 0;       ///< by the one body, of what is open; with all of them just what is no water [-]
+    Real part = 0;          ///< of the one body in what all cover [-]
     Real all_friction = 0;  ///< of all bodies here [1/m2]
     Real lighter = 1;       ///< the water's density over the face's, where `weigh` asks for it [-]
     Real heavier = 0;       ///< what the body adds to the face's density, over this [-]
@@ -35,6 +36,8 @@ struct CoveredFace : SolidFace {
     Real rate = 0;   ///< of friction [1/s]
 
     bool at_surface() const noexcept { return high_wet != low_wet; }
+    /// From `open`, `water` and `part`: a closed face passes no water, not even what rounding leaves of it.
+    void cover() noexcept { covered = open > 0 ? part * (1 - water / open) : 0; }
     /// Of a pressure over density [m/s2].
     template <class Number>
     Real gradient(const Field<Number>& of) const noexcept {
@@ -130,10 +133,7 @@ public:
                       m.face[f.axis][f.face] =
                           left > least ? static_cast<float>(left * f.area / f.gap) : 0.0f;
                   },
-                  [&](CoveredFace& f) {
-                      f.water = share(f);
-                      f.covered = f.open > 0 ? std::min(f.share / f.open, 1.0) : 0;
-                  });
+                  [&](CoveredFace& f) { f.water = share(f), f.cover(); });
         close_surface(surface);
     }
     /// After `close`: opens faces again, and lets them conduct as little as what is in them is heavy.
@@ -233,7 +233,7 @@ private:
             [&](CoveredFace& f) {
                 f.open = open_area ? (*open_area)[f.axis][f.face] : 1;
                 f.water = std::max(f.open - sum(f), 0.0);
-                f.covered = f.open > 0 ? std::min(f.share / f.open, 1.0) : 0;
+                f.part = sum(f) > 0 ? f.share / sum(f) : 0, f.cover();
             },
             [&](const CoveredFace& f) { sum(f) = 0; }, [&](const CoveredFace& f) { sum(f) += f.friction; },
             [&](CoveredFace& f) { f.all_friction = sum(f); }, [&](const CoveredFace& f) { sum(f) = 0; });
@@ -265,7 +265,7 @@ private:
             if (left < least) left = 0;
             for (auto i = first; i != last; ++i) {
                 CoveredFace& f = faces_[i->second];
-                f.open = 1, f.water = left, f.covered = f.share, f.per_gap = std::abs(open.slope);
+                f.open = 1, f.water = left, f.cover(), f.per_gap = std::abs(open.slope);
                 f.high_wet = open.cell == f.face, f.low_wet = open.cell == f.low;
                 f.leaves = open.plain == 0, f.weight = open.weight;
             }

@@ -159,14 +159,13 @@ public:
 
 private:
     /// Share of the way to a body's velocity that friction takes a face's water in a step: bodies share what
-    /// all of them do there. What is left of a face that they nearly close is stuck: the pressure pushes it
-    /// as it would a whole face, by as much more as it is less, so the square.
+    /// all of them do there. What is left of a face that they nearly close sticks to them.
     Real held_by(const CoveredFace& f, const FlowStage& stage) const noexcept {
         constexpr Real sliver = 0.1;  // of what walls leave of a face
         if (f.all_friction == 0) return 0;
         const Real stiff = params_.friction * stage.viscosity * stage.dt * f.all_friction;
-        const Real left = f.open > 0 ? std::min(f.water / (sliver * f.open), 1.0) : 1;
-        return std::max(stiff / (1 + stiff), 1 - square(left)) * f.friction / f.all_friction;
+        const Real sticks = f.open > 0 ? 1 - f.water / (sliver * f.open) : 0;
+        return std::max(stiff / (1 + stiff), sticks) * f.friction / f.all_friction;
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.
