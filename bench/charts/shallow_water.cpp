@@ -50,7 +50,7 @@ void draw_dams(const fs::path& folder) {
         water.advance(1);
         const std::string name = right > 0 ? short_text(right) + " m before it" : "a dry bed before it";
         Curve computed{.title = name, .x = {}, .y = {}};
-        for (const Point& p : points_of(water)) computed.x.push_back(p.x), computed.y.push_back(p.depth);
+        for (const Column& p : points_of(water)) computed.x.push_back(p.x), computed.y.push_back(p.depth);
         chart.curves.push_back(computed);
         chart.curves.push_back(
             curve_of(right > 0 ? "Stoker" : "Ritter", -5, 7, [&](Real x) { return dam.at(x, 1).depth; }));
@@ -59,7 +59,7 @@ void draw_dams(const fs::path& folder) {
         const Real place = 0.5 * (exact.speed - std::sqrt(9.81 * exact.depth) + exact.shock);
         const FluidSample middle = water.sample({place, 0, 0}, 1);
         Real front = 0;
-        for (const Point& p : points_of(water))
+        for (const Column& p : points_of(water))
             if (p.depth > 0.5 * (exact.depth + right)) front = p.x + 0.5 * water.grid().spacing(0);
         std::cout << right << ", " << middle.depth << ", " << exact.depth << ", " << middle.velocity.x()
                   << ", " << exact.speed << ", " << front << ", " << exact.shock << std::endl;
@@ -182,7 +182,7 @@ void draw_cost(const fs::path& folder) {
                                    1,
                                    [&](const ShallowWater<1>& w) {
                                        Real sum = 0;
-                                       for (const Point& p : points_of(w))
+                                       for (const Column& p : points_of(w))
                                            sum += std::abs(p.depth - dam.at(p.x, 1).depth);
                                        return sum / w.grid().count(0);
                                    }},

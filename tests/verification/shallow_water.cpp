@@ -13,7 +13,7 @@ TEST_CASE("a dam breaks on a dry bed: Ritter") {
     ShallowWater<1> water = dam.water(800, 10);
     water.advance(1);
     Real missed = 0, volume = 0;
-    for (const Point& p : points_of(water))
+    for (const Column& p : points_of(water))
         missed += std::abs(p.depth - dam.at(p.x, 1).depth), volume += p.depth;
     CHECK(missed / volume < 1.5e-3);  // 1.0e-3 is measured; most of it is at the fan's head and the tip
     Index compared = 0;
@@ -58,7 +58,7 @@ TEST_CASE("a dam breaks on shallower water: Stoker's state behind the shock, and
         CHECK(middle.depth == doctest::Approx(depth).epsilon(0.03).scale(0));
         CHECK(middle.velocity.x() == doctest::Approx(speed).epsilon(0.03).scale(0));
         Real front = 0;  // where depth falls through the mean of both
-        for (const Point& p : points_of(water))
+        for (const Column& p : points_of(water))
             if (p.depth > 0.5 * (depth + one.right)) front = p.x + 0.5 * water.grid().spacing(0);
         CHECK(front / one.time == doctest::Approx(shock).epsilon(0.03).scale(0));
     }
@@ -196,7 +196,7 @@ TEST_CASE("water swings in a parabolic bowl: depth, shore and period of Thacker'
     // The period: the middle of the water is back where it began, and stood still there last.
     const auto middle_of = [&] {
         Real moment = 0;
-        for (const Point& p : points_of(water)) moment += p.x * p.depth * dx;
+        for (const Column& p : points_of(water)) moment += p.x * p.depth * dx;
         return moment / water.volume();
     };
     Real last = 0, turned = 0;

@@ -13,13 +13,13 @@ namespace shallow {
 using namespace abrade;
 
 /// Depth and speed at a place [m], [m/s].
-struct Point {
+struct Column {
     Real x = 0, depth = 0, speed = 0;
 };
 
 template <int Dim>
-std::vector<Point> points_of(const ShallowWater<Dim>& water, Index row = 0) {
-    std::vector<Point> points;
+std::vector<Column> points_of(const ShallowWater<Dim>& water, Index row = 0) {
+    std::vector<Column> points;
     for (Index i = 0; i < water.grid().count(0); ++i)
         points.push_back({water.grid().centre(0, i), water.depth(i, row), water.speed(0, i, row)});
     return points;
@@ -48,14 +48,14 @@ struct DamBreak {
     }
 
     /// A. Ritter, Z. Ver. Dtsch. Ing. 36 (1892) 947 where the bed is dry, else Stoker.
-    Point at(Real x, Real t) const {
+    Column at(Real x, Real t) const {
         const Real c = std::sqrt(gravity * left), way = x / t;
-        const auto fan = [&] { return Point{x, square(2 * c - way) / (9 * gravity), 2.0 / 3 * (c + way)}; };
+        const auto fan = [&] { return Column{x, square(2 * c - way) / (9 * gravity), 2.0 / 3 * (c + way)}; };
         if (way <= -c) return {x, left, 0};
-        if (right <= 0) return way < 2 * c ? fan() : Point{x, 0, 0};
+        if (right <= 0) return way < 2 * c ? fan() : Column{x, 0, 0};
         const Middle m = middle();
         if (way < m.speed - std::sqrt(gravity * m.depth)) return fan();
-        return way < m.shock ? Point{x, m.depth, m.speed} : Point{x, right, 0};
+        return way < m.shock ? Column{x, m.depth, m.speed} : Column{x, right, 0};
     }
 
     ShallowWater<1> water(Index cells, Real half_length) const {
