@@ -10,18 +10,6 @@ using namespace resolved;
 
 namespace {
 
-/// What passes through faces, not what is in the little that a body leaves of one: that may be a jet.
-Real passes(const auto& water) {
-    FaceField<3> mixture = water.velocity();
-    water.solids().mix_last(mixture);
-    Real most = 0;
-    for (int a = 0; a < 3; ++a)
-        water.grid().for_each([&](const auto&, Offset c) {
-            if (water.liquid().fraction()[c] == 1) most = std::max(most, std::abs(mixture[a][c]));
-        });
-    return most;
-}
-
 /// `beyond`: so many were seen to make water faster than wanted for a moment.
 template <class Solids>
 void sweep(const typename Solids::Params& of_solids, Real still, int beyond) {
@@ -37,7 +25,7 @@ void sweep(const typename Solids::Params& of_solids, Real still, int beyond) {
                     Ball ball({0.515, 0.505, z}, radius, 1000 * ratio);
                     Real most = 0;
                     for (int k = 1; k <= 8; ++k)
-                        advance(water, ball, 0.1 * k), most = std::max(most, passes(water));
+                        advance(water, ball, 0.1 * k), most = std::max(most, fastest(water));
                     CAPTURE(surface);
                     CAPTURE(z);
                     CAPTURE(ratio);
