@@ -197,7 +197,7 @@ protected:
                 motion.struck = {body, before->q.template head<3>(), before->struck, stage_.falls, dt};
             else  // it meets the water at once
                 motion.struck.velocity =
-                    body.velocity - dt * stage_.falls - flow.cwiseQuotient(weight.cwiseMax(tiny));
+                    body.velocity - dt * stage_.falls - flow.cwiseQuotient(weight.cwiseMax(tiny<Real>));
             Six went = Six::Zero();  // what contacts gave to the water along with the body
             went.template head<3>() = body.load.along * motion.struck.velocity - dt * body.load.shared;
             const Six begun =
@@ -280,7 +280,6 @@ protected:
 
 private:
     static constexpr Real of_a_sphere = 0.5;  ///< added mass over that of its place [-]
-    static constexpr Real tiny = 1e-300;
 
     bool is_new(std::size_t b) const noexcept { return !std::ranges::binary_search(seen_, bodies_[b].id); }
     /// Of the control volume of a face, as far as walls leave it open and it lies below the surface [kg].
