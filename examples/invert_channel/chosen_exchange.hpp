@@ -41,7 +41,8 @@ public:
     void give_back(FaceField<3>& u, Real share) const {
         visit(*this, [&](const auto& one) { one.give_back(u, share); });
     }
-    void mix(FaceField<3>& u) const { base().mix(u); }
+    void mix(FaceField<3>& u) { base().mix(u); }
+    void unmix(FaceField<3>& u) const { base().unmix(u); }
     Real water_share(const OpenFace& open) const { return base().water_share(open); }
     auto volumes(bool only_new) const { return base().volumes(only_new); }
     Vec3 moment(const Grid<3>& grid, const Field<Real>* fraction, bool only_new) const {

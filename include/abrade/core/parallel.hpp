@@ -88,4 +88,22 @@ Sum parallel_sum(Index items, Term&& term, Index size = block_size) {
     return total;
 }
 
+/// Largest `term(i)` over [0, items), 0 or more; not a number where a term is none.
+template <class Term>
+Real parallel_max(Index items, Term&& term, Index size = block_size) {
+    std::vector<Real> partial(static_cast<std::size_t>(block_count(items, size)), 0);
+    const auto raise = [](Real& most, Real value) {
+        if (!(value <= most)) most = value;
+    };
+    parallel_blocks(
+        items,
+        [&](Index block, Index first, Index last) {
+            for (Index i = first; i < last; ++i) raise(partial[static_cast<std::size_t>(block)], term(i));
+        },
+        size);
+    Real largest = 0;
+    for (const Real most : partial) raise(largest, most);
+    return largest;
+}
+
 }  // namespace abrade

@@ -39,11 +39,13 @@ public:
     }
     Real water_share(const OpenFace& open) const noexcept { return faces_.water_share(open); }
     void keep_wet(const Poisson<3>& m) { faces_.keep_wet(m); }
-    void mix(FaceField<3>& u) const {
-        faces_.by_planes([&](const CoveredFace& f) {
-            Real& value = u[f.axis][f.face];
-            value += f.covered * (f.solid - value);
-        });
+    void mix(FaceField<3>& u) {
+        const auto at = [&](const CoveredFace& f) -> Real& { return u[f.axis][f.face]; };
+        faces_.covered_by_planes([&](CoveredFace& f) { f.unmixed = at(f); },
+                                 [&](const CoveredFace& f) { at(f) += f.covered * (f.solid - at(f)); });
+    }
+    void unmix(FaceField<3>& u) const {
+        faces_.covered_by_planes([&](const CoveredFace& f) { u[f.axis][f.face] = f.unmixed; });
     }
 
     std::vector<SolidVolume> volumes(bool only_new) const {

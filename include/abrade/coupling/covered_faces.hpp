@@ -31,9 +31,10 @@ struct CoveredFace : SolidFace {
     Real solid = 0;       ///< velocity of what covers it [m/s]
     Real held = 0;        ///< share of the way to `target` [m/s] that friction takes the water [-]
     Real target = 0;
-    Real taken = 0;  ///< by friction in the first stage [m/s]
-    Real given = 0;  ///< to the water beside friction [m/s]
-    Real rate = 0;   ///< of friction [1/s]
+    Real taken = 0;    ///< by friction in the first stage [m/s]
+    Real given = 0;    ///< to the water beside friction [m/s]
+    Real rate = 0;     ///< of friction [1/s]
+    Real unmixed = 0;  ///< velocity before `mix` [m/s]
 
     bool at_surface() const noexcept { return high_wet != low_wet; }
     /// From `open`, `water` and `part`: a closed face passes no water, not even what rounding leaves of it.
@@ -118,8 +119,11 @@ public:
         if (!by_plane_.empty()) visit_range(*this, at(2 * plane), at(2 * plane + 1), visit);
     }
     /// Plane by plane in parallel, each of the visits to all faces of a plane before the next.
-    void by_planes(auto&&... visits) { visit_planes(*this, visits...); }
-    void by_planes(auto&&... visits) const { visit_planes(*this, visits...); }
+    void by_planes(auto&&... visits) { visit_planes(*this, 2, visits...); }
+    void by_planes(auto&&... visits) const { visit_planes(*this, 2, visits...); }
+    /// Without those of which bodies cover nothing.
+    void covered_by_planes(auto&&... visits) { visit_planes(*this, 1, visits...); }
+    void covered_by_planes(auto&&... visits) const { visit_planes(*this, 1, visits...); }
 
     /// Takes from what faces conduct what bodies cover. `surface`: faces at which the pressure is 0.
     void close(Poisson<3>& m, std::span<const OpenFace> surface) {
@@ -207,13 +211,14 @@ private:
         for (std::size_t i = self.plane_start_[first]; i < self.plane_start_[last]; ++i)
             visit(self.faces_[self.by_plane_[i]]);
     }
-    static void visit_planes(auto& self, auto&... visits) {
+    /// Of each plane the first, or both its parts.
+    static void visit_planes(auto& self, Index parts, auto&... visits) {
         constexpr Index planes_at_once = 4;  // stones lie in heaps
         parallel_blocks(
             static_cast<Index>(self.plane_start_.size()) / 2,
             [&](Index, Index first, Index last) {
                 for (Index plane = first; plane < last; ++plane)
-                    (visit_range(self, at(2 * plane), at(2 * plane + 2), visits), ...);
+                    (visit_range(self, at(2 * plane), at(2 * plane + parts), visits), ...);
             },
             planes_at_once);
     }

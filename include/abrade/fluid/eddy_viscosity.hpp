@@ -35,7 +35,8 @@ public:
     EddyViscosity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, const Model& model,
                   const Walls<Dim>* walls, bool among_bodies = false)
         : layout_(grid.layout()), field_(layout_.total), length2_(layout_.total),
-          all_(WetRows<Dim>::whole(layout_)), most_(static_cast<std::size_t>(layout_.planes())) {
+          all_(WetRows<Dim>::whole(layout_)), most_(static_cast<std::size_t>(layout_.planes())),
+          viscosity_(static_cast<State>(params.viscosity / params.density)) {
         model.validate();
         if constexpr (requires { model.largest(0.0); }) {
             if (among_bodies) model.validate_among_bodies();
@@ -110,6 +111,14 @@ public:
             const Offset out = high ? layout_.stride[a] : -layout_.stride[a];
             sides.along_side({a, high, rows}, [&](Offset c, std::size_t) { field_[c + out] = -field_[c]; });
         });
+        looked_at.for_each_plane([&](int plane) {
+            State& most = most_[static_cast<std::size_t>(plane)];
+            most = 0;
+            for (int row = 0; row < layout_.rows_per_plane(); ++row)
+                if (const RowRange r = looked_at.row(plane, row); !r.empty())
+                    most = std::max(most, fastest_rate(u, row, layout_.row_start(plane, row), r));
+        });
+        rate_ = *std::max_element(most_.begin(), most_.end());
     }
 
     /// Beside what solids cover of cells, across faces, edges and corners, eddies are those that a cell does
@@ -140,9 +149,13 @@ public:
     Field<State>& field() noexcept { return field_; }
     const Field<State>& field() const noexcept { return field_; }
     Real largest() const noexcept { return largest_; }  ///< [m2/s]
+    /// Of cells, air beside the water included, the largest sum over axes of
+    /// |u_a| / h_a + 2 (nu + nu_t) / h_a^2 [1/s]; nu_t is the mean of both its faces along the axis.
+    Real rate() const noexcept { return rate_; }
 
     static void fields(auto&& field) {
         field("field", "m2/s", &EddyViscosity::field_), field("largest", "m2/s", &EddyViscosity::largest_);
+        field("rate", "1/s", &EddyViscosity::rate_);
     }
 
 private:
@@ -223,6 +236,31 @@ private:
         }
     }
 
+    /// See `rate`.
+    State fastest_rate(const FaceField<Dim, State>& u, int row, Offset start, RowRange r) const noexcept {
+        State most = 0;
+        const State* const __restrict nu = field_.data() + start;
+        std::array<State, static_cast<std::size_t>(Layout<Dim>::lanes)> rate;
+        for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
+            rate.fill(0);
+            for (int a = 0; a < Dim; ++a) {
+                const State* const __restrict v = u[a].data() + start;
+                const State* const __restrict below = nu - layout_.stride[a];
+                const State* const __restrict above = nu + layout_.stride[a];
+                const auto per_size = per_size_[a].row(row);
+#pragma omp simd
+                for (int k = 0; k < lanes; ++k) {
+                    const int i = first + k;
+                    const State twice = 2 * viscosity_ + nu[i] + State(0.5) * (below[i] + above[i]);
+                    rate[static_cast<std::size_t>(k)] += per_size[i] * (std::abs(v[i]) + per_size[i] * twice);
+                }
+            }
+            for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
+                most = std::max(most, rate[static_cast<std::size_t>(i - first)]);
+        }
+        return most;
+    }
+
     /// Adds the mean square of the shear rates at the four edges.
     template <bool Weighted>
     void shear(const FaceField<Dim, State>& u, Pair p, int row, Offset start, RowRange r) noexcept {
@@ -267,7 +305,8 @@ private:
     PerAxis<Table, Dim> per_size_, per_gap_;
     WetRows<Dim> all_;
     std::vector<State> most_;  ///< [plane]
-    Real largest_ = 0;
+    State viscosity_ = 0;      ///< molecular, kinematic [m2/s]
+    Real largest_ = 0, rate_ = 0;
 };
 
 }  // namespace abrade::detail

@@ -115,16 +115,18 @@ public:
 
     /// The longest step that is stable from here.
     FluidStep stable_step() const {
-        Real viscous = nu();
-        if constexpr (Turbulence::has_eddies) viscous += eddies_->largest();
+        detail::StepCauses<Dim> causes{.viscosity = nu(), .fastest = fastest_};
+        if constexpr (Turbulence::has_eddies)
+            causes.viscosity += eddies_->largest(), causes.together = eddies_->rate();
         if constexpr (has_surface) {
             const Point<Dim> gravity = params_.acceleration(time_);
-            FluidStep step = detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_, &gravity});
+            causes.gravity = &gravity;
+            FluidStep step = detail::limit_of_step<Dim>(*grid_, params_, causes);
             step.lower(water_->liquid().stable_step(velocity_), step_cause);
             if (steps_ == 0) step.lower(first_step_, step_cause);
             return smooth(step);
         } else {
-            return smooth(detail::limit_of_step<Dim>(*grid_, params_, {viscous, fastest_}));
+            return smooth(detail::limit_of_step<Dim>(*grid_, params_, causes));
         }
     }
 
@@ -351,13 +353,18 @@ private:
         sides_.fill(mixture_, rows());
     }
 
-    /// What moves the water alone.
-    const FaceField<Dim, State>& seeping() {
+    /// Calls use() while the velocity is what moves the water alone.
+    void while_seeping(auto&& use) {
         if constexpr (Solids::present) {
-            mix(velocity_, [&] { solids_.seep(mixture_); });
-            return mixture_;
+            {
+                const detail::KeptFaces kept(velocity_, solids_.fluxes());
+                solids_.seep(velocity_);
+                sides_.enter(velocity_), sides_.join(velocity_);
+                use();
+            }
+            sides_.join(velocity_);
         } else {
-            return velocity_;
+            use();
         }
     }
 

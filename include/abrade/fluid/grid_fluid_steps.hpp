@@ -175,7 +175,9 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     }
     if (record_.keep(velocity_, pressure_, water, late_, dt)) {
         finish(velocity_);
-        if (steps_ > 0 && !water.liquid().can_advance(seeping(), dt))  // too long a first one is told
+        bool can = true;
+        while_seeping([&] { can = water.liquid().can_advance(velocity_, dt); });
+        if (steps_ > 0 && !can)  // too long a first one is told
             record_.stay(velocity_), finish(velocity_);
     }
     if (late_.grows(dt)) {
@@ -183,7 +185,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
         record_.add_excess(pressure_, late_.last / dt);
     }
     sides_.join(pressure_);
-    water.move(seeping(), dt);
+    while_seeping([&] { water.move(velocity_, dt); });
     if (energy_) energy_->liquid_moved(energy_view());
     // The velocity goes from half a step before the new surface to half a step behind it.
     const Point<Dim> falls = params_.acceleration(time_ + dt);
@@ -201,17 +203,21 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     };
     water.find_surface_push(projection_.open_faces(), pressure_, dt, falls);
     stage(velocity_, stage_, 0, -dt);
-    finish(stage_);
+    water.extend(stage_);
     // The second stage takes the same: a steady flow feels just what drives it, whatever the step.
     const auto taken = water.slow(stage_, dt, nu());
     if constexpr (Solids::present) solids_.slow(stage_, {.dt = dt, .viscosity = nu(), .held = &water.held()});
     if (energy_) energy_->walls_took(taken);
     if (!params_.steady_sides) sides_.set_time(time_ + dt);
     sides_.fill(stage_, rows());
-    if constexpr (Solids::present)
-        mix(stage_, [&] { solids_.mix(mixture_); }), water.carry_by(mixture_, dt);
-    else
+    if constexpr (Solids::present) {
+        solids_.mix(stage_);
+        sides_.enter(stage_);
         water.carry_by(stage_, dt);
+        solids_.unmix(stage_);
+    } else {
+        water.carry_by(stage_, dt);
+    }
     // The old pressure is taken back: below the new surface it pushes anew.
     stage(stage_, velocity_, 0.5, 0.5 * dt);
     water.clear_surface_push(projection_.open_faces());

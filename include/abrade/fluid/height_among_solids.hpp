@@ -3,12 +3,14 @@
 
 #include <abrade/fluid/height_of_fluid_class.hpp>
 
+#include <atomic>
+
 namespace abrade {
 
 template <int Dim>
 void HeightOfFluid<Dim>::gather() {
     brim_ = false;
-    for_each_column([&](int plane, int j, Index n) {
+    columns_.for_each([&](int plane, int j, Index n) {
         Real sum = 0;
         for (int k = columns_.first(n); k < columns_.levels(); ++k) {
             const Offset c = columns_.cell(plane, j, k);
@@ -36,7 +38,7 @@ void HeightOfFluid<Dim>::put(int plane, int j, Index n, Real liquid, const Surfa
 
 template <int Dim>
 void HeightOfFluid<Dim>::owe(Offset cell, int level, Real beyond) {
-    brim_ = true;
+    std::atomic_ref(brim_).store(true, std::memory_order_relaxed);
     surplus_[cell] = beyond / (columns_.open(cell) * columns_.volume(level));
 }
 

@@ -67,6 +67,28 @@ public:
                 shape(plane, j, open_faces);
     }
 
+    /// Calls body(plane, j, column) for the columns of the box.
+    void for_each(auto&& body) const { for_planes(0, grid_.cells(0), body); }
+    /// The same in parallel: each column writes to what is its own.
+    void parallel_for_each(auto&& body) const {
+        parallel_blocks(
+            grid_.cells(0), [&](Index, Index first, Index last) { for_planes(first, last, body); },
+            planes_at_once);
+    }
+    /// Largest `of(plane, j, column)`, as parallel_max has it.
+    Real parallel_max_of(auto&& of) const {
+        return parallel_max(
+            grid_.cells(0),
+            [&](Index plane) {
+                Real most = 0;
+                for_planes(plane, plane + 1, [&](int i, int j, Index n) {
+                    if (const Real value = of(i, j, n); !(value <= most)) most = value;
+                });
+                return most;
+            },
+            planes_at_once);
+    }
+
     int pitch() const noexcept { return pitch_; }    ///< from a plane's columns to the next plane's
     int across() const noexcept { return across_; }  ///< columns of a plane
     int levels() const noexcept { return levels_; }
@@ -146,6 +168,12 @@ public:
     }
 
 private:
+    static constexpr Index planes_at_once = 32;
+    void for_planes(Index first, Index last, auto&& body) const {
+        for (int plane = static_cast<int>(first); plane < static_cast<int>(last); ++plane)
+            for (int j = 0; j < across_; ++j) body(plane, j, column(plane, j));
+    }
+
     struct Cut {
         Offset cell = 0;
         CellPlane<Dim> open;  ///< below it, in its sense, lies the water's side

@@ -63,17 +63,15 @@ public:
     void limit(const HeightFlow<Dim>& flow) {
         const HeightColumns<Dim>& columns = flow.columns;
         keeps_.assign(columns.count(), 1);
-        bool any = false;
-        for (int plane = 0; plane < grid_.cells(0); ++plane)
-            for (int j = 0; j < columns.across(); ++j) {
-                const Index n = columns.column(plane, j);
-                Real out = 0;
-                for (int a = 0; a < Dim - 1; ++a) out += up_[a][at(n + columns.step(a))] + down_[a][at(n)];
-                if (!(out > 0)) continue;
-                const Real has = flow.volume[at(n)], gives = has > flow.still ? has : 0;
-                if (out > gives) keeps_[at(n)] = gives / out * (1 - 1e-15), any = true;
-            }
-        if (!any) return;
+        const Real most_lacking = columns.parallel_max_of([&](int, int, Index n) {
+            Real out = 0;
+            for (int a = 0; a < Dim - 1; ++a) out += up_[a][at(n + columns.step(a))] + down_[a][at(n)];
+            if (!(out > 0)) return Real(0);
+            const Real has = flow.volume[at(n)], gives = has > flow.still ? has : 0;
+            if (out > gives) keeps_[at(n)] = gives / out * (1 - 1e-15);
+            return 1 - keeps_[at(n)];
+        });
+        if (most_lacking == 0) return;
         for (int a = 0; a < Dim - 1; ++a) {
             if (!sides_.periodic(a)) continue;
             for_each_pair_along(columns, a, [&](Index first, Index step) {

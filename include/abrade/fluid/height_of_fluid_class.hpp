@@ -244,7 +244,7 @@ public:
 
     /// Films on a bed do not fall: no pressure would stop them.
     void hold_films(FaceField<Dim>& u) const noexcept {
-        for_each_column([&](int plane, int j, Index n) {
+        columns_.parallel_for_each([&](int plane, int j, Index n) {
             if (!(volume_[at(n)] > 0)) return;
             const Offset c = columns_.cell(plane, j, top_[at(n)]), s = layout_.stride[vertical];
             const bool bottom = top_[at(n)] == columns_.first(n);
@@ -277,10 +277,6 @@ private:
         if constexpr (Dim == 3) cell[1] = j;
         cell[vertical] = level;
         return cell;
-    }
-    void for_each_column(auto&& body) const {
-        for (int plane = 0; plane < grid_.cells(0); ++plane)
-            for (int j = 0; j < columns_.across(); ++j) body(plane, j, columns_.column(plane, j));
     }
 
     void begin_columns();

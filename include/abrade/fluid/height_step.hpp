@@ -24,7 +24,7 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     };
     std::vector<Held> all;
     const auto height = [&](Index n) { return height_[at(n)] + (next_[at(n)] - volume_[at(n)]) / plan; };
-    for_each_column([&](int plane, int j, Index n) {
+    columns_.for_each([&](int plane, int j, Index n) {
         if (!is_wet(n)) return;
         for (int a = 0; a < Dim - 1; ++a) {
             if ((a == 0 ? plane : j) == 0) continue;  // a pair across a periodic end is left alone
@@ -58,7 +58,7 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
     if (held.empty()) return;
     held.erase(std::unique(held.begin(), held.end()), held.end());  // columns come one after the other
     Index wet = 0, open = 0;
-    for_each_column([&](int, int, Index n) { wet += is_wet(n), open += !columns_.closed(n); });
+    columns_.for_each([&](int, int, Index n) { wet += is_wet(n), open += !columns_.closed(n); });
     // A front that runs into a dry box is steep, and for a while most of what is wet.
     const Real area = std::max(static_cast<Real>(wet), 0.25 * static_cast<Real>(open));
     overturning_.share += late * static_cast<Real>(held.size()) / area;
@@ -94,7 +94,7 @@ void HeightOfFluid<Dim>::renew() {
             if (changes(n) && risen_[at(n)].level > top_[at(n)] + 1) far[at(plane)] = 1;
         }
     });
-    for_each_column([&](int plane, int j, Index n) {
+    columns_.parallel_for_each([&](int plane, int j, Index n) {
         if (changes(n)) put(plane, j, n, next_[at(n)], risen_[at(n)]);
     });
     rose_far_ = std::ranges::any_of(far, [](std::uint8_t f) { return f != 0; });
@@ -163,7 +163,7 @@ void HeightOfFluid<Dim>::renew_plane(int plane) {
 
 template <int Dim>
 void HeightOfFluid<Dim>::begin(const auto& water) {
-    for_each_column([&](int plane, int j, Index n) {
+    columns_.for_each([&](int plane, int j, Index n) {
         int air = -1;
         for (int k = columns_.first(n); k < columns_.levels(); ++k) {
             const Real f = fraction_[columns_.cell(plane, j, k)];
@@ -197,9 +197,8 @@ void HeightOfFluid<Dim>::begin(const auto& water) {
 
 template <int Dim>
 Real HeightOfFluid<Dim>::outflow_rate(const FaceField<Dim>& u) const {
-    Real largest = 0;
-    for_each_column([&](int plane, int j, Index n) {
-        if (!is_wet(n)) return;
+    return columns_.parallel_max_of([&](int plane, int j, Index n) {
+        if (!is_wet(n)) return Real(0);
         const Offset c = columns_.cell(plane, j, top_[at(n)]);
         Real rate = 0;
         for (int a = 0; a < Dim - 1; ++a) {
@@ -209,10 +208,8 @@ Real HeightOfFluid<Dim>::outflow_rate(const FaceField<Dim>& u) const {
             rate += (high * std::max(u[a][c + s], Real(0)) + low * std::max(-u[a][c], Real(0))) /
                     grid_.size(a, 0);
         }
-        rate /= std::max(columns_.open(c), Real(0.5));
-        if (!(rate <= largest)) largest = rate;
+        return rate / std::max(columns_.open(c), Real(0.5));
     });
-    return largest;
 }
 
 template <int Dim>
@@ -227,7 +224,7 @@ void HeightOfFluid<Dim>::begin_columns() {
         return (i < 2 && is_closed(sides_[axis][0])) ||
                (i >= grid_.cells(axis) - 2 && is_closed(sides_[axis][1]));
     };
-    for_each_column([&](int plane, int j, Index n) {
+    columns_.for_each([&](int plane, int j, Index n) {
         near_solid_[at(n)] = beside_side(0, plane) || (Dim == 3 && beside_side(1, j));
         for (int dp = -2; dp <= 2; ++dp)
             for (int dj = Dim == 3 ? -2 : 0; dj <= (Dim == 3 ? 2 : 0); ++dj) {

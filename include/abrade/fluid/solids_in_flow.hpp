@@ -32,6 +32,30 @@ struct SolidVolume {
     Real volume = 0;  ///< [m3]
 };
 
+namespace detail {
+
+/// Puts the velocities of faces that solids go through back at its end.
+class KeptFaces {
+public:
+    /// Both must outlive this.
+    KeptFaces(FaceField<3>& u, std::span<const SolidFlux> faces) : u_(&u), faces_(faces) {
+        kept_.reserve(faces.size());
+        for (const SolidFlux& f : faces) kept_.push_back(u[f.axis][f.face]);
+    }
+    ~KeptFaces() {
+        for (std::size_t i = 0; i < kept_.size(); ++i) (*u_)[faces_[i].axis][faces_[i].face] = kept_[i];
+    }
+    KeptFaces(const KeptFaces&) = delete;
+    KeptFaces& operator=(const KeptFaces&) = delete;
+
+private:
+    FaceField<3>* u_;
+    std::span<const SolidFlux> faces_;
+    std::vector<Real> kept_;
+};
+
+}  // namespace detail
+
 /// One step of the water's.
 struct FlowStage {
     Real density = 1;    ///< [kg/m3]
@@ -54,7 +78,7 @@ struct FlowStage {
 ///   before the operator is built and after it;
 /// - `slow`: friction on the water of the first stage, that the second starts from a flow which knows of them, and
 ///   `give_back`: a share of it, before `force` does it all: so a steady flow does not depend on the step;
-/// - `mix`: the mixture's velocity from a water's that is not known to the end yet;
+/// - `mix`: the mixture's velocity from a water's that is not known to the end yet, and `unmix`, back from it;
 /// - `force`, once the water has been moved on by all but the new pressure: a force per volume on it, and from there
 ///   on the mixture's velocity;
 /// - for each solution phi = p dt / rho of the pressure `push`, what it does to them, and `correct`, how the mixture
@@ -75,7 +99,7 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     { still.water_share(OpenFace{}) } -> std::same_as<Real>;
     s.keep_wet(m);
     s.slow(u, FlowStage{}), still.give_back(u, Real{});
-    still.mix(u);
+    s.mix(u), still.unmix(u);
     still.mix_last(u), still.seep(u);
     { still.parts() } -> std::convertible_to<std::span<const SolidPart>>;
     { still.resolved_parts() } -> std::convertible_to<std::span<const SolidPart>>;

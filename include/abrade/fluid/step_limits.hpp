@@ -13,8 +13,11 @@ namespace abrade::detail {
 /// What a step depends on beside grid and parameters.
 template <int Dim>
 struct StepCauses {
-    Real viscosity = 0;                   ///< kinematic, that of eddies included [m2/s]
-    Real fastest = 0;                     ///< largest sum |u_a| / h_a [1/s]
+    Real viscosity = 0;  ///< kinematic, that of eddies included [m2/s]
+    Real fastest = 0;    ///< largest sum |u_a| / h_a [1/s]
+    /// Largest of what both make of a cell, where it is known: eddies are seldom where water is fastest
+    /// [1/s].
+    Real together = std::numeric_limits<Real>::infinity();
     const Point<Dim>* gravity = nullptr;  ///< below a surface, body forces included [m/s2]
 };
 
@@ -34,7 +37,8 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
     }
     // One limit for both, or what each of them allows alone would be too much together. Heun's method is
     // stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum 1/h^2.
-    const Real friction = 2 * causes.viscosity * per_h2, rate = causes.fastest + friction;
+    const Real friction = 2 * causes.viscosity * per_h2;
+    const Real rate = std::max(causes.fastest, std::min(causes.fastest + friction, causes.together));
     // At its end gravity may have made the water faster by g dt.
     const Real twice = rate + std::sqrt(square(rate) + 4 * fall * params.courant);
     if (twice > 0) {

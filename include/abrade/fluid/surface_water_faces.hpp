@@ -46,9 +46,7 @@ void SurfaceWater<Dim, Liquid>::carry_by(const FaceField<Dim>& stage, Real step)
 
 template <int Dim, class Liquid>
 void SurfaceWater<Dim, Liquid>::load_carriers(FaceField<Dim>& velocity, const Field<std::uint8_t>& was_wet) {
-    parallel_tasks(Dim, [&](Index component) {
-        const int a = static_cast<int>(component);
-        const auto& riders = extension_.riders(a);
+    const auto load = [&](int a, const auto& riders) {
         for (auto first = riders.begin(), last = first; first != riders.end(); first = last) {
             Real& v = velocity[a][first->carrier];
             Real mass = liquid_of(a, first->carrier), given = 0, given_by_new = 0;
@@ -63,7 +61,12 @@ void SurfaceWater<Dim, Liquid>::load_carriers(FaceField<Dim>& velocity, const Fi
             const auto [least, most] = std::minmax({-v, Real(0)});
             v += std::clamp(given_by_new / mass, least, most);
         }
-    });
+    };
+    for (int a = 0; a < Dim; ++a) {
+        const auto& riders = extension_.riders(a);
+        parallel_for(static_cast<Index>(riders.size()),
+                     [&](Index plane) { load(a, riders[static_cast<std::size_t>(plane)]); });
+    }
     extension_.lead(velocity);
 }
 

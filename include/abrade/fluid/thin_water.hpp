@@ -16,27 +16,23 @@ void slow_thin_water(FaceField<Dim>& u, const HeightOfFluid<Dim>& liquid, Real d
     const HeightColumns<Dim>& columns = liquid.columns();
     const Grid<Dim>& grid = liquid.grid();
     const Sides<Dim>& sides = liquid.sides();
-    for (int plane = 0; plane < grid.cells(0); ++plane)
-        for (int j = 0; j < columns.across(); ++j) {
-            const Index n = columns.column(plane, j);
-            for (int a = 0; a < Dim - 1; ++a) {
-                const Index other = n - columns.step(a);
-                if ((a == 0 ? plane : j) == 0 && !sides.periodic(a)) continue;
-                const Real depth =
-                    0.5 * (liquid.column_volume(n) + liquid.column_volume(other)) / columns.plan();
-                const int low = std::min(columns.first(n), columns.first(other));
-                if (low >= columns.levels() || !(depth > 0) ||
-                    depth >= thin * grid.size(Grid<Dim>::vertical, low))
-                    continue;
-                const int high = std::max(liquid.top(n), liquid.top(other));
-                for (int k = low; k <= std::min(high, columns.levels() - 1); ++k) {
-                    Real& speed = u[a][columns.cell(plane, j, k)];
-                    const Real rate =
-                        std::max(friction * std::abs(speed) / depth, 3 * viscosity / square(depth));
-                    speed /= 1 + dt * rate;
-                }
+    columns.parallel_for_each([&](int plane, int j, Index n) {
+        for (int a = 0; a < Dim - 1; ++a) {
+            const Index other = n - columns.step(a);
+            if ((a == 0 ? plane : j) == 0 && !sides.periodic(a)) continue;
+            const Real depth = 0.5 * (liquid.column_volume(n) + liquid.column_volume(other)) / columns.plan();
+            const int low = std::min(columns.first(n), columns.first(other));
+            if (low >= columns.levels() || !(depth > 0) ||
+                depth >= thin * grid.size(Grid<Dim>::vertical, low))
+                continue;
+            const int high = std::max(liquid.top(n), liquid.top(other));
+            for (int k = low; k <= std::min(high, columns.levels() - 1); ++k) {
+                Real& speed = u[a][columns.cell(plane, j, k)];
+                const Real rate = std::max(friction * std::abs(speed) / depth, 3 * viscosity / square(depth));
+                speed /= 1 + dt * rate;
             }
         }
+    });
 }
 
 }  // namespace abrade::detail

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <utility>
@@ -39,8 +38,9 @@ public:
 
     VelocityExtension(const Layout<Dim>& layout, const Sides<Dim>& sides)
         : layout_(layout), sides_(sides), rows_(layout), waiting_(static_cast<std::size_t>(layout.planes())),
-          riders_in_(waiting_.size()) {
+          found_riders_(waiting_.size()) {
         for (auto& state : state_) state = Field<std::uint8_t>(layout.total, unknown);
+        for (auto& riders : riders_) riders.resize(waiting_.size());
         for (auto& of_axis : means_)
             for (auto& of_layer : of_axis) of_layer.resize(waiting_.size());
     }
@@ -87,7 +87,7 @@ public:
     template <class State>
     void extend(FaceField<Dim, State>& u) {
         for (int a = 0; a < Dim; ++a) {
-            for (Rider& rider : riders_[a]) rider.own = u[a][rider.face];
+            for_each_rider(*this, a, [&](Rider& rider) { rider.own = u[a][rider.face]; });
             for (Film& film : films_[a]) film.own = u[a][film.face];
             take_means(a, u[a]);
             for (Film& film : films_[a]) {
@@ -115,7 +115,7 @@ public:
     template <class State>
     void add_to_own(const FaceField<Dim, State>& u, Real times) {
         for (int a = 0; a < Dim; ++a) {
-            for (Rider& rider : riders_[a]) rider.own += times * u[a][rider.face];
+            for_each_rider(*this, a, [&](Rider& rider) { rider.own += times * u[a][rider.face]; });
             for (Film& film : films_[a]) film.own += times * u[a][film.face];
         }
     }
@@ -124,7 +124,8 @@ public:
     template <class State>
     void give_own(FaceField<Dim, State>& u) const {
         for (int a = 0; a < Dim; ++a) {
-            for (const Rider& rider : riders_[a]) u[a][rider.face] = static_cast<State>(rider.own);
+            for_each_rider(*this, a,
+                           [&](const Rider& rider) { u[a][rider.face] = static_cast<State>(rider.own); });
             for (const Film& film : films_[a]) u[a][film.face] = static_cast<State>(film.own);
         }
     }
@@ -153,8 +154,8 @@ public:
         Real share = 0;  ///< of its liquid that this carrier bears [-]
         Real own = 0;    ///< what it moved at by itself in the last extension [m/s]
     };
-    /// Those of a carrier one after the other.
-    const std::vector<Rider>& riders(int a) const noexcept { return riders_[a]; }
+    /// By the planes of their carriers, those of a carrier one after the other.
+    const std::vector<std::vector<Rider>>& riders(int a) const noexcept { return riders_[a]; }
 
     static void fields(auto&& field) {
         field("state", &VelocityExtension::state_), field("rows", &VelocityExtension::rows_),
@@ -213,19 +214,12 @@ private:
         });
     }
 
-    /// Whether one byte of a pack is not 0.
-    static bool any(const std::uint8_t* pack) noexcept {
-        std::uint64_t eights[lanes / 8], all = 0;
-        std::memcpy(eights, pack, sizeof eights);
-        for (const std::uint64_t eight : eights) all |= eight;
-        return all != 0;
-    }
     /// Whether one of a pack has no value.
     static bool any_without(const std::uint8_t* state) noexcept {
         alignas(lanes) std::uint8_t is[lanes];
 #pragma omp simd
         for (int k = 0; k < lanes; ++k) is[k] = (state[k] & has_value) == 0;
-        return any(is);
+        return detail::any_byte<lanes>(is);
     }
 
     /// What whole packs have set around a row's range is unknown.
@@ -266,22 +260,23 @@ private:
         });
     }
     void know(int a, int layer) {
-        for (const auto& means : means_[a][layer])
-            for (const Mean& mean : means) state_[a][mean.face] = known;
+        by_planes([&](std::size_t plane) {
+            for (const Mean& mean : means_[a][layer][plane]) state_[a][mean.face] = known;
+        });
     }
 
     /// Farther along water on walls; what is not reached flies on.
     void find_wedges(int a) {
         for (int layer = layers; layer < wedge; ++layer) {
             fill_periodic(state_[a], layout_, sides_);
-            for (std::size_t p = 0; p < waiting_.size(); ++p) {
+            by_planes([&](std::size_t p) {
                 auto& means = means_[a][layer][p];
                 means.clear();
                 for (const Offset c : waiting_[p])
                     if (const unsigned from = known_beside(a, c);
                         state_[a][c] == unknown && from != 0 && is_cut(c, layout_.stride[a]))
                         means.push_back({c, from});
-            }
+            });
             know(a, layer);
         }
         films_[a].clear();
@@ -333,7 +328,7 @@ private:
     /// Those of the first layer that hold liquid.
     void find_riders(int a, const Water& water) {
         water.rows.for_each_plane([&](int plane) {
-            std::vector<Rider>& riders = riders_in_[static_cast<std::size_t>(plane)];
+            std::vector<Rider>& riders = found_riders_[static_cast<std::size_t>(plane)];
             riders.clear();
             for (const Mean& mean : means_[a][0][static_cast<std::size_t>(plane)]) {
                 if (water.held[mean.face] + water.held[mean.face - layout_.stride[a]] < liquid_of_a_face)
@@ -342,12 +337,35 @@ private:
                 for_known_beside(mean, [&](Offset n) { riders.push_back({mean.face, inside(n), share}); });
             }
         });
-        riders_[a].clear();
-        for (const auto& riders : riders_in_)
-            riders_[a].insert(riders_[a].end(), riders.begin(), riders.end());
-        std::sort(riders_[a].begin(), riders_[a].end(), [](const Rider& r, const Rider& s) {
-            return std::pair(r.carrier, r.face) < std::pair(s.carrier, s.face);
+        const std::size_t planes = found_riders_.size();
+        by_planes([&](std::size_t plane) {
+            std::vector<Rider>& riders = riders_[a][plane];
+            riders.clear();
+            const Offset begin = layout_.row_start(static_cast<int>(plane), 0) - Layout<Dim>::lanes;
+            const std::size_t near[] = {(plane + planes - 1) % planes, plane, (plane + 1) % planes};
+            for (std::size_t n = 0; n < std::min<std::size_t>(planes, 3); ++n)
+                for (const Rider& rider : found_riders_[near[n]])
+                    if (rider.carrier >= begin && rider.carrier < begin + layout_.stride[Layout<Dim>::outer])
+                        riders.push_back(rider);
+            std::sort(riders.begin(), riders.end(), [](const Rider& r, const Rider& s) {
+                return std::pair(r.carrier, r.face) < std::pair(s.carrier, s.face);
+            });
         });
+    }
+    static void for_each_rider(auto& self, int a, auto&& visit) {
+        self.by_planes([&](std::size_t plane) {
+            for (auto& rider : self.riders_[a][plane]) visit(rider);
+        });
+    }
+    /// In parallel.
+    void by_planes(auto&& body) const {
+        constexpr Index at_once = 32;
+        parallel_blocks(
+            static_cast<Index>(waiting_.size()),
+            [&](Index, Index first, Index last) {
+                for (Index plane = first; plane < last; ++plane) body(static_cast<std::size_t>(plane));
+            },
+            at_once);
     }
 
     /// Faces that hold liquid and do not ride wait for what is carried to them.
@@ -377,10 +395,10 @@ private:
     FaceField<Dim, std::uint8_t> state_;
     WetRows<Dim> rows_;                                                   ///< looked at
     PerAxis<PerAxis<std::vector<std::vector<Mean>>, wedge>, Dim> means_;  ///< [component][layer][plane]
-    PerAxis<std::vector<Rider>, Dim> riders_;
+    PerAxis<std::vector<std::vector<Rider>>, Dim> riders_;                ///< [component][plane]
     PerAxis<std::vector<Film>, Dim> films_;
-    std::vector<std::vector<Offset>> waiting_;   ///< [plane] faces of water on walls
-    std::vector<std::vector<Rider>> riders_in_;  ///< [plane]
+    std::vector<std::vector<Offset>> waiting_;      ///< [plane] faces of water on walls
+    std::vector<std::vector<Rider>> found_riders_;  ///< [plane]
 };
 
 }  // namespace abrade

@@ -157,6 +157,17 @@ public:
         });
     }
 
+    /// What is given where water comes in, through it.
+    template <class State>
+    void enter(FaceField<Dim, State>& u) const {
+        for_sides(Side::inflow, [&](int a, bool high) {
+            const std::vector<Real>& values = table(a, a, high);
+            along_side({a, high}, [&](Offset c, std::size_t k) {
+                u[a][high ? c + step(a) : c] = values.empty() ? State(0) : static_cast<State>(values[k]);
+            });
+        });
+    }
+
     /// Largest |u| / h of what is given at sides [1/s]: it counts before the water inside has its speed.
     template <class State>
     Real rate_of_inflow(const FaceField<Dim, State>& u) const {

@@ -178,6 +178,19 @@ private:
     detail::PlaneRuns runs_{0};  ///< for threads
 };
 
+namespace detail {
+
+/// Whether one byte of a pack is not 0.
+template <int lanes>
+bool any_byte(const std::uint8_t* pack) noexcept {
+    std::uint64_t eights[lanes / 8], all = 0;
+    std::memcpy(eights, pack, sizeof eights);
+    for (const std::uint64_t eight : eights) all |= eight;
+    return all != 0;
+}
+
+}  // namespace detail
+
 /// Calls body(i) for those cells i of a row's range whose mark is 0 beside one that is odd, along an axis.
 /// Whole packs are looked at, bytes at once.
 template <int Dim>
@@ -194,9 +207,7 @@ void for_edge_cells(const Field<std::uint8_t>& marks, const Layout<Dim>& layout,
                 here[k - s0] | here[k + s0] | here[k - s1] | here[k + s1] | here[k - s2] | here[k + s2];
             edge[k] = here[k] == 0 ? near & 1 : 0;
         }
-        std::uint64_t any[lanes / 8];
-        std::memcpy(any, edge, sizeof any);
-        if (std::all_of(std::begin(any), std::end(any), [](std::uint64_t e) { return e == 0; })) continue;
+        if (!detail::any_byte<lanes>(edge)) continue;
         for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
             if (edge[i - first] != 0) body(i);
     }
