@@ -34,7 +34,8 @@ public:
     auto resolved_parts() const { return base().resolved_parts(); }
     auto fluxes() const { return base().fluxes(); }
     void mix_last(FaceField<3>& u) const { base().mix_last(u); }
-    void seep(FaceField<3>& u) const { base().seep(u); }
+    void seep(FaceField<3>& u) { base().seep(u); }
+    void unseep(FaceField<3>& u) const { base().unseep(u); }
     void slow(FaceField<3>& u, const FlowStage& stage) {
         visit(*this, [&](auto& one) { one.slow(u, stage); });
     }

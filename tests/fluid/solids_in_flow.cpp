@@ -23,6 +23,7 @@ struct Idle {
     void give_back(FaceField<3>&, Real) const {}
     void mix(FaceField<3>&) const {}
     void unmix(FaceField<3>&) const {}
+    void unseep(FaceField<3>&) const {}
     void force(FaceField<3>&, const Field<Real>&, const FlowStage&) {}
     void push(const auto&, Real) {}
     void correct(FaceField<3>&, const auto&, Real, int, bool) const {}

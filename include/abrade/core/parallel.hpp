@@ -32,6 +32,8 @@ inline void set_thread_count([[maybe_unused]] int count) noexcept {
 inline constexpr Index block_size = 256;
 /// The same where an item is a body of many spheres, or as much work.
 inline constexpr Index block_of_bodies = 16;
+/// The same where an item is a plane of a grid.
+inline constexpr Index block_of_planes = 32;
 
 constexpr Index block_count(Index items, Index size = block_size) noexcept {
     return (items + size - 1) / size;
@@ -64,10 +66,13 @@ void parallel_tasks(Index tasks, Body&& body) {
 
 /// Calls `body(i)` for each i in [0, items), in parallel. `body` must not throw.
 template <class Body>
-void parallel_for(Index items, Body&& body) {
-    parallel_blocks(items, [&](Index, Index first, Index last) {
-        for (Index i = first; i < last; ++i) body(i);
-    });
+void parallel_for(Index items, Body&& body, Index size = block_size) {
+    parallel_blocks(
+        items,
+        [&](Index, Index first, Index last) {
+            for (Index i = first; i < last; ++i) body(i);
+        },
+        size);
 }
 
 /// Sum of `term(i)` over [0, items), the same bits for every number of threads.

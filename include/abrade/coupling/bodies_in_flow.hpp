@@ -31,11 +31,15 @@ public:
     std::vector<SolidPart> resolved_parts() const { return faces_.parts(false); }
     std::span<const SolidFlux> fluxes() const noexcept { return fluxes_; }
     void mix_last(FaceField<3>& u) const {
-        for (std::size_t i = 0; i < fluxes_.size(); ++i) u[fluxes_[i].axis][fluxes_[i].face] += beyond_[i];
+        for_fluxes([&](std::size_t i) { at(u, i) += beyond_[i]; });
     }
-    void seep(FaceField<3>& u) const {
-        for (std::size_t i = 0; i < fluxes_.size(); ++i)
-            u[fluxes_[i].axis][fluxes_[i].face] += beyond_[i] - fluxes_[i].speed;
+    void seep(FaceField<3>& u) {
+        unseeped_.resize(fluxes_.size());
+        for_fluxes([&](std::size_t i) { unseeped_[i] = at(u, i); },
+                   [&](std::size_t i) { at(u, i) += beyond_[i] - fluxes_[i].speed; });
+    }
+    void unseep(FaceField<3>& u) const {
+        for_fluxes([&](std::size_t i) { at(u, i) = unseeped_[i]; });
     }
     Real water_share(const OpenFace& open) const noexcept { return faces_.water_share(open); }
     void keep_wet(const Poisson<3>& m) { faces_.keep_wet(m); }
@@ -94,7 +98,7 @@ public:
     static void fields(auto&& field) {
         field("memory", &BodiesInFlow::memory_), field.bytes("fluxes", &BodiesInFlow::fluxes_);
         field("beyond", "m/s", &BodiesInFlow::beyond_), field("fastest", "m/s", &BodiesInFlow::fastest_);
-        field("here", &BodiesInFlow::here_);
+        field("here", &BodiesInFlow::here_), field("flux_start", &BodiesInFlow::flux_start_);
     }
 
 protected:
@@ -266,13 +270,12 @@ protected:
     }
     /// What goes through each face. `beyond(face)`: its part of the mixture's velocity beyond the water's.
     void find_fluxes(auto&& beyond) {
-        fluxes_.clear(), beyond_.clear();
-        for (CoveredFace& f : faces_.all()) {
-            if (f.share == 0) continue;
+        flux_start_ = faces_.covered_before();
+        fluxes_.resize(flux_start_.back()), beyond_.resize(fluxes_.size());
+        faces_.number_covered([&](CoveredFace& f, std::size_t i) {
             if (f.body < bodies_.size()) f.solid = detail::along(f, motion_[f.body].q);
-            fluxes_.push_back({f.face, f.axis, f.covered * f.solid});
-            beyond_.push_back(beyond(std::as_const(f)));
-        }
+            fluxes_[i] = {f.face, f.axis, f.covered * f.solid}, beyond_[i] = beyond(std::as_const(f));
+        });
     }
 
     std::vector<FlowBody> bodies_;
@@ -282,6 +285,21 @@ protected:
 
 private:
     static constexpr Real of_a_sphere = 0.5;  ///< added mass over that of its place [-]
+
+    Real& at(FaceField<3>& u, std::size_t i) const noexcept { return u[fluxes_[i].axis][fluxes_[i].face]; }
+    /// Plane by plane in parallel, each of the visits to all fluxes of a plane before the next.
+    void for_fluxes(auto&&... visits) const {
+        const auto visit_plane = [&](Index plane, auto& visit) {
+            const auto p = static_cast<std::size_t>(plane);
+            for (std::size_t i = flux_start_[p]; i < flux_start_[p + 1]; ++i) visit(i);
+        };
+        parallel_blocks(
+            static_cast<Index>(flux_start_.size()) - 1,
+            [&](Index, Index first, Index last) {
+                for (Index plane = first; plane < last; ++plane) (visit_plane(plane, visits), ...);
+            },
+            CoveredFaces::planes_at_once);
+    }
 
     bool is_new(std::size_t b) const noexcept { return !std::ranges::binary_search(seen_, bodies_[b].id); }
     /// Of the control volume of a face, as far as walls leave it open and it lies below the surface [kg].
@@ -299,9 +317,10 @@ private:
         return sum;
     }
 
-    std::vector<Memory> memory_;     ///< by id
-    std::vector<SolidFlux> fluxes_;  ///< as the last step left them
-    std::vector<Real> beyond_;       ///< mixture's velocity beyond the water's at these faces [m/s]
+    std::vector<Memory> memory_;           ///< by id
+    std::vector<SolidFlux> fluxes_;        ///< as the last step left them, plane by plane
+    std::vector<Real> beyond_, unseeped_;  ///< mixture's velocity beyond the water's there; this [m/s]
+    std::vector<std::size_t> flux_start_;  ///< [plane] in them
     Real fastest_ = 0;
     Real lost_to_friction_ = 0;       ///< in the last step [J]
     std::vector<Index> seen_, here_;  ///< ids of the bodies of the last step and of this one, sorted

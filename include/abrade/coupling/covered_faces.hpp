@@ -4,6 +4,8 @@
 #include <abrade/core/parallel.hpp>
 #include <abrade/coupling/spread_cloud.hpp>
 
+#include <algorithm>
+#include <numeric>
 #include <span>
 #include <type_traits>
 #include <unordered_map>
@@ -48,9 +50,11 @@ struct CoveredFace : SolidFace {
     }
 };
 
-/// Of all bodies, body by body and in the order of their planes; what walls and the surface leave of them.
+/// Of all bodies, body by body along the channel, and in the order of their planes; what walls and the
+/// surface leave of them.
 class CoveredFaces {
 public:
+    static constexpr Index planes_at_once = 4;  ///< stones lie in heaps
     /// Bodies as they stand; those below `resolved_from` cells to a diameter make a cloud, which is one more
     /// body behind the others. `open_area`: shares that walls leave open; none: all is. `retracted`: the
     /// surface of the others' cores [cell].
@@ -60,8 +64,11 @@ public:
         if (!covers_.empty()) cloud = std::move(covers_.back()), covers_.pop_back();
         covers_.resize(bodies.size());
         covers_.push_back(std::move(cloud));
-        std::vector<std::size_t> small;
-        for (std::size_t b = 0; b < bodies.size(); ++b) {
+        // Along the channel: what stands side by side in it does so in memory.
+        std::vector<std::size_t> order(bodies.size()), small;
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, {}, [&](std::size_t b) { return bodies[b].position[outer]; });
+        for (const std::size_t b : order) {
             const Real width = detail::GridNumbers{grid, sides}.cell_width(bodies[b].position);
             covers_[b].averaged = bodies[b].diameter() < resolved_from * width;
             if (covers_[b].averaged) small.push_back(b);
@@ -78,13 +85,20 @@ public:
             },
             block_of_bodies);
         spread(grid, sides, bodies, std::move(small), open_area);
-        first_.assign(1, 0);
-        for (const SolidCover& cover : covers_) first_.push_back(first_.back() + cover.faces.size());
-        faces_.resize(first_.back());
-        parallel_for(static_cast<Index>(covers_.size()), [&](Index b) {
-            std::size_t i = first_[at(b)];
-            for (const SolidFace& f : covers_[at(b)].faces) (faces_[i++] = {f}).body = at(b);
-        });
+        order.push_back(bodies.size());
+        first_.resize(order.size());
+        std::size_t all = 0;
+        for (const std::size_t b : order) first_[b] = std::exchange(all, all + covers_[b].faces.size());
+        faces_.resize(all);
+        parallel_blocks(
+            static_cast<Index>(covers_.size()),
+            [&](Index, Index first, Index last) {
+                for (std::size_t b = at(first); b < at(last); ++b) {
+                    std::size_t i = first_[b];
+                    for (const SolidFace& f : covers_[b].faces) (faces_[i++] = {f}).body = b;
+                }
+            },
+            block_of_bodies);
         sort_by_plane(grid.layout().planes());
         share_out(grid.layout(), open_area);
     }
@@ -92,11 +106,11 @@ public:
     std::span<CoveredFace> all() noexcept { return faces_; }
     std::span<const CoveredFace> all() const noexcept { return faces_; }
     std::span<CoveredFace> of(std::size_t body) noexcept {
-        return std::span(faces_).subspan(first_[body], first_[body + 1] - first_[body]);
+        return std::span(faces_).subspan(first_[body], covers_[body].faces.size());
     }
     const SpreadCloud& cloud() const noexcept { return cloud_; }
     std::span<const CoveredFace> of_cloud() const noexcept {
-        return std::span(faces_).subspan(first_[covers_.size() - 1]);
+        return std::span(faces_).subspan(first_.back());
     }
     std::span<CoveredFace> of_cloud() noexcept { return of(covers_.size() - 1); }
     const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }
@@ -124,6 +138,26 @@ public:
     /// Without those of which bodies cover nothing.
     void covered_by_planes(auto&&... visits) { visit_planes(*this, 1, visits...); }
     void covered_by_planes(auto&&... visits) const { visit_planes(*this, 1, visits...); }
+
+    /// [plane] How many faces are covered in those before it.
+    std::vector<std::size_t> covered_before() const {
+        std::vector<std::size_t> before{0};
+        for (std::size_t p = 0; p + 1 < plane_start_.size(); p += 2)
+            before.push_back(before.back() + plane_start_[p + 1] - plane_start_[p]);
+        return before;
+    }
+    /// Calls visit(face, number) for covered ones in the order of their planes, in parallel.
+    void number_covered(auto&& visit) {
+        const std::vector<std::size_t> before = covered_before();
+        parallel_blocks(
+            static_cast<Index>(before.size()) - 1,
+            [&](Index, Index first, Index last) {
+                for (std::size_t plane = at(first); plane < at(last); ++plane)
+                    for (std::size_t i = before[plane]; i < before[plane + 1]; ++i)
+                        visit(faces_[by_plane_[plane_start_[2 * plane] + i - before[plane]]], i);
+            },
+            planes_at_once);
+    }
 
     /// Takes from what faces conduct what bodies cover. `surface`: faces at which the pressure is 0.
     void close(Poisson<3>& m, std::span<const OpenFace> surface) {
@@ -202,6 +236,7 @@ private:
             for (const SolidFace& f : covers_[b].faces) sums_[f.axis][f.face] = 0;
     }
 
+    static constexpr int outer = Layout<3>::outer;
     static constexpr Real least = 1e-6;  ///< of a face: less conducts nothing
 
     static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
@@ -213,7 +248,6 @@ private:
     }
     /// Of each plane the first, or both its parts.
     static void visit_planes(auto& self, Index parts, auto&... visits) {
-        constexpr Index planes_at_once = 4;  // stones lie in heaps
         parallel_blocks(
             static_cast<Index>(self.plane_start_.size()) / 2,
             [&](Index, Index first, Index last) {
@@ -280,7 +314,7 @@ private:
 
     std::vector<SolidCover> covers_;  ///< [body], and of the cloud
     SpreadCloud cloud_;
-    std::vector<CoveredFace> faces_;        ///< body by body
+    std::vector<CoveredFace> faces_;        ///< body by body, the cloud's last
     std::vector<std::size_t> first_;        ///< [body] in `faces_`
     std::vector<std::size_t> by_plane_;     ///< `faces_` in the order of their planes
     std::vector<std::size_t> plane_start_;  ///< [2 plane, + 1 of those near by] in `by_plane_`

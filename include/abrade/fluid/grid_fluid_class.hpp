@@ -356,13 +356,10 @@ private:
     /// Calls use() while the velocity is what moves the water alone.
     void while_seeping(auto&& use) {
         if constexpr (Solids::present) {
-            {
-                const detail::KeptFaces kept(velocity_, solids_.fluxes());
-                solids_.seep(velocity_);
-                sides_.enter(velocity_), sides_.join(velocity_);
-                use();
-            }
-            sides_.join(velocity_);
+            solids_.seep(velocity_);
+            sides_.enter(velocity_), sides_.join(velocity_);
+            use();
+            solids_.unseep(velocity_), sides_.join(velocity_);
         } else {
             use();
         }

@@ -84,8 +84,20 @@ Real HeightOfFluid<Dim>::level_around(Index n) const noexcept {
 
 /// Solid carries momentum's volumes with it, as far as it is below the surface.
 template <int Dim>
-void HeightOfFluid<Dim>::add_solid(const SolidFlux& flux, Real dt) {
-    if (flux.axis == vertical) return;
+void HeightOfFluid<Dim>::add_solid(std::span<const SolidFlux> fluxes, Real dt) {
+    solid_moved_.clear();
+    for (const SolidFlux& f : fluxes)
+        if (f.axis != vertical) solid_moved_.push_back({f.face, f.axis, f.speed});
+    parallel_for(static_cast<Index>(solid_moved_.size()), [&](Index i) {
+        SolidVolume& moved = solid_moved_[at(i)];
+        moved.volume = solid_below({moved.face, moved.axis, moved.volume}, dt);
+    });
+    for (const SolidVolume& moved : solid_moved_) moved_[moved.axis][moved.face] += moved.volume;
+}
+
+/// Of what goes through a face in a step, what does so below the surface [m3].
+template <int Dim>
+Real HeightOfFluid<Dim>::solid_below(const SolidFlux& flux, Real dt) const noexcept {
     const CellNumber<Dim> number = layout_.number(flux.face);
     const Index n = columns_.column(number);
     const int k = number[vertical];
@@ -93,10 +105,7 @@ void HeightOfFluid<Dim>::add_solid(const SolidFlux& flux, Real dt) {
     const Real size = grid_.size(vertical, k);
     const Real share = std::clamp((surface - grid_.face(vertical, k)) / size, Real(0), Real(1));
     const Real area = columns_.plan() / grid_.size(flux.axis, 0) * size;
-    const Real moved =
-        share * flux.speed * area * dt * (open_faces_ ? (*open_faces_)[flux.axis][flux.face] : 1);
-    moved_[flux.axis][flux.face] += moved;
-    solid_moved_.push_back({flux.face, flux.axis, moved});
+    return share * flux.speed * area * dt * (open_faces_ ? (*open_faces_)[flux.axis][flux.face] : 1);
 }
 
 }  // namespace abrade

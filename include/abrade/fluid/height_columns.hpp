@@ -73,7 +73,7 @@ public:
     void parallel_for_each(auto&& body) const {
         parallel_blocks(
             grid_.cells(0), [&](Index, Index first, Index last) { for_planes(first, last, body); },
-            planes_at_once);
+            block_of_planes);
     }
     /// Largest `of(plane, j, column)`, as parallel_max has it.
     Real parallel_max_of(auto&& of) const {
@@ -86,7 +86,7 @@ public:
                 });
                 return most;
             },
-            planes_at_once);
+            block_of_planes);
     }
 
     int pitch() const noexcept { return pitch_; }    ///< from a plane's columns to the next plane's
@@ -168,7 +168,6 @@ public:
     }
 
 private:
-    static constexpr Index planes_at_once = 32;
     void for_planes(Index first, Index last, auto&& body) const {
         for (int plane = static_cast<int>(first); plane < static_cast<int>(last); ++plane)
             for (int j = 0; j < across_; ++j) body(plane, j, column(plane, j));

@@ -140,8 +140,7 @@ public:
         fluxes_.find(flow);
         fluxes_.limit(flow);
         fluxes_.sum(flow, next_);
-        solid_moved_.clear();
-        for (const SolidFlux& f : std::exchange(solid_fluxes_, {})) add_solid(f, dt);
+        add_solid(std::exchange(solid_fluxes_, {}), dt);
         hold_slopes(dt);
         renew();
         ++steps_;
@@ -286,7 +285,8 @@ private:
     }
     Surface surface_of(int plane, int j, Real liquid, int near) const noexcept;
     Real level_around(Index n) const noexcept;
-    void add_solid(const SolidFlux& flux, Real dt);
+    void add_solid(std::span<const SolidFlux> fluxes, Real dt);
+    Real solid_below(const SolidFlux& flux, Real dt) const noexcept;
     /// Of a column from empty cells.
     void set_fractions(int plane, int j, Index n, Real liquid) {
         const auto surface = surface_of(plane, j, liquid, 0);

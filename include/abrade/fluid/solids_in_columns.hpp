@@ -20,14 +20,14 @@ class SolidsInColumns {
 
 public:
     void set(std::span<const SolidPart> parts, const Grid<Dim>& grid, const HeightColumns<Dim>& columns) {
-        std::vector<Part> found;
-        found.reserve(parts.size());
-        Index last = -1;
-        for (const SolidPart& part : parts) {
+        std::vector<Part> found(parts.size());
+        parallel_for(static_cast<Index>(parts.size()), [&](Index i) {
+            const SolidPart& part = parts[static_cast<std::size_t>(i)];
             const CellNumber<Dim> number = grid.layout().number(part.cell);
-            found.push_back({columns.column(number), number[vertical], part.volume});
-            last = std::max(last, found.back().column);
-        }
+            found[static_cast<std::size_t>(i)] = {columns.column(number), number[vertical], part.volume};
+        });
+        Index last = -1;
+        for (const Part& part : found) last = std::max(last, part.column);
         start_.assign(static_cast<std::size_t>(last + 2), 0);
         for (const Part& part : found) ++start_[static_cast<std::size_t>(part.column + 1)];
         std::partial_sum(start_.begin(), start_.end(), start_.begin());

@@ -32,30 +32,6 @@ struct SolidVolume {
     Real volume = 0;  ///< [m3]
 };
 
-namespace detail {
-
-/// Puts the velocities of faces that solids go through back at its end.
-class KeptFaces {
-public:
-    /// Both must outlive this.
-    KeptFaces(FaceField<3>& u, std::span<const SolidFlux> faces) : u_(&u), faces_(faces) {
-        kept_.reserve(faces.size());
-        for (const SolidFlux& f : faces) kept_.push_back(u[f.axis][f.face]);
-    }
-    ~KeptFaces() {
-        for (std::size_t i = 0; i < kept_.size(); ++i) (*u_)[faces_[i].axis][faces_[i].face] = kept_[i];
-    }
-    KeptFaces(const KeptFaces&) = delete;
-    KeptFaces& operator=(const KeptFaces&) = delete;
-
-private:
-    FaceField<3>* u_;
-    std::span<const SolidFlux> faces_;
-    std::vector<Real> kept_;
-};
-
-}  // namespace detail
-
 /// One step of the water's.
 struct FlowStage {
     Real density = 1;    ///< [kg/m3]
@@ -71,7 +47,7 @@ struct FlowStage {
 /// Solids that move in water on a grid. There are two velocities at a face: the water's, which momentum is reckoned
 /// with, and that of the mixture of water and solid, which carries and has no divergence. A step asks
 /// - `mix_last`, `seep`: from the water's velocity that of the mixture, or that of the water times its share of a face,
-///   as the last step left them; `fluxes`: the solids' part of it;
+///   as the last step left them, and `unseep`, back from it; `fluxes`: the solids' part of it;
 /// - `place`: where they stand at its end, in water of a density, and `parts`, what they cover of cells there; of `resolved_parts` the water
 ///   flows around the shape;
 /// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface among them,
@@ -100,7 +76,7 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     s.keep_wet(m);
     s.slow(u, FlowStage{}), still.give_back(u, Real{});
     s.mix(u), still.unmix(u);
-    still.mix_last(u), still.seep(u);
+    still.mix_last(u), s.seep(u), still.unseep(u);
     { still.parts() } -> std::convertible_to<std::span<const SolidPart>>;
     { still.resolved_parts() } -> std::convertible_to<std::span<const SolidPart>>;
     { still.fluxes() } -> std::convertible_to<std::span<const SolidFlux>>;

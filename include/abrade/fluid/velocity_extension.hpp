@@ -291,8 +291,8 @@ private:
     void take_means(int a, Field<State>& u) const {
         for (const auto& of_layer : means_[a]) {
             fill_periodic(u, layout_, sides_);
-            parallel_for(static_cast<Index>(of_layer.size()), [&](Index plane) {
-                for (const Mean& mean : of_layer[static_cast<std::size_t>(plane)]) {
+            by_planes([&](std::size_t plane) {
+                for (const Mean& mean : of_layer[plane]) {
                     State sum = 0;
                     for_known_beside(mean, [&](Offset n) { sum += u[n]; });
                     u[mean.face] = sum / static_cast<State>(std::popcount(mean.from));
@@ -357,15 +357,10 @@ private:
             for (auto& rider : self.riders_[a][plane]) visit(rider);
         });
     }
-    /// In parallel.
     void by_planes(auto&& body) const {
-        constexpr Index at_once = 32;
-        parallel_blocks(
-            static_cast<Index>(waiting_.size()),
-            [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane) body(static_cast<std::size_t>(plane));
-            },
-            at_once);
+        parallel_for(
+            static_cast<Index>(waiting_.size()), [&](Index plane) { body(static_cast<std::size_t>(plane)); },
+            block_of_planes);
     }
 
     /// Faces that hold liquid and do not ride wait for what is carried to them.

@@ -252,7 +252,6 @@ public:
     }
 
 private:
-    static constexpr Index planes_in_block = 32;
     /// Calls body(planes) for parts of a side, in parallel.
     void for_planes_along(int axis, auto&& body) const {
         constexpr int g = Layout<Dim>::ghosts;
@@ -263,7 +262,7 @@ private:
             [&](Index, Index first, Index last) {
                 body(RowRange{static_cast<int>(first) - g, static_cast<int>(last) - g});
             },
-            planes_in_block);
+            block_of_planes);
     }
     void for_upper_outflows(auto&& body) const {
         for_sides(Side::outflow, [&](int a, bool high) {
