@@ -34,7 +34,9 @@ public:
     auto resolved_parts() const { return base().resolved_parts(); }
     auto fluxes() const { return base().fluxes(); }
     void mix_last(FaceField<3>& u) const { base().mix_last(u); }
-    void seep(FaceField<3>& u) { base().seep(u); }
+    void seep(FaceField<3>& u) {
+        visit(*this, [&](auto& one) { one.seep(u); });
+    }
     void unseep(FaceField<3>& u) const { base().unseep(u); }
     void slow(FaceField<3>& u, const FlowStage& stage) {
         visit(*this, [&](auto& one) { one.slow(u, stage); });
@@ -42,7 +44,9 @@ public:
     void give_back(FaceField<3>& u, Real share) const {
         visit(*this, [&](const auto& one) { one.give_back(u, share); });
     }
-    void mix(FaceField<3>& u) { base().mix(u); }
+    void mix(FaceField<3>& u) {
+        visit(*this, [&](auto& one) { one.mix(u); });
+    }
     void unmix(FaceField<3>& u) const { base().unmix(u); }
     Real water_share(const OpenFace& open) const { return base().water_share(open); }
     auto volumes(bool only_new) const { return base().volumes(only_new); }
