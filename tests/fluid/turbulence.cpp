@@ -190,6 +190,38 @@ TEST_CASE("a step that eddies allow, and parameters that make none") {
     CHECK_THROWS_AS((Flow<2, MixingLength>(params)), InputError);
 }
 
+TEST_CASE("eddies of slow water do not shorten the step of fast water beside it") {
+    // The lower half shears to and fro, the upper one goes as a whole.
+    const auto speed = [](Real z) { return z < 0.8 ? 0.6 * std::sin(pi * z / 0.1) : 1.0; };
+    GridFluidParams<2> params{.grid = {.cells = {16, 16}, .spacing = {0.1, 0.1}},
+                              .sides = Sides<2>::all(Side::slip),
+                              .velocity = [&](const Point<2>& x) { return Point<2>(speed(x[1]), 0); },
+                              .viscosity = 0,
+                              .courant = 1};
+    params.sides[0] = {Side::periodic, Side::periodic};
+    Flow<2> flow(params, {.constant = 0.5});
+    const Layout<2>& layout = flow.grid().layout();
+    const auto nu = [&](int i, int k) { return flow.eddy_viscosity()[layout.at({i, std::clamp(k, 0, 15)})]; };
+    Real together = 0, most = 0;
+    for (int k = 0; k < 16; ++k) {
+        const Real friction = 2 * nu(8, k) + nu(8, k) + 0.5 * (nu(8, k - 1) + nu(8, k + 1));
+        together = std::max(together, std::abs(speed(0.1 * (k + 0.5))) / 0.1 + friction / 0.01);
+        most = std::max(most, nu(8, k));
+    }
+    CHECK(flow.stable_step().seconds == doctest::Approx(1 / together).epsilon(1e-12).scale(0));
+    CHECK(flow.stable_step().seconds > 1.15 / (1 / 0.1 + 4 * most / 0.01));
+    Real energy = std::numeric_limits<Real>::infinity();
+    for (int n = 0; n < 200; ++n) {
+        flow.step(flow.stable_step().seconds);
+        Real now = 0;
+        flow.grid().for_each([&](const auto&, Offset c) {
+            for (int a = 0; a < 2; ++a) now += square(flow.velocity()[a][c]);
+        });
+        REQUIRE(now <= energy);
+        energy = now;
+    }
+}
+
 TEST_CASE("shear and weight are in balance: the water feels just nu + nu_t") {
     // Between a bed that holds it and a lid, periodic: what the bed takes is what the weight gives.
     Sides<3> sides;

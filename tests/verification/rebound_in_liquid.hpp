@@ -3,6 +3,7 @@
 
 #include <abrade/abrade.hpp>
 #include <abrade/coupling/monolithic.hpp>
+#include <abrade/dem/lubrication.hpp>
 #include <abrade/fluid/grid_fluid.hpp>
 
 #include <algorithm>
@@ -18,11 +19,12 @@ using namespace abrade;
 inline Real legendre(Real stokes) { return std::exp(-35 / stokes); }
 
 struct Fall {
-    Real stokes = 100;  ///< at the speed of the fall
-    Real cells = 4;     ///< to the diameter
-    Real ratio = 7.8;   ///< of densities
-    Real step = 0;      ///< the water's longest over the contact's duration [-]; 0: what is stable
-    Vec3 off{0, 0, 0};  ///< of the centre from a corner of cells, and of the floor [cell]
+    Real stokes = 100;   ///< at the speed of the fall
+    Real cells = 4;      ///< to the diameter
+    Real ratio = 7.8;    ///< of densities
+    Real step = 0;       ///< the water's longest over the contact's duration [-]; 0: what is stable
+    Real roughness = 0;  ///< over the radius, of a film from a cell on [-]; 0: no film below the grid
+    Vec3 off{0, 0, 0};   ///< of the centre from a corner of cells, and of the floor [cell]
 };
 
 /// Speeds are those a fifth of a diameter above the floor: there the water has had its exchange after the
@@ -32,6 +34,7 @@ struct Rebound {
     Real wet = 0;       ///< speed after the contact over that before it, over the same without liquid [-]
     Index steps = 0;    ///< of the water, until it comes [-]
     Real residual = 0;  ///< of the ledger [-]
+    Real film = 0;      ///< lost below the grid [J]
 };
 
 /// From 3 diameters above the floor, at the speed at which its weight and its drag are equal, in a box 5
@@ -60,21 +63,30 @@ inline Rebound rebound(const Fall& fall) {
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     const Vec3 place = Vec3(2.5, 2.5, 3.5) * diameter + h * fall.off;
     scene.add_sphere(0.5 * diameter, {.position = place, .velocity = {0, 0, -speed}}, fall.ratio * rho);
-    auto sim =
-        simulate(scene).contact(LinearSpring{{.stiffness = stiffness, .restitution = dry}}).fluid(liquid);
     Rebound found;
     Real comes = 0, goes = 0;
     bool touched = false;
     const RunOptions options{.end_time = 8 * diameter / speed,
                              .observe_every = 0.004 * diameter / speed,
                              .stop = [&] { return goes > 0; }};
-    sim.run(options, [&](const auto& now) {
-        const Real v = now.particles().velocity[0].z(), z = now.particles().position[0].z();
-        touched |= z < 0.5 * diameter;
-        if (!touched && z >= above) comes = -v, found.steps = now.fluid_model().steps();
-        if (touched && v > 0 && z >= above && goes == 0) goes = v;
-    });
-    found.residual = sim.ledger().residual_relative();
+    const auto run = [&](const auto& law) {
+        auto sim = simulate(scene).contact(law).fluid(liquid);
+        sim.run(options, [&](const auto& now) {
+            const Real v = now.particles().velocity[0].z(), z = now.particles().position[0].z();
+            touched |= z < 0.5 * diameter;
+            if (!touched && z >= above) comes = -v, found.steps = now.fluid_model().steps();
+            if (touched && v > 0 && z >= above && goes == 0) goes = v;
+        });
+        found.residual = sim.ledger().residual_relative(), found.film = sim.ledger().lost_film;
+    };
+    const LinearSpring::Params spring{.stiffness = stiffness, .restitution = dry};
+    if (fall.roughness > 0)
+        run(Lubricated<LinearSpring>{{.contact = spring,
+                                      .viscosity = rho * speed * diameter / reynolds,
+                                      .range = h,
+                                      .roughness = 0.5 * fall.roughness * diameter}});
+    else
+        run(LinearSpring{spring});
     found.stokes = fall.stokes * comes / speed, found.wet = goes / comes / dry;
     return found;
 }

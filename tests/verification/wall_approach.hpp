@@ -5,6 +5,9 @@
 #include "../coupling/resolved_bodies.hpp"
 #include "reference_table.hpp"
 
+#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/lubrication.hpp>
+
 namespace wall_approach {
 
 using namespace resolved;
@@ -45,6 +48,17 @@ inline ApproachDrag drag_in(const Approach& approach) {
         if (before == 0 && water.time() > 0.9 * approach.time) before = body.load.force.z();
     }
     return {body.load.force.z() / (3 * pi * speed), body.load.force.z() / before - 1};
+}
+
+/// What a film from a cell on adds to that factor.
+inline Real film_at(Real gap, Real cells) {
+    constexpr Real speed = 1e-6, radius = 0.5;
+    const Lubricated<LinearSpring> film(
+        {.contact = {.stiffness = 1}, .viscosity = 1, .range = 1 / cells, .roughness = 1e-4 * radius});
+    ContactKinematics<Real> contact{};
+    contact.normal = Vec3::UnitZ(), contact.overlap = -radius * gap, contact.curvature = 1 / radius;
+    contact.velocity = {0, 0, -speed}, contact.inverse_mass = 1;
+    return film.respond(contact, {}).load.force.z() / (6 * pi * radius * speed);
 }
 
 }  // namespace wall_approach

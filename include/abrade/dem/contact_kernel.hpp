@@ -72,7 +72,7 @@ struct alignas(64) ContactPack {
 /// Sums over packs, lane by lane.
 struct PackSums {
     Pack lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
-    Pack lost_rolling = 0;                                        ///< [J]
+    Pack lost_rolling = 0, lost_film = 0;                         ///< [J]
     Pack concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< once for each side of concrete [J]
     /// Overlap times (1/r_i + 1/r_j), planes as an equal sphere: at least 1 + r_small/r_large times overlap
     /// over the smaller radius [-].
@@ -80,7 +80,7 @@ struct PackSums {
 
     PackSums& operator+=(const PackSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential, stored += other.stored;
-        lost_rolling += other.lost_rolling;
+        lost_rolling += other.lost_rolling, lost_film += other.lost_film;
         concrete_lost_normal += other.concrete_lost_normal;
         concrete_lost_tangential += other.concrete_lost_tangential;
         deepest = max(deepest, other.deepest);
@@ -139,8 +139,8 @@ inline ContactKinematics<Real> lane_of(const ContactKinematics<Pack>& c, int lan
             lane_of(c.spin, lane),   lane_of(c.turn, lane), c.inverse_turning[lane]};
 }
 inline ContactLoad<Real> lane_of(const ContactLoad<Pack>& l, int lane) noexcept {
-    return {lane_of(l.force, lane),  l.stored[lane],          l.lost_normal[lane],
-            l.lost_tangential[lane], lane_of(l.couple, lane), l.lost_rolling[lane]};
+    return {lane_of(l.force, lane),  l.stored[lane],       l.lost_normal[lane], l.lost_tangential[lane],
+            lane_of(l.couple, lane), l.lost_rolling[lane], l.lost_film[lane]};
 }
 
 /// The law's answer to a pack; commits the memory of the lanes that touch or did.
@@ -165,6 +165,7 @@ ContactLoad<Pack> answer(const Law& law, const ContactKinematics<Pack>& contact,
                 for (int a = 0; a < 3; ++a) all.couple[a].set(lane, load.couple[a]);
                 all.lost_rolling.set(lane, load.lost_rolling);
             }
+            if constexpr (ActsBeforeTouch<Law>) all.lost_film.set(lane, load.lost_film);
         }
         return all;
     }
@@ -277,6 +278,7 @@ template <KernelKind kind, ContactLaw Law, class Wear>
     constexpr Quad difference{{-1, -1, -1, 1}}, reaction{{-1, -1, -1, 1}};
     [[maybe_unused]] const Plane plane = kind.on_plane ? *run.plane : Plane{};
 
+    const Real range = range_of(law);  // what touches, or nearly so
     const bool large = lines.place.size() > detail::spheres_in_cache;
     PackSums sums;
     for (std::size_t p = 0; p < packs.size(); ++p) {
@@ -295,10 +297,11 @@ template <KernelKind kind, ContactLaw Law, class Wear>
                                 (y - Pack(plane.point.y())) * contact.normal.y() +
                                 (z - Pack(plane.point.z())) * contact.normal.z();
             contact.overlap = reach - height;
-            touching = contact.overlap > Pack(0);
+            touching = contact.overlap > Pack(-range);
         } else {
             distance2 = x * x + y * y + z * z;
-            touching = distance2 < reach * reach;
+            const Pack acts = reach + Pack(range);
+            touching = distance2 < acts * acts;
         }
         if (!any(touching | pack.touched)) continue;
 
@@ -346,6 +349,7 @@ template <KernelKind kind, ContactLaw Law, class Wear>
         sums.lost_tangential += answer.lost_tangential;
         sums.stored += answer.stored;
         if constexpr (ResistsRolling<Law>) sums.lost_rolling += answer.lost_rolling;
+        if constexpr (ActsBeforeTouch<Law>) sums.lost_film += answer.lost_film;
         sums.deepest =
             max(sums.deepest, contact.overlap * (kind.on_plane ? curvature + curvature : curvature));
         Pack worn = 0;

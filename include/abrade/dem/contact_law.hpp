@@ -47,6 +47,8 @@ struct ContactLoad {
     // Of laws that resist rolling alone.
     Vec3Of<Number> couple = Vec3Of<Number>::Zero();  ///< on i, its opposite on j [N m]
     Number lost_rolling = Number(0);                 ///< [J]
+
+    Number lost_film = Number(0);  ///< of laws that act before surfaces touch alone [J]
 };
 
 /// What a law answers: the load, and what it wants to remember.
@@ -156,6 +158,23 @@ const PairLaw<L>& law_between(const L& laws, [[maybe_unused]] MaterialPair mater
 /// Asks for the spin of its contacts and answers with a couple. `resists_rolling` may be left out.
 template <class L>
 concept ResistsRolling = L::resists_rolling;
+
+// clang-format off
+/// Acts on surfaces that are nearer than `range()` [m] already. May be left out.
+template <class L>
+concept ActsBeforeTouch = requires(const L& law) {
+    { law.range() } noexcept -> std::same_as<Real>;
+};
+// clang-format on
+
+/// The gap from which on a law, or one of a table, acts [m]; 0: surfaces must touch.
+template <class L>
+Real range_of(const L& law) noexcept {
+    if constexpr (ActsBeforeTouch<L>)
+        return law.range();
+    else
+        return 0;
+}
 
 // clang-format off
 /// Can be told to set its dashpots by the mass of what is free (`DampingMass::free`). `damps_free_mass()` may

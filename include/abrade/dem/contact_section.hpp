@@ -15,13 +15,13 @@ namespace abrade {
 /// is concrete.
 struct ContactSums {
     Real lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
-    Real lost_rolling = 0;                                        ///< [J]
+    Real lost_rolling = 0, lost_film = 0;                         ///< [J]
     Real concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< [J]
     Real deepest = 0;                                             ///< as in PackSums [-]
 
     ContactSums& operator+=(const ContactSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential;
-        stored += other.stored, lost_rolling += other.lost_rolling;
+        stored += other.stored, lost_rolling += other.lost_rolling, lost_film += other.lost_film;
         concrete_lost_normal += other.concrete_lost_normal;
         concrete_lost_tangential += other.concrete_lost_tangential;
         deepest = std::max(deepest, other.deepest);
@@ -146,8 +146,13 @@ public:
             else
                 sums += abrade::respond<KernelKind{true, false}>(law, wear, packs, shared, lines, step);
         }
-        return {sum(sums.lost_normal),  sum(sums.lost_tangential),      sum(sums.stored),
-                sum(sums.lost_rolling), sum(sums.concrete_lost_normal), sum(sums.concrete_lost_tangential),
+        return {sum(sums.lost_normal),
+                sum(sums.lost_tangential),
+                sum(sums.stored),
+                sum(sums.lost_rolling),
+                sum(sums.lost_film),
+                sum(sums.concrete_lost_normal),
+                sum(sums.concrete_lost_tangential),
                 largest(sums.deepest)};
     }
 

@@ -105,6 +105,12 @@ public:
         return std::any_of(laws_.begin(), laws_.end(), [](const One& law) { return law.damps_free_mass(); });
     }
 
+    /// The widest of the table.
+    Real range() const noexcept requires ActsBeforeTouch<One> {
+        Real most = 0;
+        for (const One& law : laws_) most = std::max(most, law.range());
+        return most;
+    }
     /// The largest of each over the table.
     ContactRigidity rigidity(Real radius) const noexcept {
         ContactRigidity most;

@@ -25,6 +25,7 @@ struct Ledger {
     Real lost_normal = 0;   ///< by impact, in contacts and broken bonds
     Real lost_sliding = 0;  ///< by friction and tangential dashpots, in contacts and broken bonds
     Real lost_rolling = 0;  ///< by resistance to rolling, in contacts
+    Real lost_film = 0;     ///< to the liquid between surfaces that nearly touch
     Real lost_bond = 0;     ///< by damping in bonds and by breaking them
     Real lost_asleep = 0;   ///< kinetic energy that bodies still had as they were put to sleep, or against
                             ///< each other as they became one fragment
@@ -49,10 +50,11 @@ struct Ledger {
             field("stored_start", "J", &Ledger::stored_start),
             field("lost_normal", "J", &Ledger::lost_normal),
             field("lost_sliding", "J", &Ledger::lost_sliding),
-            field("lost_rolling", "J", &Ledger::lost_rolling), field("lost_bond", "J", &Ledger::lost_bond),
-            field("lost_asleep", "J", &Ledger::lost_asleep), field("drag_input", "J", &Ledger::drag_input),
-            field("drag_work", "J", &Ledger::drag_work), field("buoyancy_work", "J", &Ledger::buoyancy_work),
-            field("flow_work", "J", &Ledger::flow_work), field("gravity_work", "J", &Ledger::gravity_work),
+            field("lost_rolling", "J", &Ledger::lost_rolling), field("lost_film", "J", &Ledger::lost_film),
+            field("lost_bond", "J", &Ledger::lost_bond), field("lost_asleep", "J", &Ledger::lost_asleep),
+            field("drag_input", "J", &Ledger::drag_input), field("drag_work", "J", &Ledger::drag_work),
+            field("buoyancy_work", "J", &Ledger::buoyancy_work), field("flow_work", "J", &Ledger::flow_work),
+            field("gravity_work", "J", &Ledger::gravity_work),
             field("interaction_work", "J", &Ledger::interaction_work),
             field("fed_kinetic", "J", &Ledger::fed_kinetic),
             field("fed_potential", "J", &Ledger::fed_potential),
@@ -66,7 +68,7 @@ struct Ledger {
     /// Drag force times (fluid - body velocity): turned into heat and turbulence.
     Real lost_drag() const noexcept { return drag_input - drag_work; }
     Real lost() const noexcept {
-        return lost_normal + lost_sliding + lost_rolling + lost_bond + lost_asleep + lost_drag();
+        return lost_normal + lost_sliding + lost_rolling + lost_film + lost_bond + lost_asleep + lost_drag();
     }
 
     /// Kinetic energy against the work done: zero but for round-off.
@@ -86,7 +88,7 @@ struct Ledger {
     Real integration_residue() const noexcept {
         const Real elastic = -interaction_work -
                              (stored_contacts + stored_bonds - stored_start + left_stored) - lost_normal -
-                             lost_sliding - lost_rolling - lost_bond;
+                             lost_sliding - lost_rolling - lost_film - lost_bond;
         const Real gravity = -gravity_work - (potential - potential_start - fed_potential + left_potential);
         return elastic + gravity;
     }
@@ -98,7 +100,8 @@ struct Ledger {
         f("kinetic_start", kinetic_start), f("potential_start", potential_start);
         f("stored_start", stored_start);
         f("lost_normal", lost_normal), f("lost_sliding", lost_sliding), f("lost_rolling", lost_rolling),
-            f("lost_bond", lost_bond), f("lost_asleep", lost_asleep), f("lost_drag", lost_drag());
+            f("lost_film", lost_film), f("lost_bond", lost_bond), f("lost_asleep", lost_asleep),
+            f("lost_drag", lost_drag());
         f("concrete_lost_normal", concrete_lost_normal);
         f("concrete_lost_sliding", concrete_lost_sliding);
         f("drag_input", drag_input), f("drag_work", drag_work);

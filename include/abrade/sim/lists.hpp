@@ -73,7 +73,8 @@ public:
             mark_near(state, known, near), stand_by(state, near);
         }
         grow_columns(state);
-        state.store.arrange(state.particles, departure.moved, list_skin_, state.scene.periodic());
+        state.store.arrange(state.particles, departure.moved, list_skin_ + film(state),
+                            state.scene.periodic());
         const auto [smallest, largest] =
             std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
         if (largest != state.particles.radius.end())
@@ -92,7 +93,8 @@ public:
     void repack(State<P>& state) {
         land(state);
         mark_resting(state);
-        state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_, state.sleep.rests);
+        state.contacts.refine(state.store.lines, state.scene.walls, inner_skin_ + film(state),
+                              state.sleep.rests);
         take_off(state, 2 * inner_life_ * dt_);
     }
     Real skin() const noexcept { return list_skin_; }   ///< of near pairs [m]
@@ -135,7 +137,7 @@ private:
     /// Finds what stands near the bodies from `first` on. Of such a pair one alone comes nearer.
     void mark_near(const State<P>& state, Index first, detail::SiteMarks& near) {
         const std::size_t known = near_sites_.size();
-        find_near_sites(state, first, 0.5 * list_skin_, near_sites_);
+        find_near_sites(state, first, 0.5 * (list_skin_ + film(state)), near_sites_);
         for (const SitePair& pair : std::span(near_sites_).subspan(known)) {
             near.add_near(pair.site);
             if (pair.touches) near.add_touched(pair.site);
@@ -151,6 +153,9 @@ private:
         });
     }
 
+    /// What lists reach further for laws that act before surfaces touch [m]: planes count half of it.
+    static Real film(const State<P>& state) noexcept { return 2 * range_of(state.policies.contact); }
+
     /// As wide as speeds ask for, and no wider than the period of space has room for.
     void choose_skin(const State<P>& state, Real dt) {
         const Real fed = state.feed ? state.feed->params().velocity.norm() : 0;
@@ -160,7 +165,7 @@ private:
         if (period.isZero()) return;
         const PeriodNeed need(state.particles, state.scene.feed,
                               state.sites.stand ? state.concrete.lattice().radius : 0);
-        list_skin_ = std::min(list_skin_, need.widest_skin(period));
+        list_skin_ = std::min(list_skin_, need.widest_skin(period) - film(state));
         outrun_ = list_skin_ < 8 * dt * fastest;  // what `refine` asks for
     }
 
@@ -342,12 +347,12 @@ private:
                     if (const auto image = image_for(state.store, sphere, slab)) requests.push_back(*image);
             });
         }
-        state.contacts.rebuild(
-            state.store,
-            {p, state.scene.walls, seeks, known, list_skin_, state.scene.periodic().period, P::has_materials},
-            std::move(requests), [&](Index first, Index second) {
-                return P::has_bonds && state.network.holds({first, second});
-            });
+        state.contacts.rebuild(state.store,
+                               {p, state.scene.walls, seeks, known, list_skin_ + film(state),
+                                state.scene.periodic().period, P::has_materials},
+                               std::move(requests), [&](Index first, Index second) {
+                                   return P::has_bonds && state.network.holds({first, second});
+                               });
         if constexpr (P::has_bonds)
             state.network.pack(state.store.phantom(), [&](const auto& bond, Index slab) {
                 const auto slot = [&](Index sphere) {

@@ -36,9 +36,10 @@ public:
     }
     /// Of the neighbour list: what is asked for, or a quarter of the smallest radius [m]. Throws InputError
     /// where a period has no room for it.
-    Real skin(Real asked, const Scene& scene) const {
+    /// `range`: from which on the contact law acts [m].
+    Real skin(Real asked, Real range, const Scene& scene) const {
         const Real skin = asked > 0 ? asked : 0.25 * smallest_;
-        period_.check(scene, skin);
+        period_.check(scene, skin + 2 * range);
         return skin;
     }
     /// From `taken` steps so far, how many of `dt` [s] there are to go. Throws InputError where they cannot

@@ -262,7 +262,7 @@ private:
     void prepare(const RunOptions& options) {
         validate(options, time_, scene_.gravity.isZero());
         if (!world_) build_world();
-        world_->set_skin(limits().skin(options.skin, world_->scene()));
+        world_->set_skin(limits().skin(options.skin, range_of(contact_), world_->scene()));
         world_->set_free_flight(options.free_flight);
         world_->set_sleep(options.sleep_speed, options.sleep_after);
         stopped_ = false;

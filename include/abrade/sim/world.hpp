@@ -332,7 +332,7 @@ private:
         Ledger& a = state_.accounts;
         a.lost_normal += contacts.lost_normal + bonds.lost_normal;
         a.lost_sliding += contacts.lost_tangential + bonds.lost_tangential;
-        a.lost_rolling += contacts.lost_rolling;
+        a.lost_rolling += contacts.lost_rolling, a.lost_film += contacts.lost_film;
         a.lost_bond += bonds.lost_bond;
         a.concrete_lost_normal += contacts.concrete_lost_normal + bonds.concrete_lost_normal;
         a.concrete_lost_sliding += contacts.concrete_lost_tangential + bonds.concrete_lost_tangential;
