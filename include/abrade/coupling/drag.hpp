@@ -72,9 +72,11 @@ struct FluidLoad {
     Vec3 drag = Vec3::Zero();            ///< [N]
     Vec3 buoyancy = Vec3::Zero();        ///< [N]
     Vec3 fluid_velocity = Vec3::Zero();  ///< that the drag was reckoned with [m/s]
+    Vec3 inertial = Vec3::Zero();        ///< of a law that FeelsInertia [N]
+    Real along = 0;                      ///< added mass [kg]
 };
 
-inline Vec3 force_of(const FluidLoad& load) noexcept { return load.drag + load.buoyancy; }
+inline Vec3 force_of(const FluidLoad& load) noexcept { return load.drag + load.buoyancy + load.inertial; }
 inline Vec3 force_of(const FlowLoad& load) noexcept { return load.force; }
 
 /// The share of a sphere's volume below the surface when its centre is `depth` below it: a spherical cap.
@@ -89,6 +91,54 @@ struct Immersed {
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
     Real volume = 0;               ///< [m3]
 };
+
+// clang-format off
+/// A drag law that also asks for what an unsteady or sheared fluid does: see WithInertia.
+template <class D>
+concept FeelsInertia = DragLaw<D> && requires(const D& law) {
+    { law.added_mass() } noexcept -> std::same_as<Real>;
+    { law.lift() } noexcept -> std::same_as<Real>;
+};
+// clang-format on
+
+/// A drag law, and beside it, of the submerged volume V with coefficients C_m and C_L,
+///   rho V Du/Dt                    the pressure gradient that accelerates the fluid,
+///   C_m rho V (Du/Dt - dv/dt)      added mass,
+///   C_L rho V (u - v) x curl u     lift in a shear,
+/// u the fluid's velocity, v the body's. 1/2 for both is exact of a sphere in a fluid without friction: T. R.
+/// Auton, J. C. R. Hunt & M. Prud'homme 1988, doi:10.1017/S0022112088003246. dv/dt is that by all forces,
+/// contacts among them. What a fluid does not know of its change counts as none. Their work is the ledger's
+/// `flow_work`. Basset's history force is not among them.
+template <DragLaw Drag = CliftGauvin>
+class WithInertia {
+public:
+    static constexpr std::string_view name = "WithInertia";
+
+    struct Params {
+        typename Drag::Params drag{};
+        Real added_mass = 0.5;  ///< C_m [-]
+        Real lift = 0.5;        ///< C_L [-]
+        void validate() const {
+            drag.validate();
+            require_not_negative(added_mass, "WithInertia.added_mass", "");
+            require_finite(lift, "WithInertia.lift", "");
+        }
+        void visit(auto&& f) const { drag.visit(f), f("added_mass", added_mass, "-"), f("lift", lift, "-"); }
+    };
+
+    WithInertia() = default;
+    explicit WithInertia(Params params) : params_(params), drag_(params.drag) { params_.validate(); }
+    const Params& params() const noexcept { return params_; }
+    Real coefficient(Real reynolds) const noexcept { return drag_.coefficient(reynolds); }
+    Real added_mass() const noexcept { return params_.added_mass; }
+    Real lift() const noexcept { return params_.lift; }
+
+private:
+    Params params_;
+    Drag drag_;
+};
+
+static_assert(FeelsInertia<WithInertia<>> && !FeelsInertia<CliftGauvin>);
 
 /// Drag 1/2 rho C_d A |u - v| (u - v) and buoyancy -rho g V of the submerged share, `surroundings`
 /// sampled at the centroid. Uniform flow pushes with its whole stress, -grad p + div tau = -rho g, so
@@ -109,6 +159,27 @@ FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Imm
     return {.drag = factor * relative,
             .buoyancy = -share * surroundings.density * body.volume * gravity,
             .fluid_velocity = surroundings.velocity};
+}
+
+/// The same, of a law that asks for how the fluid changes. What added mass takes is known once all forces
+/// are: `take_along`.
+template <FeelsInertia Drag>
+FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const FlowChange& change,
+                     const Immersed& body, const Vec3& gravity) noexcept {
+    FluidLoad load = fluid_load(law, surroundings, body, gravity);
+    const Real share = submerged_share(surroundings.depth, std::cbrt(0.75 / pi * body.volume));
+    const Real displaced = share * surroundings.density * body.volume;
+    const Vec3 relative = surroundings.velocity - body.velocity;
+    load.along = law.added_mass() * displaced;
+    load.inertial = (displaced + load.along) * change.acceleration +
+                    law.lift() * displaced * relative.cross(change.vorticity());
+    return load;
+}
+
+/// Contacts and all other forces move the water along that a body takes with it: its added mass. `other`: all
+/// that acts on the body beside the fluid [N].
+inline void take_along(FluidLoad& fluid, const Vec3& other, Real mass) noexcept {
+    if (fluid.along > 0) fluid.inertial -= fluid.along / (mass + fluid.along) * (other + force_of(fluid));
 }
 
 }  // namespace abrade

@@ -22,6 +22,18 @@ struct FluidSample {
     Real viscosity = 0;            ///< dynamic [Pa s]
 };
 
+/// How the fluid changes around one point. A fluid that knows it offers `change(x, t)`, const, noexcept.
+struct FlowChange {
+    Vec3 acceleration = Vec3::Zero();  ///< Du/Dt [m/s2]
+    Mat3 gradient = Mat3::Zero();      ///< du_i/dx_j [1/s]
+
+    /// Curl of the velocity [1/s].
+    Vec3 vorticity() const noexcept {
+        return {gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0),
+                gradient(1, 0) - gradient(0, 1)};
+    }
+};
+
 /// The longest step that is stable for a fluid as it stands [s], and what sets it.
 struct FluidStep {
     Real seconds = std::numeric_limits<Real>::infinity();
@@ -83,6 +95,16 @@ concept ResolvedFluid = AdvancingFluid<F> && requires(F& fluid, std::span<FlowBo
     fluid.advance(Real{}, bodies);
 };
 // clang-format on
+
+/// Of a fluid that does not know: it is taken for one that is uniform and steady.
+template <class F>
+FlowChange change_of([[maybe_unused]] const F& fluid, [[maybe_unused]] const Vec3& x,
+                     [[maybe_unused]] Real t) noexcept {
+    if constexpr (requires { fluid.change(x, t); })
+        return fluid.change(x, t);
+    else
+        return {};
+}
 
 /// Whether a fluid means to change: one that does so in part only would be taken for one that stays as it is.
 template <class F>

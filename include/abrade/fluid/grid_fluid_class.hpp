@@ -187,10 +187,7 @@ public:
     /// Water at a point; in two dimensions at its x and z. Beyond the box as at its edge or, where sides are
     /// periodic, where it comes in again. t is not asked: what is known is the present.
     FluidSample sample(const Vec3& x, Real /*t*/) const noexcept {
-        Point<Dim> at;
-        at[0] = x[0];
-        if constexpr (Dim == 3) at[1] = x[1];
-        at[Dim - 1] = x[2];
+        const Point<Dim> at = detail::in_plane<Dim>(x);
         const PerAxis<bool, Dim> periodic = params_.sides.periodic_axes();
         FluidSample sample{Vec3::Zero(), std::numeric_limits<Real>::infinity(), params_.density,
                            params_.viscosity};
@@ -198,6 +195,15 @@ public:
             sample.velocity[a == Dim - 1 ? 2 : a] = face_value(*grid_, periodic, velocity_[a], a, at);
         if constexpr (has_surface) sample.depth = surface_at(at) - x[2];
         return sample;
+    }
+
+    /// Differences over a cell, and over the last step.
+    FlowChange change(const Vec3& x, Real /*t*/) const noexcept {
+        const FaceField<Dim, State>* before = late_.last > 0 ? &saved_velocity_ : nullptr;
+        if constexpr (has_surface)
+            if (before) before = &record_.velocity();
+        return detail::flow_change<Dim>(*grid_, params_.sides.periodic_axes(), velocity_, before, late_.last,
+                                        detail::in_plane<Dim>(x));
     }
 
     /// Height of the water's surface at a place in the plane: floor and what stands on it [m].
@@ -300,24 +306,10 @@ private:
     }
 
     /// Walls, and cells that are too small to stay open, take some of the faces that water comes through.
-    void give_discharge() {
-        if (params_.inflow_discharge == 0) return;
-        const Real carried = detail::inflow_of(velocity_, params_.sides, water_->liquid(), water_->walls());
-        require(carried > 0,
-                {"GridFluid.side_velocity: what it carries in", "> 0 where inflow_discharge is given",
-                 Dim == 3 ? "m3/s" : "m2/s", "point it into the box"},
-                carried);
-        sides_.scale_inflow(params_.inflow_discharge / carried);
-        sides_.fill(velocity_);
-    }
+    void give_discharge();
 
     /// A velocity that was given, or walls that have come.
-    void free_of_divergence(Real tolerance = 1e-6) {
-        Field<State> potential(layout().total);
-        report_ = projection_.project(velocity_, potential, {1, tolerance});
-        fastest_ = std::max(report_.courant, enters_);
-        finish(velocity_);
-    }
+    void free_of_divergence(Real tolerance = 1e-6);
 
     void find_pressure_of_weight(Real tolerance);
 

@@ -97,6 +97,28 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::refuse_beyond_s
     throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);
 }
 
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::give_discharge() {
+    if (params_.inflow_discharge == 0) return;
+    const Real carried = detail::inflow_of(velocity_, params_.sides, water_->liquid(), water_->walls());
+    require(carried > 0,
+            {"GridFluid.side_velocity: what it carries in", "> 0 where inflow_discharge is given",
+             Dim == 3 ? "m3/s" : "m2/s", "point it into the box"},
+            carried);
+    sides_.scale_inflow(params_.inflow_discharge / carried);
+    sides_.fill(velocity_);
+}
+
+template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,
+          SolidsInFlow Solids>
+void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::free_of_divergence(Real tolerance) {
+    Field<State> potential(layout().total);
+    report_ = projection_.project(velocity_, potential, {1, tolerance});
+    fastest_ = std::max(report_.courant, enters_);
+    finish(velocity_);
+}
+
 /// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage_`
 /// how water at rest is accelerated [m/s2].
 template <int Dim, class Surface, AdvectionScheme Scheme, class State, TurbulenceModel Turbulence,

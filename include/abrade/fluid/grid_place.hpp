@@ -1,6 +1,7 @@
 #pragma once
 // What a field on a grid is at a point: linear between cells or faces.
 
+#include <abrade/fluid/fluid_model.hpp>
 #include <abrade/fluid/grid.hpp>
 
 #include <algorithm>
@@ -97,5 +98,48 @@ Real face_value(const Grid<Dim>& grid, const PerAxis<bool, Dim>& periodic, const
     }
     return sum;
 }
+
+namespace detail {
+
+/// In two dimensions without y.
+template <int Dim>
+Point<Dim> in_plane(const Vec3& x) noexcept {
+    Point<Dim> at;
+    at[0] = x[0], at[Dim - 1] = x[2];
+    if constexpr (Dim == 3) at[1] = x[1];
+    return at;
+}
+
+/// At a place, of a velocity and of that `seconds` before; none: it does not change.
+template <int Dim, class Number>
+FlowChange flow_change(const Grid<Dim>& grid, const PerAxis<bool, Dim>& periodic,
+                       const FaceField<Dim, Number>& u, const FaceField<Dim, Number>* before, Real seconds,
+                       const Point<Dim>& x) noexcept {
+    const auto of_space = [](int a) { return a == Dim - 1 ? 2 : a; };
+    FlowChange change;
+    Vec3 velocity = Vec3::Zero();
+    for (int a = 0; a < Dim; ++a) {
+        const Real now = face_value(grid, periodic, u[a], a, x);
+        velocity[of_space(a)] = now;
+        if (before)
+            change.acceleration[of_space(a)] =
+                (now - face_value(grid, periodic, (*before)[a], a, x)) / seconds;
+        for (int b = 0; b < Dim; ++b) {
+            const Real half = 0.5 * grid.smallest(b);
+            Point<Dim> low = x, high = x;
+            low[b] -= half, high[b] += half;
+            if (!periodic[b])
+                low[b] = std::max(low[b], grid.low(b)), high[b] = std::min(high[b], grid.high(b));
+            if (!(high[b] > low[b])) continue;
+            change.gradient(of_space(a), of_space(b)) =
+                (face_value(grid, periodic, u[a], a, high) - face_value(grid, periodic, u[a], a, low)) /
+                (high[b] - low[b]);
+        }
+    }
+    change.acceleration += change.gradient * velocity;
+    return change;
+}
+
+}  // namespace detail
 
 }  // namespace abrade

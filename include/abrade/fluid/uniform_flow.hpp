@@ -74,6 +74,18 @@ public:
                 params_.viscosity};
     }
 
+    /// Sheared across the bed; nothing is accelerated.
+    FlowChange change(const Vec3& x, Real /*t*/) const noexcept {
+        const Invert& section = params_.section;
+        const Real height = x.z() - section.bed_height(x.y());
+        FlowChange change;
+        if (height < 0) return change;
+        const Real slope = scale_ / (height + roughness_length_), dy = 1e-6 * section.width;
+        const Real bed_rises = (section.bed_height(x.y() + dy) - section.bed_height(x.y() - dy)) / (2 * dy);
+        change.gradient(0, 1) = -slope * bed_rises, change.gradient(0, 2) = slope;
+        return change;
+    }
+
     Real depth() const noexcept { return depth_; }  ///< at the centre line [m]
     Real mean_velocity() const noexcept {
         return params_.discharge / params_.section.flow_area(depth_);

@@ -40,7 +40,7 @@ template <class P>
                     fluid =
                         state.fluid_on(body, place.centre, motion.velocity, move.time, move.ahead_in_fluid);
                     state.velocity_in_fluid[static_cast<std::size_t>(body)] = motion.velocity;
-                    take_along(fluid, load.force, mass);
+                    take_along(fluid, load.force, mass, state.scene.gravity);
                 }
             }
             const KickedSphere after = kick(motion, load, fluid, gravity, move.kick);
@@ -81,7 +81,7 @@ template <class P>
                     state.velocity_in_fluid[static_cast<std::size_t>(clump.body)] = clump.velocity;
                 }
             const ClumpLoad load = load_of(clump, lines);
-            take_along(fluid, load.force, clump.mass);
+            take_along(fluid, load.force, clump.mass, state.scene.gravity);
             const KickedClump after = kick(clump, load, fluid, state.scene.gravity, move.kick);
             sums.interaction.value[0] += after.interaction;
             sums.path = sums.path + detail::quad(Vec3(clump.mass * after.path));
@@ -153,7 +153,7 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         if (at_rest()) return;
         const ClumpLoad load = load_of(clump, lines);
         sample(clump.position, clump.velocity);
-        take_along(fluid, load.force, clump.mass);
+        take_along(fluid, load.force, clump.mass, state.scene.gravity);
         const KickedClump after = kick(clump, load, fluid, state.scene.gravity, move.kick);
         p.velocity[b] = after.velocity, p.angular_momentum[b] = after.angular_momentum;
         p.force[b] = load.force + p.mass[b] * state.scene.gravity + force_of(fluid);
@@ -184,7 +184,7 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         return;
     }
     sample(place.centre, motion.velocity);
-    take_along(fluid, load.force, p.mass[b]);
+    take_along(fluid, load.force, p.mass[b], state.scene.gravity);
     const KickedSphere after = kick(motion, load, fluid, detail::quad(state.scene.gravity), move.kick);
     p.velocity[b] = detail::first_three(after.velocity);
     p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * detail::first_three(after.rim);

@@ -24,12 +24,16 @@ FlightLoad flight_load(const State<P>& state, Index body, const Vec3& position, 
     if constexpr (P::has_fluid && !P::fluid_resolves)  // which lets nobody fly
         if (state.feels_fluid(body)) {
             const Real inverse_mass = state.particles.inverse_mass[static_cast<std::size_t>(body)];
-            const FluidLoad first = state.fluid_on(body, position, velocity, flight.start, 0);
+            const auto fluid_on = [&](const Vec3& x, const Vec3& v, Real t) {
+                FluidLoad load = state.fluid_on(body, x, v, t, 0);
+                take_along(load, Vec3::Zero(), 1 / inverse_mass, state.scene.gravity);
+                return load;
+            };
+            const FluidLoad first = fluid_on(position, velocity, flight.start);
             const Vec3 half =
                 velocity + 0.5 * flight.kicks * (state.scene.gravity + inverse_mass * force_of(first));
             const Real to_middle = 0.5 * (flight.drifts - flight.last);
-            found.fluid =
-                state.fluid_on(body, position + to_middle * half, half, flight.start + to_middle, 0);
+            found.fluid = fluid_on(position + to_middle * half, half, flight.start + to_middle);
             found.acceleration += inverse_mass * force_of(found.fluid);
         }
     return found;
@@ -184,7 +188,8 @@ std::optional<Real> hardest_in_flight(const State<P>& state, Index body, const V
                 // Of quadratic drag, twice the force over the speed against the fluid. Not a number is too
                 // much.
                 if (!(2 * drag * horizon <= 0.1 * against)) return std::nullopt;
-                strongest = std::max(strongest, drag + inverse_mass * load.buoyancy.norm());
+                strongest =
+                    std::max(strongest, drag + inverse_mass * (load.buoyancy.norm() + load.inertial.norm()));
             }
             hardest += 2 * strongest;  // drag itself may double where the fluid is faster
         }

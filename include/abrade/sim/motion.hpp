@@ -24,7 +24,7 @@ struct MotionSums {
     /// [rad].
     void add(const FluidLoad& fluid, const Vec3& way, const Vec3& /*turn*/, Real time) noexcept {
         drag += fluid.drag.dot(way), drag_input += time * fluid.drag.dot(fluid.fluid_velocity);
-        buoyancy += fluid.buoyancy.dot(way);
+        buoyancy += fluid.buoyancy.dot(way), flow += fluid.inertial.dot(way);
     }
     void add(const FlowLoad& fluid, const Vec3& way, const Vec3& turn, Real /*time*/) noexcept {
         flow += fluid.force.dot(way) + fluid.torque.dot(turn);
@@ -59,11 +59,14 @@ inline void book(Ledger& to, const MotionSums& motion, const Vec3& gravity) noex
     to.buoyancy_work += motion.buoyancy, to.flow_work += motion.flow;
 }
 
-/// Contacts move the water along that a body takes with it: its added mass.
-inline void take_along(FlowLoad& fluid, const Vec3& contacts, Real mass) noexcept {
+/// What contacts and weight do to the water that a body takes along, its added mass. A flow that resolves
+/// bodies knows of their weight.
+inline void take_along(FlowLoad& fluid, const Vec3& contacts, Real mass, const Vec3& /*gravity*/) noexcept {
     if (fluid.along > 0) fluid.force = fluid.force_among(contacts, mass);
 }
-inline void take_along(const auto&, const Vec3&, Real) noexcept {}
+inline void take_along(FluidLoad& fluid, const Vec3& contacts, Real mass, const Vec3& gravity) noexcept {
+    take_along(fluid, contacts + mass * gravity, mass);
+}
 
 /// What a kick does to a single sphere, and the works it does: a force is paired with the mean of the
 /// velocities before and after, so works add up to the change in kinetic energy exactly.

@@ -142,8 +142,13 @@ struct State {
             return flow_load[at(body)];
         } else {
             const Vec3 now = velocity + ahead * (velocity - velocity_in_fluid[at(body)]);
-            return fluid_load(policies.drag, policies.fluid.sample(position, t),
-                              {position, now, particles.volume[at(body)]}, scene.gravity);
+            const FluidSample sample = policies.fluid.sample(position, t);
+            const Immersed immersed{position, now, particles.volume[at(body)]};
+            if constexpr (FeelsInertia<decltype(policies.drag)>)
+                return fluid_load(policies.drag, sample, change_of(policies.fluid, position, t), immersed,
+                                  scene.gravity);
+            else
+                return fluid_load(policies.drag, sample, immersed, scene.gravity);
         }
     }
 
