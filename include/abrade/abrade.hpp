@@ -10,6 +10,7 @@
 #include <abrade/dem/hertz_mindlin.hpp>
 #include <abrade/dem/linear_hysteretic.hpp>
 #include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/lubrication.hpp>
 #include <abrade/dem/material_pairs.hpp>
 #include <abrade/dem/rolling_resistance.hpp>
 #include <abrade/fluid/shallow_water.hpp>
