@@ -259,14 +259,18 @@ inline Real runout_law(Shape shape, Real a) {
                                  : std::min(1.2 * a, 1.6 * std::pow(a, 2. / 3));
 }
 
+/// As far as the law sends the front, as far again, and room for grains that roll on [d].
+inline Real reach_of(const Column& column) {
+    return column.radius * (1 + 2 * runout_law(column.shape, column.aspect)) + 8;
+}
+
 /// Opens the container: a second scene, without it, from where the grains of the first one lie.
-template <class Law>
-Deposit collapse(const Column& column, const Grains& grains, const Law& law) {
-    // As far as the law sends the front, as far again, and room for grains that roll on.
-    const Real reach = column.radius * (1 + 2 * runout_law(column.shape, column.aspect)) + 8;
+template <class Law, class Fluid = NoFluid>
+Deposit collapse(const Column& column, const Grains& grains, const Law& law, Fluid fluid = Fluid{}) {
+    const Real reach = reach_of(column);
     Scene scene = bed(column, reach);
     add(scene, grains);
-    auto sim = simulate(std::move(scene)).contact(law);
+    auto sim = simulate(std::move(scene)).contact(law).fluid(std::move(fluid));
     Deposit deposit;
     deposit.column = column, deposit.before = grains;
     run_to_rest(sim, {1e-4, reach, 60 * std::sqrt(column.height())}, [&](const auto& now) {
