@@ -46,7 +46,7 @@ public:
             CoveredFace& f = faces[part.face];
             const Real drags = motion_[n].rate * part.share * kept(f);
             f.rate += drags, f.target += drags * motion_[n].v[axis];
-            f.given += part.share * motion_[n].pushed[axis];
+            if (f.mass > 0) f.given += part.share * motion_[n].pushed[axis];
         });
         for_each_face(faces, [&](CoveredFace& f) {
             const Real stiff = stage.dt * f.rate / std::max(f.water, least_water);
@@ -203,7 +203,9 @@ private:
         }
         m.reaction = dt * added_mass_ * last + m.added_momentum - m.added * m.v;
         const Vec3 due = before ? Vec3(m.reaction + before->reaction) : m.reaction;
-        m.pushed = -due.cwiseQuotient(among.cwiseMax(tiny));
+        // What is left of the water around a body that has come out of it is not shot about.
+        const Real least = least_water * stage.density * body.volume;
+        m.pushed = -due.cwiseQuotient(among.cwiseMax(least));
     }
 
     Real added_mass_ = 0.5;

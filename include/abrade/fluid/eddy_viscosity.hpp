@@ -116,7 +116,7 @@ public:
             most = 0;
             for (int row = 0; row < layout_.rows_per_plane(); ++row)
                 if (const RowRange r = looked_at.row(plane, row); !r.empty())
-                    most = std::max(most, fastest_rate(u, row, layout_.row_start(plane, row), r));
+                    most = std::max(most, fastest_rate(u, row, layout_.row_start(plane, row), r, held));
         });
         rate_ = *std::max_element(most_.begin(), most_.end());
     }
@@ -149,8 +149,8 @@ public:
     Field<State>& field() noexcept { return field_; }
     const Field<State>& field() const noexcept { return field_; }
     Real largest() const noexcept { return largest_; }  ///< [m2/s]
-    /// Of cells, air beside the water included, the largest sum over axes of
-    /// |u_a| / h_a + 2 (nu + nu_t) / h_a^2 [1/s]; nu_t is the mean of both its faces along the axis.
+    /// Of cells that hold liquid the largest sum over axes of |u_a| / h_a + 2 (nu + nu_t) / h_a^2 [1/s]; nu_t
+    /// is the mean of both its faces along the axis.
     Real rate() const noexcept { return rate_; }
 
     static void fields(auto&& field) {
@@ -236,27 +236,36 @@ private:
         }
     }
 
-    /// See `rate`.
-    State fastest_rate(const FaceField<Dim, State>& u, int row, Offset start, RowRange r) const noexcept {
-        State most = 0;
+    /// See `rate`. Where there is no liquid nobody has set eddies.
+    State fastest_rate(const FaceField<Dim, State>& u, int row, Offset start, RowRange r,
+                       const Field<Real>* held) const noexcept {
         const State* const __restrict nu = field_.data() + start;
-        std::array<State, static_cast<std::size_t>(Layout<Dim>::lanes)> rate;
+        std::array<State, static_cast<std::size_t>(lanes)> rate;
+        State most = 0;
         for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
             rate.fill(0);
             for (int a = 0; a < Dim; ++a) {
+                const Offset s = layout_.stride[a];
                 const State* const __restrict v = u[a].data() + start;
-                const State* const __restrict below = nu - layout_.stride[a];
-                const State* const __restrict above = nu + layout_.stride[a];
+                const Real* const __restrict h = held ? held->data() + start : nullptr;
                 const auto per_size = per_size_[a].row(row);
+                const auto add = [&](auto eddies) {
 #pragma omp simd
-                for (int k = 0; k < lanes; ++k) {
-                    const int i = first + k;
-                    const State twice = 2 * viscosity_ + nu[i] + State(0.5) * (below[i] + above[i]);
-                    rate[static_cast<std::size_t>(k)] += per_size[i] * (std::abs(v[i]) + per_size[i] * twice);
-                }
+                    for (int k = 0; k < lanes; ++k) {
+                        const int i = first + k;
+                        const State twice = eddies(i) + State(0.5) * (eddies(i - s) + eddies(i + s));
+                        rate[static_cast<std::size_t>(k)] +=
+                            per_size[i] * (std::abs(v[i]) + per_size[i] * (2 * viscosity_ + twice));
+                    }
+                };
+                if (held)
+                    add([&](Offset i) { return h[i] > least_held ? nu[i] : State(0); });
+                else
+                    add([&](Offset i) { return nu[i]; });
             }
             for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
-                most = std::max(most, rate[static_cast<std::size_t>(i - first)]);
+                if (!held || (*held)[start + i] > least_held)
+                    most = std::max(most, rate[static_cast<std::size_t>(i - first)]);
         }
         return most;
     }
