@@ -20,19 +20,37 @@ namespace abrade {
 /// bodies leave. The water has all of it: pressure by the cloud's shares of its faces; friction
 ///   du/dt = sum of beta / (rho V) sigma (v - u) / (1 - sum of sigma),
 /// implicit in u, with v as drag alone would leave it; added mass as the last pressure has it, what the new
-/// one changes a step later. These bodies are not turned. While the pressure is sought the cloud moves on
-/// with the velocity that they had before: their added mass is in their own law, so any ratio of densities is
-/// stable.
+/// one changes a step later: C_m is at most twice as much of its value as there is water around the body, for
+/// what little there is between densely packed ones must not answer for all of them. These bodies are not
+/// turned. While the pressure is sought the cloud moves on with the velocity that they had before, and yields
+/// to the new pressure face by face, by (1 + C_m) / (s + C_m) of what water would, s their density over the
+/// water's: what bodies differ from that by, since their share of the pressure is a mean, they move a step
+/// later. So any ratio of densities is stable, and beds of any density are.
 template <DenseDragLaw Drag>
 class AveragedBodies {
 public:
     AveragedBodies() = default;
     AveragedBodies(Real added_mass, typename Drag::Params drag) : added_mass_(added_mass), drag_(drag) {}
 
-    /// Faces of the cloud get the velocity that its bodies have been given.
-    void begin(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies) {
+    /// Faces of the cloud get the velocity that its bodies have been given, and learn how a pressure is going
+    /// to move them. `density`: of the water [kg/m3].
+    void begin(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
+               Real density) {
         motion_.assign(cloud.count(), {});
-        for (std::size_t n = 0; n < motion_.size(); ++n) motion_[n].v = bodies[cloud.which()[n]].velocity;
+        for_each_face(faces, [](CoveredFace& f) { f.mobility = 0; });
+        for (std::size_t n = 0; n < motion_.size(); ++n) {
+            const FlowBody& body = bodies[cloud.which()[n]];
+            const Real displaced = density * body.volume;
+            motion_[n].v = body.velocity;
+            motion_[n].mobility =
+                body.inverse_mass > 0
+                    ? (1 + added_mass_) * displaced / (1 / body.inverse_mass + added_mass_ * displaced)
+                    : 0;
+        }
+        for_each_part(cloud, [&](std::size_t n, int, const SpreadPart& part) {
+            faces[part.face].mobility += part.share * motion_[n].mobility;
+        });
+        for_each_face(faces, [](CoveredFace& f) { f.mobility /= f.share; });
         carry(faces, cloud);
     }
 
@@ -41,12 +59,13 @@ public:
     void force(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
                const Field<Real>& old, const FlowStage& stage) {
         for_each(cloud, [&](std::size_t n) { drag_alone(n, faces, cloud, bodies, old, stage); });
+        for_each_face(faces, [&](CoveredFace& f) { f.last_gradient = f.gradient(old); });
         for_each_face(faces, [](CoveredFace& f) { f.rate = f.target = f.given = 0; });
         for_each_part(cloud, [&](std::size_t n, int axis, const SpreadPart& part) {
             CoveredFace& f = faces[part.face];
             const Real drags = motion_[n].rate * part.share * kept(f);
             f.rate += drags, f.target += drags * motion_[n].v[axis];
-            if (f.mass > 0) f.given += part.share * motion_[n].pushed[axis];
+            if (f.mass > 0) f.given += part.share * f.water * motion_[n].pushed[axis];
         });
         for_each_face(faces, [&](CoveredFace& f) {
             const Real stiff = stage.dt * f.rate / std::max(f.water, least_water);
@@ -65,19 +84,25 @@ public:
         carry(faces, cloud);
     }
 
+    /// Once the pressure is known: how the cloud has moved while it was sought.
+    void yield(std::span<CoveredFace> faces, const Field<Real>& pressure, Real dt) const {
+        for_each_face(faces, [&](CoveredFace& f) {
+            f.solid -= dt * f.yields() * (f.gradient(pressure) - f.last_gradient);
+        });
+    }
+
     /// Once the pressure is known: velocities and loads of the bodies. Told ones keep their velocity, those
     /// that have left the box their load.
     void settle(std::span<const CoveredFace> faces, const SpreadCloud& cloud, std::span<FlowBody> bodies,
                 std::span<const SolidCover> covers, const Field<Real>& pressure, const FlowStage& stage) {
-        const Real more = 1 + added_mass_;
         for_each(cloud, [&](std::size_t n) {
             FlowBody& body = bodies[cloud.which()[n]];
             Motion& m = motion_[n];
             const Vec3 pressed = pressed_by(n, faces, cloud, pressure, stage.density);
             if (body.inverse_mass > 0)
-                m.v = (m.begun + m.added_momentum + stage.dt * (m.by_drag + more * pressed)) /
+                m.v = (m.begun + m.added_momentum + stage.dt * (m.by_drag + (1 + m.coefficient) * pressed)) /
                       (1 / body.inverse_mass + m.added);
-            const Vec3 by_added = added_mass_ * pressed + (m.added_momentum - m.added * m.v) / stage.dt;
+            const Vec3 by_added = m.coefficient * pressed + (m.added_momentum - m.added * m.v) / stage.dt;
             body.velocity = m.v;
             const Vec3 after_blow = m.struck.taken_by(m.added, body, stage.dt);
             if (!covers[cloud.which()[n]].cut) {
@@ -104,8 +129,10 @@ private:
         Vec3 by_drag = Vec3::Zero();         ///< [N]
         Vec3 pressed = Vec3::Zero();         ///< by the pressure, without added mass [N]
         Vec3 reaction = Vec3::Zero();        ///< of the added mass on the water, an impulse [kg m/s]
-        Vec3 pushed = Vec3::Zero();          ///< of the water by that impulse, over its share [m/s]
+        Vec3 pushed = Vec3::Zero();          ///< of the water by that impulse, over both their shares [m/s]
         Real rate = 0;                       ///< beta / (rho V) [1/s]
+        Real mobility = 0;                   ///< see CoveredFace [-]
+        Real coefficient = 0;                ///< C_m [-]
         Real added = 0;                      ///< C_m rho V, as far as there is water [kg]
         Struck struck;                       ///< by contacts
     };
@@ -167,13 +194,14 @@ private:
                     std::span<const FlowBody> bodies, const Field<Real>& old, const FlowStage& stage) {
         const FlowBody& body = bodies[cloud.which()[n]];
         Motion& m = motion_[n];
-        Vec3 weight = Vec3::Zero(), among = Vec3::Zero(), flow = Vec3::Zero();
+        Vec3 weight = Vec3::Zero(), open = Vec3::Zero(), among = Vec3::Zero(), flow = Vec3::Zero();
         Real shares = 0, others = 0;
         for (int axis = 0; axis < 3; ++axis)
             for (const SpreadPart& part : cloud.parts(n, axis)) {
                 const CoveredFace& f = faces[part.face];
                 const Real covers = f.mass * part.share;
-                weight[axis] += covers, among[axis] += covers * f.water, flow[axis] += covers * f.velocity;
+                weight[axis] += covers, open[axis] += covers * f.water;
+                among[axis] += covers * square(f.water), flow[axis] += covers * f.velocity;
                 if (f.open == 0) continue;
                 shares += part.share;
                 others += part.share * std::clamp(1 - (f.water + part.share) / f.open, 0.0, 1.0);
@@ -187,7 +215,8 @@ private:
         m.rate = weight.norm() > 0 ? spread.drag(drag_) / body.volume : 0;
         const Memory* const before = with_id(memory_, body.id);
         const Real dt = stage.dt;
-        m.added = added_mass_ * weight.mean();
+        m.coefficient = added_mass_ * std::min(2 * open.sum() / std::max(weight.sum(), tiny), 1.0);
+        m.added = m.coefficient * weight.mean();
         const bool falls = body.inverse_mass > 0;  // or it moves as it is told
         const Vec3 had = before ? before->v : Vec3(body.velocity - (falls ? dt : 0) * stage.falls);
         m.added_momentum = m.added * (had + dt * stage.falls);
@@ -198,10 +227,10 @@ private:
                       body.load.along * m.struck.velocity;
             const Vec3 drags = dt * m.rate * weight;
             const Vec3 heavy = Vec3::Constant(1 / body.inverse_mass + m.added) + drags;
-            const Vec3 gains = dt * (1 + added_mass_) * last + drags.cwiseProduct(flow);
+            const Vec3 gains = dt * (1 + m.coefficient) * last + drags.cwiseProduct(flow);
             m.v = (m.begun + m.added_momentum + gains).cwiseQuotient(heavy);
         }
-        m.reaction = dt * added_mass_ * last + m.added_momentum - m.added * m.v;
+        m.reaction = dt * m.coefficient * last + m.added_momentum - m.added * m.v;
         const Vec3 due = before ? Vec3(m.reaction + before->reaction) : m.reaction;
         // What is left of the water around a body that has come out of it is not shot about.
         const Real least = least_water * stage.density * body.volume;

@@ -27,6 +27,9 @@ struct CoveredFace : SolidFace {
     Real per_gap = 0;       ///< 1 over the distance of the pressures to both sides [1/m]
     Real weight = 1;        ///< share of the face's inertia that is below the surface [-]
     bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
+    bool conducts = false;                 ///< so a pressure's gradient pushes what is in it
+    Real mobility = 0;                     ///< of a cloud: how much faster than water a gradient moves it [-]
+    Real last_gradient = 0;                ///< of the pressure that it has felt already [m/s2]
     bool leaves = false;  ///< at a side where water leaves: only what is added to a pressure pushes there
     Real mass = 0;        ///< of its control volume, as far as walls leave it open and it is wet [kg]
     Real velocity = 0;    ///< of the water, before a pressure acts [m/s]
@@ -41,6 +44,8 @@ struct CoveredFace : SolidFace {
     bool at_surface() const noexcept { return high_wet != low_wet; }
     /// From `open`, `water` and `part`: a closed face passes no water, not even what rounding leaves of it.
     void cover() noexcept { covered = open > 0 ? part * (1 - water / open) : 0; }
+    /// Share of a gradient that moves what covers the face, where faces between two wet cells conduct it.
+    Real yields() const noexcept { return at_surface() || leaves ? 0 : mobility; }
     /// Of a pressure over density [m/s2].
     template <class Number>
     Real gradient(const Field<Number>& of) const noexcept {
@@ -171,7 +176,12 @@ public:
                       m.face[f.axis][f.face] =
                           left > least ? static_cast<float>(left * f.area / f.gap) : 0.0f;
                   },
-                  [&](CoveredFace& f) { f.water = share(f), f.cover(); });
+                  [&](CoveredFace& f) { f.water = share(f), f.cover(); },
+                  [&](const CoveredFace& f) {
+                      if (f.open > 0)
+                          m.face[f.axis][f.face] += static_cast<float>(f.share * f.mobility * f.area / f.gap);
+                  },
+                  [&](CoveredFace& f) { f.conducts = m.face[f.axis][f.face] > 0; });
         close_surface(surface);
     }
     /// After `close`: opens faces again, and lets them conduct as little as what is in them is heavy.

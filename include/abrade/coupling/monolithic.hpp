@@ -61,9 +61,9 @@ public:
     Index averaged() const noexcept { return static_cast<Index>(faces_.cloud().count()); }  ///< of the bodies
 
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
-               const FaceField<3>* open_area, Real /*density*/) {
+               const FaceField<3>* open_area, Real density) {
         stand(grid, sides, bodies, params_.resolved_from, open_area);
-        averaged_.begin(faces_.of_cloud(), faces_.cloud(), bodies_);
+        averaged_.begin(faces_.of_cloud(), faces_.cloud(), bodies_, density);
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) { faces_.close(m, surface); }
 
@@ -118,8 +118,9 @@ public:
     void correct(FaceField<3>& u, const Field<Number>& of, Real factor, int plane, bool old) const {
         faces_.on_plane(plane, [&](const CoveredFace& f) {
             // A closed face has lost none, but at the surface.
-            const bool lost = f.leaves ? !old : f.water > 0 || f.at_surface();
-            const Real back = lost ? factor * f.gradient(of) : 0;
+            const bool lost = f.leaves ? !old : f.conducts || f.at_surface();
+            const Real kept = old ? 1 : 1 - f.yields();  // the old pressure has moved a cloud already
+            const Real back = lost ? factor * kept * f.gradient(of) : 0;
             u[f.axis][f.face] += f.covered * (back + detail::along(f, motion_[f.body].push));
         });
     }
@@ -145,6 +146,7 @@ public:
         faces_.by_planes([&](const CoveredFace& f) {
             if (f.water > 0 && f.share > 0) u[f.axis][f.face] = f.velocity - stage_.dt * f.gradient(pressure);
         });
+        averaged_.yield(faces_.of_cloud(), pressure, stage_.dt);
         find_fluxes([&](const CoveredFace& f) { return f.covered * (f.solid - u[f.axis][f.face]); });
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {
             fill_inside(b, pressed.template head<3>(), pressure);
