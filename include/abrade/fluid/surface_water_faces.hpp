@@ -63,7 +63,7 @@ void SurfaceWater<Dim, Liquid>::load_carriers(FaceField<Dim>& velocity, const Fi
         }
     };
     for (int a = 0; a < Dim; ++a) {
-        const auto& riders = extension_.riders(a);
+        const auto& riders = extension_.carried(a);
         const auto of_plane = [&](Index plane) { load(a, riders[static_cast<std::size_t>(plane)]); };
         parallel_for(static_cast<Index>(riders.size()), of_plane, block_of_planes);
     }

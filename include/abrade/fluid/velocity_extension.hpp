@@ -37,10 +37,10 @@ public:
     static constexpr int wedge = 8;  ///< longest of water on a wall that has no pressure of its own [cells]
 
     VelocityExtension(const Layout<Dim>& layout, const Sides<Dim>& sides)
-        : layout_(layout), sides_(sides), rows_(layout), waiting_(static_cast<std::size_t>(layout.planes())),
-          found_riders_(waiting_.size()) {
+        : layout_(layout), sides_(sides), rows_(layout), waiting_(static_cast<std::size_t>(layout.planes())) {
         for (auto& state : state_) state = Field<std::uint8_t>(layout.total, unknown);
-        for (auto& riders : riders_) riders.resize(waiting_.size());
+        for (auto* lists : {&riders_, &carried_})
+            for (auto& of_axis : *lists) of_axis.resize(waiting_.size());
         for (auto& of_axis : means_)
             for (auto& of_layer : of_axis) of_layer.resize(waiting_.size());
     }
@@ -154,13 +154,14 @@ public:
         Real share = 0;  ///< of its liquid that this carrier bears [-]
         Real own = 0;    ///< what it moved at by itself in the last extension [m/s]
     };
-    /// By the planes of their carriers, those of a carrier one after the other.
-    const std::vector<std::vector<Rider>>& riders(int a) const noexcept { return riders_[a]; }
+    /// By the planes of their carriers, those of a carrier one after the other; `own` is not theirs.
+    const std::vector<std::vector<Rider>>& carried(int a) const noexcept { return carried_[a]; }
 
     static void fields(auto&& field) {
         field("state", &VelocityExtension::state_), field("rows", &VelocityExtension::rows_),
             field.bytes("means", &VelocityExtension::means_),
             field.bytes("riders", &VelocityExtension::riders_),
+            field.bytes("carried", &VelocityExtension::carried_),
             field.bytes("films", &VelocityExtension::films_);
     }
 
@@ -325,10 +326,10 @@ private:
         return face;
     }
 
-    /// Those of the first layer that hold liquid.
+    /// Those of the first layer that hold liquid; and again by their carriers' planes.
     void find_riders(int a, const Water& water) {
         water.rows.for_each_plane([&](int plane) {
-            std::vector<Rider>& riders = found_riders_[static_cast<std::size_t>(plane)];
+            std::vector<Rider>& riders = riders_[a][static_cast<std::size_t>(plane)];
             riders.clear();
             for (const Mean& mean : means_[a][0][static_cast<std::size_t>(plane)]) {
                 if (water.held[mean.face] + water.held[mean.face - layout_.stride[a]] < liquid_of_a_face)
@@ -337,17 +338,17 @@ private:
                 for_known_beside(mean, [&](Offset n) { riders.push_back({mean.face, inside(n), share}); });
             }
         });
-        const std::size_t planes = found_riders_.size();
+        const std::size_t planes = waiting_.size();
         by_planes([&](std::size_t plane) {
-            std::vector<Rider>& riders = riders_[a][plane];
-            riders.clear();
+            std::vector<Rider>& carried = carried_[a][plane];
+            carried.clear();
             const Offset begin = layout_.row_start(static_cast<int>(plane), 0) - Layout<Dim>::lanes;
             const std::size_t near[] = {(plane + planes - 1) % planes, plane, (plane + 1) % planes};
             for (std::size_t n = 0; n < std::min<std::size_t>(planes, 3); ++n)
-                for (const Rider& rider : found_riders_[near[n]])
+                for (const Rider& rider : riders_[a][near[n]])
                     if (rider.carrier >= begin && rider.carrier < begin + layout_.stride[Layout<Dim>::outer])
-                        riders.push_back(rider);
-            std::sort(riders.begin(), riders.end(), [](const Rider& r, const Rider& s) {
+                        carried.push_back(rider);
+            std::sort(carried.begin(), carried.end(), [](const Rider& r, const Rider& s) {
                 return std::pair(r.carrier, r.face) < std::pair(s.carrier, s.face);
             });
         });
@@ -390,10 +391,9 @@ private:
     FaceField<Dim, std::uint8_t> state_;
     WetRows<Dim> rows_;                                                   ///< looked at
     PerAxis<PerAxis<std::vector<std::vector<Mean>>, wedge>, Dim> means_;  ///< [component][layer][plane]
-    PerAxis<std::vector<std::vector<Rider>>, Dim> riders_;                ///< [component][plane]
+    PerAxis<std::vector<std::vector<Rider>>, Dim> riders_, carried_;      ///< [component][plane]
     PerAxis<std::vector<Film>, Dim> films_;
-    std::vector<std::vector<Offset>> waiting_;      ///< [plane] faces of water on walls
-    std::vector<std::vector<Rider>> found_riders_;  ///< [plane]
+    std::vector<std::vector<Offset>> waiting_;  ///< [plane] faces of water on walls
 };
 
 }  // namespace abrade
