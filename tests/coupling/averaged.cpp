@@ -118,6 +118,43 @@ TEST_CASE("beside resolved ones, which leave them no room: each has its own buoy
     }
 }
 
+TEST_CASE("a dense bed comes to rest in water, whatever the step and its bodies' density") {
+    // Balls as wide as a cell, 65 % of a box of 6 cells, each with a velocity of its own.
+    for (const Real ratio : {0.3, 1.0, 2.65, 8.0})
+        for (const Real dt : {1e-4, 1e-3, 1e-2, 1e-1}) {
+            constexpr Real h = 0.01;
+            auto params = box(6, h, Side::slip, 1e-3);
+            params.gravity.setZero();
+            Water water(params);
+            std::vector<Ball> balls;
+            constexpr int n = 6;
+            const Real apart = 6 * h / n;
+            for (int i = 0; i < n * n * n; ++i) {
+                const Vec3 place(i % n, i / n % n, i / (n * n));
+                balls.emplace_back(apart * (place + Vec3::Constant(0.5)), 0.54 * h, 1000 * ratio, i);
+                balls.back().body.velocity =
+                    1e-4 * Vec3(std::sin(7.0 * i), std::sin(11.0 * i + 1), std::sin(13.0 * i));
+            }
+            const auto energy = [&] {
+                Real sum = 0;
+                for (const Ball& ball : balls) sum += kinetic(ball.body);
+                return sum;
+            };
+            const Real begins = energy();
+            Real most = 0;
+            for (int k = 0; k < 40; ++k) {
+                step(water, balls, dt);
+                most = std::max(most, energy());
+                for (Ball& ball : balls)  // a bed, not a cloud that drifts apart
+                    ball.body.position -= dt * ball.body.velocity, ball.sphere.centre = ball.body.position;
+            }
+            CAPTURE(ratio);
+            CAPTURE(dt);
+            CHECK(most < 1.01 * begins);
+            CHECK(energy() < (dt < 1e-3 ? 1 : 0.9) * begins);
+        }
+}
+
 TEST_CASE("bodies that come one by one hold no memory of the cloud that they are in") {
     const auto params = box(16, 0.1, Side::slip, 1e-3);
     const Grid<3> grid(params.grid);
