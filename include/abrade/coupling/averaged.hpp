@@ -20,12 +20,12 @@ namespace abrade {
 /// bodies leave. The water has all of it: pressure by the cloud's shares of its faces; friction
 ///   du/dt = sum of beta / (rho V) sigma (v - u) / (1 - sum of sigma),
 /// implicit in u, with v as drag alone would leave it; added mass as the last pressure has it, what the new
-/// one changes a step later: C_m is at most twice as much of its value as there is water around the body, for
-/// what little there is between densely packed ones must not answer for all of them. These bodies are not
-/// turned. While the pressure is sought the cloud moves on with the velocity that they had before, and yields
-/// to the new pressure face by face, by (1 + C_m) / (s + C_m) of what water would, s their density over the
-/// water's: what bodies differ from that by, since their share of the pressure is a mean, they move a step
-/// later. So any ratio of densities is stable, and beds of any density are.
+/// one changes a step later. Where less than half of what is around a body is water, C_m is less: twice that
+/// share of its value, for what little water there is in a dense bed must not answer for all of it. These
+/// bodies are not turned. While the pressure is sought the cloud moves on with the velocity that they had
+/// before, and yields to the new pressure face by face, by (1 + C_m) / (s + C_m) of what water would, s their
+/// density over the water's: what bodies differ from that by, since their share of the pressure is a mean,
+/// they move a step later. So any ratio of densities is stable, and beds of any density are.
 template <DenseDragLaw Drag>
 class AveragedBodies {
 public:
@@ -37,18 +37,17 @@ public:
     void begin(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
                Real density) {
         motion_.assign(cloud.count(), {});
-        for_each_face(faces, [](CoveredFace& f) { f.mobility = 0; });
+        std::vector<Real> mobility(cloud.count(), 0);
         for (std::size_t n = 0; n < motion_.size(); ++n) {
             const FlowBody& body = bodies[cloud.which()[n]];
             const Real displaced = density * body.volume;
             motion_[n].v = body.velocity;
-            motion_[n].mobility =
-                body.inverse_mass > 0
-                    ? (1 + added_mass_) * displaced / (1 / body.inverse_mass + added_mass_ * displaced)
-                    : 0;
+            if (body.inverse_mass > 0)
+                mobility[n] =
+                    (1 + added_mass_) * displaced / (1 / body.inverse_mass + added_mass_ * displaced);
         }
         for_each_part(cloud, [&](std::size_t n, int, const SpreadPart& part) {
-            faces[part.face].mobility += part.share * motion_[n].mobility;
+            faces[part.face].mobility += part.share * mobility[n];
         });
         for_each_face(faces, [](CoveredFace& f) { f.mobility /= f.share; });
         carry(faces, cloud);
@@ -59,8 +58,9 @@ public:
     void force(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
                const Field<Real>& old, const FlowStage& stage) {
         for_each(cloud, [&](std::size_t n) { drag_alone(n, faces, cloud, bodies, old, stage); });
-        for_each_face(faces, [&](CoveredFace& f) { f.last_gradient = f.gradient(old); });
-        for_each_face(faces, [](CoveredFace& f) { f.rate = f.target = f.given = 0; });
+        for_each_face(faces, [&](CoveredFace& f) {
+            f.last_gradient = f.gradient(old), f.rate = f.target = f.given = 0;
+        });
         for_each_part(cloud, [&](std::size_t n, int axis, const SpreadPart& part) {
             CoveredFace& f = faces[part.face];
             const Real drags = motion_[n].rate * part.share * kept(f);
@@ -131,7 +131,6 @@ private:
         Vec3 reaction = Vec3::Zero();        ///< of the added mass on the water, an impulse [kg m/s]
         Vec3 pushed = Vec3::Zero();          ///< of the water by that impulse, over both their shares [m/s]
         Real rate = 0;                       ///< beta / (rho V) [1/s]
-        Real mobility = 0;                   ///< see CoveredFace [-]
         Real coefficient = 0;                ///< C_m [-]
         Real added = 0;                      ///< C_m rho V, as far as there is water [kg]
         Struck struck;                       ///< by contacts

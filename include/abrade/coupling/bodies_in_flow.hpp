@@ -272,7 +272,7 @@ protected:
     void find_fluxes(auto&& beyond) {
         flux_start_ = faces_.covered_before();
         fluxes_.resize(flux_start_.back()), beyond_.resize(fluxes_.size());
-        faces_.number_covered([&](CoveredFace& f, std::size_t i) {
+        faces_.number_covered(flux_start_, [&](CoveredFace& f, std::size_t i) {
             if (f.body < bodies_.size()) f.solid = detail::along(f, motion_[f.body].q);
             fluxes_[i] = {f.face, f.axis, f.covered * f.solid}, beyond_[i] = beyond(std::as_const(f));
         });

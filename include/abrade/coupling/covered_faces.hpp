@@ -27,8 +27,8 @@ struct CoveredFace : SolidFace {
     Real per_gap = 0;       ///< 1 over the distance of the pressures to both sides [1/m]
     Real weight = 1;        ///< share of the face's inertia that is below the surface [-]
     bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
-    bool conducts = false;                 ///< so a pressure's gradient pushes what is in it
-    Real mobility = 0;                     ///< of a cloud: how much faster than water a gradient moves it [-]
+    bool conducts = false;                 ///< whether a pressure's gradient pushes what is in it
+    Real mobility = 0;                     ///< what a gradient moves a cloud by, over water [-]
     Real last_gradient = 0;                ///< of the pressure that it has felt already [m/s2]
     bool leaves = false;  ///< at a side where water leaves: only what is added to a pressure pushes there
     Real mass = 0;        ///< of its control volume, as far as walls leave it open and it is wet [kg]
@@ -60,6 +60,7 @@ struct CoveredFace : SolidFace {
 class CoveredFaces {
 public:
     static constexpr Index planes_at_once = 4;  ///< stones lie in heaps
+
     /// Bodies as they stand; those below `resolved_from` cells to a diameter make a cloud, which is one more
     /// body behind the others. `open_area`: shares that walls leave open; none: all is. `retracted`: the
     /// surface of the others' cores [cell].
@@ -151,9 +152,9 @@ public:
             before.push_back(before.back() + plane_start_[p + 1] - plane_start_[p]);
         return before;
     }
-    /// Calls visit(face, number) for covered ones in the order of their planes, in parallel.
-    void number_covered(auto&& visit) {
-        const std::vector<std::size_t> before = covered_before();
+    /// Calls visit(face, number) for covered ones in the order of their planes, in parallel; `before`: see
+    /// `covered_before`.
+    void number_covered(const std::vector<std::size_t>& before, auto&& visit) {
         parallel_blocks(
             static_cast<Index>(before.size()) - 1,
             [&](Index, Index first, Index last) {

@@ -348,10 +348,14 @@ private:
     /// Calls use() while the velocity is what moves the water alone.
     void while_seeping(auto&& use) {
         if constexpr (Solids::present) {
+            struct Back {  // a step that goes wrong takes it back, too
+                GridFluid& flow;
+                ~Back() { flow.solids_.unseep(flow.velocity_), flow.sides_.join(flow.velocity_); }
+            };
             solids_.seep(velocity_);
+            const Back back{*this};
             sides_.enter(velocity_), sides_.join(velocity_);
             use();
-            solids_.unseep(velocity_), sides_.join(velocity_);
         } else {
             use();
         }
