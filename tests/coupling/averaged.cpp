@@ -92,8 +92,9 @@ TEST_CASE("momentum of water and small balls is kept to a hundredth of what they
             Real sum = mass * ball.velocity.x();
             water.grid().for_each(
                 [&](const auto&, Offset c) { sum += cube(0.1) * 1000 * water.velocity()[0][c]; });
-            for (const SolidFace& f : water.solids().covers()[1].faces)
-                if (f.axis == 0) sum -= 1000 * f.share * f.volume() * water.velocity()[0][f.face];
+            const FaceColumns& f = water.solids().faces();
+            for (std::size_t i = 0; i < f.count(); ++i)
+                if (f.axis[i] == 0) sum -= 1000 * f.share[i] * f.volume[i] * f.at(water.velocity(), i);
             CHECK(std::abs(sum - start) < (k < 5 ? 0.1 : 0.01) * start);
         }
         CHECK(ball.velocity.x() < 0.4);
@@ -168,10 +169,9 @@ TEST_CASE("bodies that come one by one hold no memory of the cloud that they are
         solids.place(grid, params.sides, bodies, nullptr, params.density);
     }
     REQUIRE(solids.averaged() == 10);
-    const auto of_bodies = solids.covers().first(10);
-    CHECK(solids.covers().back().faces.size() > 0);
+    CHECK(solids.faces().cloud > 0);
     CHECK(std::ranges::all_of(
-        of_bodies, [](const SolidCover& c) { return c.faces.capacity() + c.parts.capacity() == 0; }));
+        solids.covers(), [](const SolidCover& c) { return c.faces.capacity() + c.parts.capacity() == 0; }));
 }
 
 TEST_CASE("bad input is refused") {

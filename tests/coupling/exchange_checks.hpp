@@ -51,9 +51,9 @@ void check_momentum() {
             water.grid().for_each([&](const auto&, Offset c) { sum[a] += water.velocity()[a][c]; });
         sum *= 1000 * cube(0.1);
         // The water's velocity fills the whole control volume: what of it is solid is taken off.
-        for (const SolidCover& cover : water.solids().covers())
-            for (const SolidFace& f : cover.faces)
-                sum[f.axis] -= 1000 * f.share * f.volume() * water.velocity()[f.axis][f.face];
+        const FaceColumns& f = water.solids().faces();
+        for (std::size_t i = 0; i < f.count(); ++i)
+            sum[f.axis[i]] -= 1000 * f.share[i] * f.volume[i] * f.at(water.velocity(), i);
         for (const Ball& ball : balls) sum += ball.body.velocity / ball.body.inverse_mass;
         return sum;
     };

@@ -21,7 +21,7 @@ Held held(const SolidCover& cover) {
     Held sum;
     for (const SolidFace& f : cover.faces) {
         sum.volume[f.axis] += f.share * f.volume();
-        sum.moment += f.share * f.volume() * f.lever();
+        sum.moment += f.share * f.volume() * f.arm.cross(Vec3::Unit(f.axis));
         sum.low = std::min(sum.low, f.share), sum.high = std::max(sum.high, f.share);
         sum.least_friction = std::min(sum.least_friction, f.friction);
     }

@@ -17,7 +17,7 @@ struct Idle {
     std::vector<SolidPart> parts() const { return {}; }
     std::vector<SolidPart> resolved_parts() const { return {}; }
     std::span<const SolidFlux> fluxes() const { return {}; }
-    Real water_share(const OpenFace&) const { return 1; }
+    Real water_share(std::size_t) const { return 1; }
     void keep_wet(const Poisson<3>&) {}
     void slow(FaceField<3>&, const FlowStage&) {}
     void give_back(FaceField<3>&, Real) const {}

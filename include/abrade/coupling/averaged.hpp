@@ -34,8 +34,7 @@ public:
 
     /// Faces of the cloud get the velocity that its bodies have been given, and learn how a pressure is going
     /// to move them. `density`: of the water [kg/m3].
-    void begin(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
-               Real density) {
+    void begin(FaceColumns& f, const SpreadCloud& cloud, std::span<const FlowBody> bodies, Real density) {
         motion_.assign(cloud.count(), {});
         std::vector<Real> mobility(cloud.count(), 0);
         for (std::size_t n = 0; n < motion_.size(); ++n) {
@@ -46,59 +45,59 @@ public:
                 mobility[n] =
                     (1 + added_mass_) * displaced / (1 / body.inverse_mass + added_mass_ * displaced);
         }
+        std::ranges::fill(f.mobility, 0);
         for_each_part(cloud, [&](std::size_t n, int, const SpreadPart& part) {
-            faces[part.face].mobility += part.share * mobility[n];
+            f.mobility[part.face] += part.share * mobility[n];
         });
-        for_each_face(faces, [](CoveredFace& f) { f.mobility /= f.share; });
-        carry(faces, cloud);
+        for_each_face(f, [&](std::size_t i) { f.mobility[i] /= f.share[i]; });
+        carry(f, cloud);
     }
 
     /// Before the pressure is found: what friction and added mass do to faces, whose velocity and mass are
     /// known.
-    void force(std::span<CoveredFace> faces, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
+    void force(FaceColumns& f, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
                const Field<Real>& old, const FlowStage& stage) {
-        for_each(cloud, [&](std::size_t n) { drag_alone(n, faces, cloud, bodies, old, stage); });
-        for_each_face(faces, [&](CoveredFace& f) {
-            f.last_gradient = f.gradient(old), f.rate = f.target = f.given = 0;
+        for_each(cloud, [&](std::size_t n) { drag_alone(n, f, cloud, bodies, old, stage); });
+        for_each_face(f, [&](std::size_t i) {
+            f.last_gradient[i] = f.gradient(old, i), f.rate[i] = f.target[i] = f.given[i] = 0;
         });
         for_each_part(cloud, [&](std::size_t n, int axis, const SpreadPart& part) {
-            CoveredFace& f = faces[part.face];
-            const Real drags = motion_[n].rate * part.share * kept(f);
-            f.rate += drags, f.target += drags * motion_[n].v[axis];
-            if (f.mass > 0) f.given += part.share * f.water * motion_[n].pushed[axis];
+            const std::size_t i = part.face;
+            const Real drags = motion_[n].rate * part.share * kept(f.water[i]);
+            f.rate[i] += drags, f.target[i] += drags * motion_[n].v[axis];
+            if (f.mass[i] > 0) f.given[i] += part.share * f.water[i] * motion_[n].pushed[axis];
         });
-        for_each_face(faces, [&](CoveredFace& f) {
-            const Real stiff = stage.dt * f.rate / std::max(f.water, least_water);
-            f.held = stiff / (1 + stiff);
-            f.target = f.rate > 0 ? f.target / f.rate : 0;
+        for_each_face(f, [&](std::size_t i) {
+            const Real stiff = stage.dt * f.rate[i] / std::max(f.water[i], least_water);
+            f.held[i] = stiff / (1 + stiff);
+            f.target[i] = f.rate[i] > 0 ? f.target[i] / f.rate[i] : 0;
         });
         for_each(cloud, [&](std::size_t n) {
             Motion& m = motion_[n];
             for (int axis = 0; axis < 3; ++axis)
-                for (const SpreadPart& part : cloud.parts(n, axis)) {
-                    const CoveredFace& f = faces[part.face];
-                    const Real slowed = f.velocity + f.held * (f.target - f.velocity);
-                    m.by_drag[axis] += f.mass * part.share * m.rate * kept(f) * (slowed - m.v[axis]);
+                for (const auto& [i, share] : cloud.parts(n, axis)) {
+                    const Real slowed = f.velocity[i] + f.held[i] * (f.target[i] - f.velocity[i]);
+                    m.by_drag[axis] += f.mass[i] * share * m.rate * kept(f.water[i]) * (slowed - m.v[axis]);
                 }
         });
-        carry(faces, cloud);
+        carry(f, cloud);
     }
 
     /// Once the pressure is known: how the cloud has moved while it was sought.
-    void yield(std::span<CoveredFace> faces, const Field<Real>& pressure, Real dt) const {
-        for_each_face(faces, [&](CoveredFace& f) {
-            f.solid -= dt * f.yields() * (f.gradient(pressure) - f.last_gradient);
+    void yield(FaceColumns& f, const Field<Real>& pressure, Real dt) const {
+        for_each_face(f, [&](std::size_t i) {
+            f.solid[i] -= dt * f.yields(i) * (f.gradient(pressure, i) - f.last_gradient[i]);
         });
     }
 
     /// Once the pressure is known: velocities and loads of the bodies. Told ones keep their velocity, those
     /// that have left the box their load.
-    void settle(std::span<const CoveredFace> faces, const SpreadCloud& cloud, std::span<FlowBody> bodies,
+    void settle(const FaceColumns& f, const SpreadCloud& cloud, std::span<FlowBody> bodies,
                 std::span<const SolidCover> covers, const Field<Real>& pressure, const FlowStage& stage) {
         for_each(cloud, [&](std::size_t n) {
             FlowBody& body = bodies[cloud.which()[n]];
             Motion& m = motion_[n];
-            const Vec3 pressed = pressed_by(n, faces, cloud, pressure, stage.density);
+            const Vec3 pressed = pressed_by(n, f, cloud, pressure, stage.density);
             if (body.inverse_mass > 0)
                 m.v = (m.begun + m.added_momentum + stage.dt * (m.by_drag + (1 + m.coefficient) * pressed)) /
                       (1 / body.inverse_mass + m.added);
@@ -145,10 +144,9 @@ private:
             field.bytes("reaction", &Memory::reaction), field.bytes("struck", &Memory::struck);
         }
     };
-    static constexpr Real tiny = 1e-300;
     static constexpr Real least_water = 0.1;  ///< of a face: what less there is feels less [-]
 
-    static Real kept(const CoveredFace& f) noexcept { return std::min(f.water / least_water, 1.0); }
+    static Real kept(Real water) noexcept { return std::min(water / least_water, 1.0); }
 
     void for_each(const SpreadCloud& cloud, auto&& body) const {
         parallel_blocks(
@@ -158,9 +156,8 @@ private:
             },
             block_of_bodies);
     }
-    static void for_each_face(std::span<CoveredFace> faces, auto&& visit) {
-        parallel_for(static_cast<Index>(faces.size()),
-                     [&](Index i) { visit(faces[static_cast<std::size_t>(i)]); });
+    static void for_each_face(const FaceColumns& f, auto&& visit) {
+        parallel_for(static_cast<Index>(f.cloud), [&](Index i) { visit(static_cast<std::size_t>(i)); });
     }
     /// Bodies share faces, axes do not.
     static void for_each_part(const SpreadCloud& cloud, auto&& visit) {
@@ -170,42 +167,39 @@ private:
                 for (const SpreadPart& part : cloud.parts(n, axis)) visit(n, axis, part);
         });
     }
-    void carry(std::span<CoveredFace> faces, const SpreadCloud& cloud) const {
-        for_each_face(faces, [](CoveredFace& f) { f.solid = 0; });
+    void carry(FaceColumns& f, const SpreadCloud& cloud) const {
+        for_each_face(f, [&](std::size_t i) { f.solid[i] = 0; });
         for_each_part(cloud, [&](std::size_t n, int axis, const SpreadPart& part) {
-            faces[part.face].solid += part.share * motion_[n].v[axis];
+            f.solid[part.face] += part.share * motion_[n].v[axis];
         });
-        for_each_face(faces, [](CoveredFace& f) { f.solid /= f.share; });
+        for_each_face(f, [&](std::size_t i) { f.solid[i] /= f.share[i]; });
     }
-    static Vec3 pressed_by(std::size_t n, std::span<const CoveredFace> faces, const SpreadCloud& cloud,
+    static Vec3 pressed_by(std::size_t n, const FaceColumns& f, const SpreadCloud& cloud,
                            const Field<Real>& pressure, Real density) noexcept {
         Vec3 sum = Vec3::Zero();
         for (int axis = 0; axis < 3; ++axis)
-            for (const SpreadPart& part : cloud.parts(n, axis)) {
-                const CoveredFace& f = faces[part.face];
-                sum[axis] -= density * part.share * f.volume() * f.gradient(pressure);
-            }
+            for (const auto& [i, share] : cloud.parts(n, axis))
+                sum[axis] -= density * share * f.volume[i] * f.gradient(pressure, i);
         return sum;
     }
 
     /// The body's velocity with drag against the water as it is.
-    void drag_alone(std::size_t n, std::span<const CoveredFace> faces, const SpreadCloud& cloud,
+    void drag_alone(std::size_t n, const FaceColumns& f, const SpreadCloud& cloud,
                     std::span<const FlowBody> bodies, const Field<Real>& old, const FlowStage& stage) {
         const FlowBody& body = bodies[cloud.which()[n]];
         Motion& m = motion_[n];
         Vec3 weight = Vec3::Zero(), open = Vec3::Zero(), among = Vec3::Zero(), flow = Vec3::Zero();
         Real shares = 0, others = 0;
         for (int axis = 0; axis < 3; ++axis)
-            for (const SpreadPart& part : cloud.parts(n, axis)) {
-                const CoveredFace& f = faces[part.face];
-                const Real covers = f.mass * part.share;
-                weight[axis] += covers, open[axis] += covers * f.water;
-                among[axis] += covers * square(f.water), flow[axis] += covers * f.velocity;
-                if (f.open == 0) continue;
-                shares += part.share;
-                others += part.share * std::clamp(1 - (f.water + part.share) / f.open, 0.0, 1.0);
+            for (const auto& [i, share] : cloud.parts(n, axis)) {
+                const Real covers = f.mass[i] * share;
+                weight[axis] += covers, open[axis] += covers * f.water[i];
+                among[axis] += covers * square(f.water[i]), flow[axis] += covers * f.velocity[i];
+                if (f.open[i] == 0) continue;
+                shares += share;
+                others += share * std::clamp(1 - (f.water[i] + share) / f.open[i], 0.0, 1.0);
             }
-        flow = flow.cwiseQuotient(weight.cwiseMax(tiny));
+        flow = flow.cwiseQuotient(weight.cwiseMax(tiny<Real>));
         const SpreadBody spread{.diameter = body.diameter(),
                                 .reach = cloud.reach(n),
                                 .slip = (flow - body.velocity).norm(),
@@ -214,12 +208,12 @@ private:
         m.rate = weight.norm() > 0 ? spread.drag(drag_) / body.volume : 0;
         const Memory* const before = with_id(memory_, body.id);
         const Real dt = stage.dt;
-        m.coefficient = added_mass_ * std::min(2 * open.sum() / std::max(weight.sum(), tiny), 1.0);
+        m.coefficient = added_mass_ * std::min(2 * open.sum() / std::max(weight.sum(), tiny<Real>), 1.0);
         m.added = m.coefficient * weight.mean();
         const bool falls = body.inverse_mass > 0;  // or it moves as it is told
         const Vec3 had = before ? before->v : Vec3(body.velocity - (falls ? dt : 0) * stage.falls);
         m.added_momentum = m.added * (had + dt * stage.falls);
-        const Vec3 last = before ? before->pressed : pressed_by(n, faces, cloud, old, stage.density);
+        const Vec3 last = before ? before->pressed : pressed_by(n, f, cloud, old, stage.density);
         if (falls) {
             if (before) m.struck = {body, before->v, before->struck, stage.falls, dt};
             m.begun = body.velocity / body.inverse_mass - dt * (body.load.force + body.load.shared) +

@@ -22,13 +22,20 @@ namespace abrade {
 class BodiesInFlow {
 public:
     std::span<const FlowBody> bodies() const noexcept { return bodies_; }
-    std::span<const SolidCover> covers() const noexcept {
-        return faces_.covers();
-    }                                                   ///< [body], of their cloud
+    std::span<const SolidCover> covers() const noexcept { return faces_.covers(); }  ///< [body]
+    const FaceColumns& faces() const noexcept { return faces_.columns(); }
     Real fastest() const noexcept { return fastest_; }  ///< of the bodies [m/s]
 
-    std::vector<SolidPart> parts() const { return faces_.parts(true); }
-    std::vector<SolidPart> resolved_parts() const { return faces_.parts(false); }
+    std::vector<SolidPart> parts() const {
+        std::vector<SolidPart> parts = faces_.parts_of_cloud();
+        faces_.add_parts_of_bodies(parts);
+        return parts;
+    }
+    std::vector<SolidPart> resolved_parts() const {
+        std::vector<SolidPart> parts;
+        faces_.add_parts_of_bodies(parts);
+        return parts;
+    }
     std::span<const SolidFlux> fluxes() const noexcept { return fluxes_; }
     void mix_last(FaceField<3>& u) const {
         for_fluxes([&](std::size_t i) { at(u, i) += beyond_[i]; });
@@ -41,55 +48,57 @@ public:
     void unseep(FaceField<3>& u) const {
         for_fluxes([&](std::size_t i) { at(u, i) = unseeped_[i]; });
     }
-    Real water_share(const OpenFace& open) const noexcept { return faces_.water_share(open); }
+    Real water_share(std::size_t n) const noexcept { return faces_.water_share(n); }
     void keep_wet(const Poisson<3>& m) { faces_.keep_wet(m); }
     void mix(FaceField<3>& u) {
-        const auto at = [&](const CoveredFace& f) -> Real& { return u[f.axis][f.face]; };
-        faces_.covered_by_planes([&](CoveredFace& f) { f.unmixed = at(f); },
-                                 [&](const CoveredFace& f) { at(f) += f.covered * (f.solid - at(f)); });
+        FaceColumns& f = faces_.columns();
+        faces_.covered_by_planes(
+            [&](std::size_t i) { f.unmixed[i] = f.at(u, i); },
+            [&](std::size_t i) { f.at(u, i) += f.covered[i] * (f.solid[i] - f.at(u, i)); });
     }
     void unmix(FaceField<3>& u) const {
-        faces_.covered_by_planes([&](const CoveredFace& f) { u[f.axis][f.face] = f.unmixed; });
+        const FaceColumns& f = faces();
+        faces_.covered_by_planes([&](std::size_t i) { f.at(u, i) = f.unmixed[i]; });
     }
 
     std::vector<SolidVolume> volumes(bool only_new) const {
+        const FaceColumns& f = faces();
         std::vector<SolidVolume> found;
-        const auto add = [&](const CoveredFace& f, Real share) {
-            if (f.mass > 0) found.push_back({f.face, f.axis, f.mass * share / stage_.density});
+        const auto add = [&](std::size_t i, Real share) {
+            if (f.mass[i] > 0) found.push_back({f.face[i], f.axis[i], f.mass[i] * share / stage_.density});
         };
-        for (const CoveredFace& f : faces_.all())
-            if (!only_new || (f.body < bodies_.size() && is_new(f.body))) add(f, f.share);
+        for (std::size_t i = 0; i < f.count(); ++i)
+            if (!only_new || (i >= f.cloud && is_new(f.body[i]))) add(i, f.share[i]);
         const SpreadCloud& cloud = faces_.cloud();
         for (std::size_t n = 0; only_new && n < cloud.count(); ++n)
             for (int a = 0; a < 3 && is_new(cloud.which()[n]); ++a)
-                for (const SpreadPart& part : cloud.parts(n, a))
-                    add(faces_.of_cloud()[part.face], part.share);
+                for (const SpreadPart& part : cloud.parts(n, a)) add(part.face, part.share);
         return found;
     }
     /// Bodies that are below the surface as a whole have their own place, others that of their cells.
     Vec3 moment(const Grid<3>& grid, const Field<Real>* fraction, bool only_new) const {
         Vec3 sum = Vec3::Zero();
         const auto below = [&](Offset cell) { return fraction ? (*fraction)[cell] : 1; };
-        for (std::size_t b = 0; b < covers().size(); ++b) {
-            const SolidCover& cover = covers()[b];
-            const bool of_cloud = b == bodies_.size();
-            if (only_new && (of_cloud || !is_new(b))) continue;
-            if (!of_cloud && cover.averaged) continue;
-            const auto drowned = [&](const SolidPart& p) { return below(p.cell) == 1; };
-            if (!of_cloud && !cover.cut && std::ranges::all_of(cover.parts, drowned)) {
-                sum += bodies_[b].volume * bodies_[b].position;
-                continue;
-            }
-            for (const SolidPart& p : cover.parts)
+        const auto add = [&](std::span<const SolidPart> parts) {
+            for (const SolidPart& p : parts)
                 sum += below(p.cell) * p.volume * grid.centre(grid.layout().number(p.cell));
+        };
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            const SolidCover& cover = covers()[b];
+            if (cover.averaged || (only_new && !is_new(b))) continue;
+            const auto drowned = [&](const SolidPart& p) { return below(p.cell) == 1; };
+            if (!cover.cut && std::ranges::all_of(cover.parts, drowned))
+                sum += bodies_[b].volume * bodies_[b].position;
+            else
+                add(cover.parts);
         }
+        if (!only_new) add(faces_.parts_of_cloud());
         const SpreadCloud& cloud = faces_.cloud();
         for (std::size_t n = 0; only_new && n < cloud.count(); ++n) {
             const std::size_t b = cloud.which()[n];
             for (int a = 0; a < 3 && is_new(b); ++a)
                 for (const SpreadPart& part : cloud.parts(n, a))
-                    sum += faces_.of_cloud()[part.face].mass * part.share / (3 * stage_.density) *
-                           bodies_[b].position;
+                    sum += faces().mass[part.face] * part.share / (3 * stage_.density) * bodies_[b].position;
         }
         return sum;
     }
@@ -141,7 +150,8 @@ protected:
         faces_.place(grid, sides, bodies, resolved_from, open_area, retracted);
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
             if (faces_.cover(b).cut) bodies_[b].inverse_mass = 0, bodies_[b].inverse_inertia.setZero();
-            for (CoveredFace& f : faces_.of(b)) f.solid = detail::along(f, detail::velocity_of(bodies_[b]));
+            FaceColumns& f = faces_.columns();
+            for (const std::size_t i : faces_.of(b)) f.solid[i] = f.along(i, detail::velocity_of(bodies_[b]));
         }
     }
 
@@ -158,9 +168,10 @@ protected:
     /// The water's velocity and mass at all faces, once the old pressure has acted.
     void look_at(const FaceField<3>& u, const Field<Real>& old, const FlowStage& stage) {
         stage_ = stage;
-        faces_.for_each([&](CoveredFace& f) {
-            f.velocity = u[f.axis][f.face] - (stage_.pushed ? 0 : stage_.dt * f.gradient(old));
-            f.mass = mass_of(f);
+        FaceColumns& f = faces_.columns();
+        faces_.for_each([&](std::size_t i) {
+            f.velocity[i] = f.at(u, i) - (stage_.pushed ? 0 : stage_.dt * f.gradient(old, i));
+            f.mass[i] = mass_of(i);
         });
     }
 
@@ -174,26 +185,27 @@ protected:
         Matrix6 drag = Matrix6::Zero();  // impulse on the body = brought - drag q
         Six brought = Six::Zero(), within = Six::Zero();
         Vec3 flow = Vec3::Zero(), weight = Vec3::Zero();  // of the water in its place
-        for (CoveredFace& f : faces_.of(b)) {
-            f.held = held_of(std::as_const(f));
-            const Real held = f.mass * f.water * f.held, covers = f.mass * f.share;
-            const Six c = detail::coefficient(f);
+        FaceColumns& f = faces_.columns();
+        for (const std::size_t i : faces_.of(b)) {
+            f.held[i] = held_of(i);
+            const Real held = f.mass[i] * f.water[i] * f.held[i], covers = f.mass[i] * f.share[i];
+            const Six c = f.coefficient(i);
             drag += held * c * c.transpose();
-            brought += held * f.velocity * c;
+            brought += held * f.velocity[i] * c;
             motion.covers += covers / 3;
-            flow[f.axis] += covers * f.velocity, weight[f.axis] += covers;
-            if (before) within += covers * (unpushed(f, old) - detail::along(f, before->q)) * c;
+            flow[f.axis[i]] += covers * f.velocity[i], weight[f.axis[i]] += covers;
+            if (before) within += covers * (unpushed(i, old) - f.along(i, before->q)) * c;
         }
         if (before && before->covers > 0) {
             // What has left through the surface has taken its part along; what has come meets the body as it
             // will be, not as it was: it may be heavier than the body.
             const Real kept = std::min(1.0, before->covers / motion.covers);
             brought += kept * within - std::min(1.0, motion.covers / before->covers) * before->slip;
-            for (const CoveredFace& f : faces_.of(b)) {
+            for (const std::size_t i : faces_.of(b)) {
                 if (kept == 1) break;
-                const Six c = detail::coefficient(f);
-                const Real comes = (1 - kept) * f.mass * f.share;
-                brought += comes * unpushed(f, old) * c, drag += comes * c * c.transpose();
+                const Six c = f.coefficient(i);
+                const Real comes = (1 - kept) * f.mass[i] * f.share[i];
+                brought += comes * unpushed(i, old) * c, drag += comes * c * c.transpose();
             }
         }
         motion.held = motion.q = detail::velocity_of(body);
@@ -226,8 +238,9 @@ protected:
     }
 
     /// The water's velocity by all but pressure and weight.
-    Real unpushed(const CoveredFace& f, const Field<Real>& old) const noexcept {
-        return f.velocity + stage_.dt * (f.gradient(old) - f.weight * stage_.falls[f.axis]);
+    Real unpushed(std::size_t i, const Field<Real>& old) const noexcept {
+        const FaceColumns& f = faces();
+        return f.velocity[i] + stage_.dt * (f.gradient(old, i) - f.weight[i] * stage_.falls[f.axis[i]]);
     }
 
     /// Once velocities are known: `q` and `load` of resolved bodies are handed out, and what the next step
@@ -259,10 +272,8 @@ protected:
 
     /// Sums up what friction takes at each face [J].
     void find_loss(auto&& of_face) {
-        const std::span<CoveredFace> all = faces_.all();
-        lost_to_friction_ = parallel_sum<Real>(static_cast<Index>(all.size()), [&](Index i) {
-            return of_face(std::as_const(all[static_cast<std::size_t>(i)]));
-        });
+        lost_to_friction_ = parallel_sum<Real>(static_cast<Index>(faces().count()),
+                                               [&](Index i) { return of_face(static_cast<std::size_t>(i)); });
     }
     void finish() {
         fastest_ = 0;
@@ -272,9 +283,10 @@ protected:
     void find_fluxes(auto&& beyond) {
         flux_start_ = faces_.covered_before();
         fluxes_.resize(flux_start_.back()), beyond_.resize(fluxes_.size());
-        faces_.number_covered(flux_start_, [&](CoveredFace& f, std::size_t i) {
-            if (f.body < bodies_.size()) f.solid = detail::along(f, motion_[f.body].q);
-            fluxes_[i] = {f.face, f.axis, f.covered * f.solid}, beyond_[i] = beyond(std::as_const(f));
+        FaceColumns& f = faces_.columns();
+        faces_.number_covered(flux_start_, [&](std::size_t i, std::size_t n) {
+            if (i >= f.cloud) f.solid[i] = f.along(i, motion_[f.body[i]].q);
+            fluxes_[n] = {f.face[i], f.axis[i], f.covered[i] * f.solid[i]}, beyond_[n] = beyond(i);
         });
     }
 
@@ -303,17 +315,18 @@ private:
 
     bool is_new(std::size_t b) const noexcept { return !std::ranges::binary_search(seen_, bodies_[b].id); }
     /// Of the control volume of a face, as far as walls leave it open and it lies below the surface [kg].
-    Real mass_of(const CoveredFace& f) const noexcept {
-        if (f.open == 0) return 0;
-        const Real all = stage_.density * f.volume();
+    Real mass_of(std::size_t i) const noexcept {
+        const FaceColumns& f = faces();
+        if (f.open[i] == 0) return 0;
+        const Real all = stage_.density * f.volume[i];
         if (!stage_.held) return all;
-        return all * std::min(0.5 * ((*stage_.held)[f.face] + (*stage_.held)[f.low]) / f.open, 1.0);
+        return all * std::min(0.5 * ((*stage_.held)[f.face[i]] + (*stage_.held)[f.low[i]]) / f.open[i], 1.0);
     }
-    Six slip_of(std::size_t b, const FaceField<3>& u) noexcept {
+    Six slip_of(std::size_t b, const FaceField<3>& u) const noexcept {
+        const FaceColumns& f = faces();
         Six sum = Six::Zero();
-        for (const CoveredFace& f : faces_.of(b))
-            sum += f.mass * f.share * (u[f.axis][f.face] - detail::along(f, motion_[b].q)) *
-                   detail::coefficient(f);
+        for (const std::size_t i : faces_.of(b))
+            sum += f.mass[i] * f.share[i] * (f.at(u, i) - f.along(i, motion_[b].q)) * f.coefficient(i);
         return sum;
     }
 

@@ -2,61 +2,23 @@
 // All faces of a grid that bodies cover some of, and what is left of them to the water.
 
 #include <abrade/core/parallel.hpp>
+#include <abrade/coupling/face_columns.hpp>
+#include <abrade/coupling/solid_shares.hpp>
 #include <abrade/coupling/spread_cloud.hpp>
 
 #include <algorithm>
 #include <numeric>
+#include <ranges>
 #include <span>
 #include <type_traits>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace abrade {
 
-/// A face and one of the bodies that cover it.
-struct CoveredFace : SolidFace {
-    std::size_t body = 0;
-    Real open = 0;          ///< share of the face that walls leave open; 0: no water passes [-]
-    Real water = 0;         ///< share that bodies leave to the water, too [-]
-    Real covered = 0;       ///< by the one body, of what is open; with all of them just what is no water [-]
-    Real part = 0;          ///< of the one body in what all cover [-]
-    Real all_friction = 0;  ///< of all bodies here [1/m2]
-    Real lighter = 1;       ///< the water's density over the face's, where `weigh` asks for it [-]
-    Real heavier = 0;       ///< what the body adds to the face's density, over this [-]
-    Real per_gap = 0;       ///< 1 over the distance of the pressures to both sides [1/m]
-    Real weight = 1;        ///< share of the face's inertia that is below the surface [-]
-    bool high_wet = true, low_wet = true;  ///< cells to both sides: dry ones have no pressure
-    bool conducts = false;                 ///< whether a pressure's gradient pushes what is in it
-    Real mobility = 0;                     ///< what a gradient moves a cloud by, over water [-]
-    Real last_gradient = 0;                ///< of the pressure that it has felt already [m/s2]
-    bool leaves = false;  ///< at a side where water leaves: only what is added to a pressure pushes there
-    Real mass = 0;        ///< of its control volume, as far as walls leave it open and it is wet [kg]
-    Real velocity = 0;    ///< of the water, before a pressure acts [m/s]
-    Real solid = 0;       ///< velocity of what covers it [m/s]
-    Real held = 0;        ///< share of the way to `target` [m/s] that friction takes the water [-]
-    Real target = 0;
-    Real taken = 0;    ///< by friction in the first stage [m/s]
-    Real given = 0;    ///< to the water beside friction [m/s]
-    Real rate = 0;     ///< of friction [1/s]
-    Real unmixed = 0;  ///< velocity before `mix` [m/s]
-
-    bool at_surface() const noexcept { return high_wet != low_wet; }
-    /// From `open`, `water` and `part`: a closed face passes no water, not even what rounding leaves of it.
-    void cover() noexcept { covered = open > 0 ? part * (1 - water / open) : 0; }
-    /// Share of a gradient that moves what covers the face, where faces between two wet cells conduct it.
-    Real yields() const noexcept { return at_surface() || leaves ? 0 : mobility; }
-    /// Of a pressure over density [m/s2].
-    template <class Number>
-    Real gradient(const Field<Number>& of) const noexcept {
-        const auto above = high_wet ? static_cast<Real>(of[face]) : 0;
-        const auto below = low_wet ? static_cast<Real>(of[low]) : 0;
-        return (above - below) * per_gap;
-    }
-};
-
-/// Of all bodies, body by body along the channel, and in the order of their planes; what walls and the
-/// surface leave of them.
+/// Rows of FaceColumns: those of the cloud, then body by body along the channel, and all of them in the
+/// order of their planes; what walls and the surface leave of their faces. What visits them gets their
+/// numbers.
 class CoveredFaces {
 public:
     static constexpr Index planes_at_once = 4;  ///< stones lie in heaps
@@ -66,17 +28,15 @@ public:
     /// surface of the others' cores [cell].
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                Real resolved_from, const FaceField<3>* open_area, Real retracted) {
-        SolidCover cloud;  // the last one, large: as a body's it would keep its memory
-        if (!covers_.empty()) cloud = std::move(covers_.back()), covers_.pop_back();
+        const detail::GridNumbers numbers{grid, sides};
         covers_.resize(bodies.size());
-        covers_.push_back(std::move(cloud));
         // Along the channel: what stands side by side in it does so in memory.
         std::vector<std::size_t> order(bodies.size()), small;
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::ranges::stable_sort(order, {}, [&](std::size_t b) { return bodies[b].position[outer]; });
         for (const std::size_t b : order) {
-            const Real width = detail::GridNumbers{grid, sides}.cell_width(bodies[b].position);
-            covers_[b].averaged = bodies[b].diameter() < resolved_from * width;
+            covers_[b].averaged =
+                bodies[b].diameter() < resolved_from * numbers.cell_width(bodies[b].position);
             if (covers_[b].averaged) small.push_back(b);
         }
         const auto closed = [open_area](int axis, Offset face) {
@@ -85,23 +45,24 @@ public:
         parallel_blocks(
             static_cast<Index>(bodies.size()),
             [&](Index, Index first, Index last) {
-                detail::SolidCoverFinder finder(detail::GridNumbers{grid, sides}, closed, retracted);
+                detail::SolidCoverFinder finder(numbers, closed, retracted);
                 for (Index b = first; b < last; ++b)
                     if (!covers_[at(b)].averaged) finder.find(bodies[at(b)], covers_[at(b)]);
             },
             block_of_bodies);
         spread(grid, sides, bodies, std::move(small), open_area);
-        order.push_back(bodies.size());
-        first_.resize(order.size());
-        std::size_t all = 0;
+        first_.resize(bodies.size());
+        std::size_t all = cloud_.faces();
         for (const std::size_t b : order) first_[b] = std::exchange(all, all + covers_[b].faces.size());
-        faces_.resize(all);
+        columns_.resize(all, cloud_.faces());
+        parallel_for(static_cast<Index>(cloud_.faces()),
+                     [&](Index i) { columns_.place(at(i), cloud_.face(numbers, at(i)), bodies.size()); });
         parallel_blocks(
             static_cast<Index>(covers_.size()),
             [&](Index, Index first, Index last) {
                 for (std::size_t b = at(first); b < at(last); ++b) {
                     std::size_t i = first_[b];
-                    for (const SolidFace& f : covers_[b].faces) (faces_[i++] = {f}).body = b;
+                    for (const SolidFace& f : covers_[b].faces) columns_.place(i++, f, b);
                 }
             },
             block_of_bodies);
@@ -109,41 +70,43 @@ public:
         share_out(grid.layout(), open_area);
     }
 
-    std::span<CoveredFace> all() noexcept { return faces_; }
-    std::span<const CoveredFace> all() const noexcept { return faces_; }
-    std::span<CoveredFace> of(std::size_t body) noexcept {
-        return std::span(faces_).subspan(first_[body], covers_[body].faces.size());
+    FaceColumns& columns() noexcept { return columns_; }
+    const FaceColumns& columns() const noexcept { return columns_; }
+    /// Rows of a body.
+    auto of(std::size_t body) const noexcept {
+        return std::views::iota(first_[body], first_[body] + covers_[body].faces.size());
     }
     const SpreadCloud& cloud() const noexcept { return cloud_; }
-    std::span<const CoveredFace> of_cloud() const noexcept {
-        return std::span(faces_).subspan(first_.back());
-    }
-    std::span<CoveredFace> of_cloud() noexcept { return of(covers_.size() - 1); }
     const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }
     std::span<const SolidCover> covers() const noexcept { return covers_; }
-    /// Volume in cells, of all bodies or without their cloud.
-    std::vector<SolidPart> parts(bool with_cloud) const {
-        std::vector<SolidPart> parts;
-        for (const SolidCover& cover : covers_)
-            if (with_cloud || &cover != &covers_.back())
-                parts.insert(parts.end(), cover.parts.begin(), cover.parts.end());
+    /// Volume in cells.
+    std::vector<SolidPart> parts_of_cloud() const {
+        const FaceColumns& f = columns_;
+        std::vector<SolidPart> parts(2 * f.cloud);
+        parallel_for(static_cast<Index>(f.cloud), [&](Index n) {
+            const std::size_t i = at(n);
+            const Real half = f.share[i] * f.volume[i] / 6;  // of each axis' a third
+            parts[2 * i] = {f.face[i], half}, parts[2 * i + 1] = {f.low[i], half};
+        });
         return parts;
     }
-    /// In parallel.
-    void for_each(auto&& visit) {
-        parallel_for(static_cast<Index>(faces_.size()), [&](Index i) { visit(faces_[at(i)]); });
+    void add_parts_of_bodies(std::vector<SolidPart>& parts) const {
+        for (const SolidCover& cover : covers_)
+            parts.insert(parts.end(), cover.parts.begin(), cover.parts.end());
+    }
+    /// All, in parallel.
+    void for_each(auto&& visit) const {
+        parallel_for(static_cast<Index>(columns_.count()), [&](Index i) { visit(at(i)); });
     }
     /// Those of which bodies cover some, in an order that does not depend on threads: bodies may share a
     /// face.
     void on_plane(int plane, auto&& visit) const {
-        if (!by_plane_.empty()) visit_range(*this, at(2 * plane), at(2 * plane + 1), visit);
+        if (!by_plane_.empty()) visit_range(at(2 * plane), at(2 * plane + 1), visit);
     }
     /// Plane by plane in parallel, each of the visits to all faces of a plane before the next.
-    void by_planes(auto&&... visits) { visit_planes(*this, 2, visits...); }
-    void by_planes(auto&&... visits) const { visit_planes(*this, 2, visits...); }
+    void by_planes(auto&&... visits) const { visit_planes(2, visits...); }
     /// Without those of which bodies cover nothing.
-    void covered_by_planes(auto&&... visits) { visit_planes(*this, 1, visits...); }
-    void covered_by_planes(auto&&... visits) const { visit_planes(*this, 1, visits...); }
+    void covered_by_planes(auto&&... visits) const { visit_planes(1, visits...); }
 
     /// [plane] How many faces are covered in those before it.
     std::vector<std::size_t> covered_before() const {
@@ -152,71 +115,71 @@ public:
             before.push_back(before.back() + plane_start_[p + 1] - plane_start_[p]);
         return before;
     }
-    /// Calls visit(face, number) for covered ones in the order of their planes, in parallel; `before`: see
+    /// Calls visit(row, number) for covered ones in the order of their planes, in parallel; `before`: see
     /// `covered_before`.
-    void number_covered(const std::vector<std::size_t>& before, auto&& visit) {
+    void number_covered(const std::vector<std::size_t>& before, auto&& visit) const {
         parallel_blocks(
             static_cast<Index>(before.size()) - 1,
             [&](Index, Index first, Index last) {
                 for (std::size_t plane = at(first); plane < at(last); ++plane)
                     for (std::size_t i = before[plane]; i < before[plane + 1]; ++i)
-                        visit(faces_[by_plane_[plane_start_[2 * plane] + i - before[plane]]], i);
+                        visit(row(plane_start_[2 * plane] + i - before[plane]), i);
             },
             planes_at_once);
     }
 
     /// Takes from what faces conduct what bodies cover. `surface`: faces at which the pressure is 0.
     void close(Poisson<3>& m, std::span<const OpenFace> surface) {
-        const auto share = [&](const SolidFace& f) {
-            return static_cast<Real>(m.face[f.axis][f.face]) * f.gap / f.area;
-        };
-        by_planes([&](CoveredFace& f) { f.open = share(f), f.per_gap = 1 / f.gap; },
-                  [&](const CoveredFace& f) {
-                      if (f.share == 0) return;
-                      const Real left = share(f) - f.share;
-                      m.face[f.axis][f.face] =
-                          left > least ? static_cast<float>(left * f.area / f.gap) : 0.0f;
+        FaceColumns& f = columns_;
+        const auto conducts = [&](std::size_t i) -> float& { return f.at(m.face, i); };
+        const auto unit = [&](std::size_t i) { return f.volume[i] / square(f.gap[i]); };
+        const auto share = [&](std::size_t i) { return static_cast<Real>(conducts(i)) / unit(i); };
+        by_planes([&](std::size_t i) { f.open[i] = share(i), f.be_amid(i); },
+                  [&](std::size_t i) {
+                      if (f.share[i] == 0) return;
+                      const Real left = share(i) - f.share[i];
+                      conducts(i) = left > least ? static_cast<float>(left * unit(i)) : 0.0f;
                   },
-                  [&](CoveredFace& f) { f.water = share(f), f.cover(); },
-                  [&](const CoveredFace& f) {
-                      if (f.open > 0)
-                          m.face[f.axis][f.face] += static_cast<float>(f.share * f.mobility * f.area / f.gap);
+                  [&](std::size_t i) { f.water[i] = share(i), f.cover(i); },
+                  [&](std::size_t i) {
+                      if (i < f.cloud && f.open[i] > 0)
+                          conducts(i) += static_cast<float>(f.share[i] * f.mobility[i] * unit(i));
                   },
-                  [&](CoveredFace& f) { f.conducts = m.face[f.axis][f.face] > 0; });
+                  [&](std::size_t i) { f.conducts[i] = conducts(i) > 0; });
         close_surface(surface);
     }
     /// After `close`: opens faces again, and lets them conduct as little as what is in them is heavy.
     /// `ratio(body)`: its density over the water's.
     void weigh(Poisson<3>& m, auto&& ratio) {
-        const auto density = [&](const CoveredFace& f) -> float& { return m.face[f.axis][f.face]; };
-        const auto add = [&](const CoveredFace& f, auto& to) {
-            to += static_cast<std::remove_reference_t<decltype(to)>>(f.covered * (ratio(f.body) - 1));
-        };
-        const auto find = [&](CoveredFace& f, Real all) {
-            f.lighter = 1 / all, f.heavier = f.covered * (ratio(f.body) - 1) / all;
-        };
-        const auto wet = [](auto visit) {
-            return [visit](auto& f) {
-                if (f.open > 0 && !f.at_surface()) visit(f);
+        FaceColumns& f = columns_;
+        const auto density = [&](std::size_t i) -> float& { return f.at(m.face, i); };
+        const auto beyond = [&](std::size_t i) { return f.covered[i] * (ratio(f.body[i]) - 1); };
+        const auto wet = [&](auto visit) {
+            return [&f, visit](std::size_t i) {
+                if (f.open[i] > 0 && !f.at_surface(i)) visit(i);
             };
         };
-        by_planes(wet([&](const CoveredFace& f) { density(f) = 1; }),
-                  wet([&](const CoveredFace& f) { add(f, density(f)); }),
-                  wet([&](CoveredFace& f) { find(f, density(f)); }), wet([&](const CoveredFace& f) {
-                      density(f) = static_cast<float>(f.open * f.lighter * f.area / f.gap);
-                  }));
-        for (auto& [face, share] : surface_) share = 1;
-        for (const CoveredFace& f : faces_)
-            if (f.open > 0 && f.at_surface()) add(f, surface_[key(f.axis, f.face)]);
-        for (CoveredFace& f : faces_)
-            if (f.open > 0 && f.at_surface()) find(f, surface_[key(f.axis, f.face)]);
-        for (auto& [face, share] : surface_) share = 1 / share;
+        const auto at_surface = [&](auto visit) {
+            return [&f, visit](std::size_t i) {
+                if (f.open[i] > 0 && f.at_surface(i)) visit(i, f.surface[i]);
+            };
+        };
+        const auto find = [&](std::size_t i, Real all) {
+            f.lighter[i] = 1 / all, f.heavier[i] = beyond(i) / all;
+        };
+        std::ranges::fill(surface_, 1);
+        by_planes([&](std::size_t i) { f.heavier[i] = 0; }, wet([&](std::size_t i) { density(i) = 1; }),
+                  wet([&](std::size_t i) { density(i) += static_cast<float>(beyond(i)); }),
+                  wet([&](std::size_t i) { find(i, density(i)); }), wet([&](std::size_t i) {
+                      const Real unit = f.volume[i] / square(f.gap[i]);
+                      density(i) = static_cast<float>(f.open[i] * f.lighter[i] * unit);
+                  }),
+                  at_surface([&](std::size_t i, std::size_t n) { surface_[n] += beyond(i); }),
+                  at_surface([&](std::size_t i, std::size_t n) { find(i, surface_[n]); }));
+        for (Real& share : surface_) share = 1 / share;
     }
-    /// What a face at the surface conducts, over what it would without bodies [-].
-    Real water_share(const OpenFace& open) const noexcept {
-        const auto found = surface_.find(key(open.axis, open.face));
-        return found == surface_.end() ? 1 : found->second;
-    }
+    /// What the n-th of the faces at the surface conducts, over what it would without bodies [-].
+    Real water_share(std::size_t n) const noexcept { return surface_[n]; }
     /// Only cells that take part have a pressure.
     void keep_wet(const Poisson<3>& m) {
         for (SolidCover& cover : covers_)
@@ -242,7 +205,7 @@ private:
         const auto open = [&](int axis, Offset face) {
             return std::max((open_area ? (*open_area)[axis][face] : 1) - sums_[axis][face], Real(0));
         };
-        cloud_.place(grid, sides, bodies, std::move(small), open, covers_.back());
+        cloud_.place(grid, sides, bodies, std::move(small), open);
         for (std::size_t b = 0; b < bodies.size() && some; ++b)
             for (const SolidFace& f : covers_[b].faces) sums_[f.axis][f.face] = 0;
     }
@@ -251,19 +214,18 @@ private:
     static constexpr Real least = 1e-6;  ///< of a face: less conducts nothing
 
     static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
-    static Offset key(int axis, Offset face) noexcept { return 4 * face + axis; }
 
-    static void visit_range(auto& self, std::size_t first, std::size_t last, auto& visit) {
-        for (std::size_t i = self.plane_start_[first]; i < self.plane_start_[last]; ++i)
-            visit(self.faces_[self.by_plane_[i]]);
+    std::size_t row(std::size_t in_order) const noexcept { return by_plane_[in_order]; }
+    void visit_range(std::size_t first, std::size_t last, auto& visit) const {
+        for (std::size_t n = plane_start_[first]; n < plane_start_[last]; ++n) visit(row(n));
     }
     /// Of each plane the first, or both its parts.
-    static void visit_planes(auto& self, Index parts, auto&... visits) {
+    void visit_planes(Index parts, auto&... visits) const {
         parallel_blocks(
-            static_cast<Index>(self.plane_start_.size()) / 2,
+            static_cast<Index>(plane_start_.size()) / 2,
             [&](Index, Index first, Index last) {
                 for (Index plane = first; plane < last; ++plane)
-                    (visit_range(self, at(2 * plane), at(2 * plane + parts), visits), ...);
+                    (visit_range(at(2 * plane), at(2 * plane + parts), visits), ...);
             },
             planes_at_once);
     }
@@ -275,62 +237,68 @@ private:
     /// What walls and all bodies leave of faces, until `close` knows which of these have a pressure; and all
     /// friction, even of one body: it may be near itself, across a periodic side.
     void share_out(const Layout<3>& layout, const FaceField<3>* open_area) {
-        if (faces_.empty()) return;
+        FaceColumns& f = columns_;
+        if (f.count() == 0) return;
         make_sums(layout);
-        const auto sum = [&](const CoveredFace& f) -> Real& { return sums_[f.axis][f.face]; };
-        by_planes(
-            [&](const CoveredFace& f) { sum(f) += f.share; },
-            [&](CoveredFace& f) {
-                f.open = open_area ? (*open_area)[f.axis][f.face] : 1;
-                f.water = std::max(f.open - sum(f), 0.0);
-                f.part = sum(f) > 0 ? f.share / sum(f) : 0, f.cover();
-            },
-            [&](const CoveredFace& f) { sum(f) = 0; }, [&](const CoveredFace& f) { sum(f) += f.friction; },
-            [&](CoveredFace& f) { f.all_friction = sum(f); }, [&](const CoveredFace& f) { sum(f) = 0; });
+        const auto sum = [&](std::size_t i) -> Real& { return f.at(sums_, i); };
+        by_planes([&](std::size_t i) { sum(i) += f.share[i]; },
+                  [&](std::size_t i) {
+                      f.open[i] = open_area ? f.at(*open_area, i) : 1;
+                      f.water[i] = std::max(f.open[i] - sum(i), 0.0);
+                      f.part[i] = sum(i) > 0 ? f.share[i] / sum(i) : 0, f.cover(i);
+                  },
+                  [&](std::size_t i) { sum(i) = 0; }, [&](std::size_t i) { sum(i) += f.friction[i]; },
+                  [&](std::size_t i) { f.all_friction[i] = sum(i); }, [&](std::size_t i) { sum(i) = 0; });
     }
 
     /// In each plane those come first of which bodies cover some.
     void sort_by_plane(int planes) {
-        const auto part = [](const SolidFace& f) { return at(2 * f.plane + (f.share == 0)); };
+        const FaceColumns& f = columns_;
+        const auto part = [&](std::size_t i) { return at(2 * f.plane[i] + (f.share[i] == 0)); };
         plane_start_.assign(at(2 * planes) + 1, 0);
-        for (const SolidFace& f : faces_) ++plane_start_[part(f) + 1];
-        for (std::size_t p = 1; p < plane_start_.size(); ++p) plane_start_[p] += plane_start_[p - 1];
-        by_plane_.resize(faces_.size());
+        for (std::size_t i = 0; i < f.count(); ++i) ++plane_start_[part(i) + 1];
+        std::partial_sum(plane_start_.begin(), plane_start_.end(), plane_start_.begin());
+        by_plane_.resize(f.count());
         std::vector<std::size_t> next = plane_start_;
-        for (std::size_t i = 0; i < faces_.size(); ++i) by_plane_[next[part(faces_[i])]++] = i;
+        for (std::size_t i = 0; i < f.count(); ++i)
+            by_plane_[next[part(i)]++] = static_cast<std::uint32_t>(i);
     }
 
     /// What of a face between water and air is solid pushes on no water.
     void close_surface(std::span<const OpenFace> surface) {
-        surface_.clear();
-        std::unordered_multimap<Offset, std::size_t> dry;
-        for (std::size_t i = 0; i < faces_.size(); ++i)
-            if (faces_[i].open == 0) dry.insert({key(faces_[i].axis, faces_[i].face), i});
-        if (dry.empty()) return;
-        for (const OpenFace& open : surface) {
-            const auto [first, last] = dry.equal_range(key(open.axis, open.face));
-            if (first == last) continue;
-            Real left = 1;
-            for (auto i = first; i != last; ++i) left -= faces_[i->second].share;
-            if (left < least) left = 0;
-            for (auto i = first; i != last; ++i) {
-                CoveredFace& f = faces_[i->second];
-                f.open = 1, f.water = left, f.cover(), f.per_gap = std::abs(open.slope);
-                f.high_wet = open.cell == f.face, f.low_wet = open.cell == f.low;
-                f.leaves = open.plain == 0, f.weight = open.weight;
-            }
-            surface_[key(open.axis, open.face)] = left;
-        }
+        FaceColumns& f = columns_;
+        surface_.assign(surface.size(), 1);
+        if (f.count() == 0) return;
+        for (std::size_t n = 0; n < surface.size(); ++n)
+            sums_[surface[n].axis][surface[n].face] = static_cast<Real>(n + 1);
+        const auto dry = [&](auto visit) {
+            return [&, visit](std::size_t i) {
+                if (f.open[i] > 0 || f.at(sums_, i) == 0) return;
+                const auto n = static_cast<std::size_t>(f.at(sums_, i)) - 1;
+                visit(i, n, surface[n]);
+            };
+        };
+        by_planes(dry([&](std::size_t i, std::size_t n, const OpenFace&) { surface_[n] -= f.share[i]; }),
+                  dry([&](std::size_t, std::size_t n, const OpenFace&) {
+                      if (surface_[n] < least) surface_[n] = 0;
+                  }),
+                  dry([&](std::size_t i, std::size_t n, const OpenFace& open) {
+                      f.open[i] = 1, f.water[i] = surface_[n], f.cover(i);
+                      f.per_gap[i] = std::abs(open.slope), f.surface[i] = static_cast<std::uint32_t>(n);
+                      f.high_wet[i] = open.cell == f.face[i], f.low_wet[i] = open.cell == f.low[i];
+                      f.leaves[i] = open.plain == 0, f.weight[i] = open.weight;
+                  }));
+        for (const OpenFace& open : surface) sums_[open.axis][open.face] = 0;
     }
 
-    std::vector<SolidCover> covers_;  ///< [body], and of the cloud
+    std::vector<SolidCover> covers_;  ///< [body]
     SpreadCloud cloud_;
-    std::vector<CoveredFace> faces_;        ///< body by body, the cloud's last
-    std::vector<std::size_t> first_;        ///< [body] in `faces_`
-    std::vector<std::size_t> by_plane_;     ///< `faces_` in the order of their planes
+    FaceColumns columns_;
+    std::vector<std::size_t> first_;        ///< [body] of its rows
+    std::vector<std::uint32_t> by_plane_;   ///< rows in the order of their planes
     std::vector<std::size_t> plane_start_;  ///< [2 plane, + 1 of those near by] in `by_plane_`
-    std::unordered_map<Offset, Real> surface_;
-    FaceField<3> sums_;  ///< of what bodies have at a face; 0 but while they are needed
+    std::vector<Real> surface_;             ///< [number of a face at the surface] see `water_share`
+    FaceField<3> sums_;                     ///< of what bodies have at a face; 0 but while they are needed
 };
 
 }  // namespace abrade

@@ -63,7 +63,7 @@ public:
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                const FaceField<3>* open_area, Real density) {
         stand(grid, sides, bodies, params_.resolved_from, open_area);
-        averaged_.begin(faces_.of_cloud(), faces_.cloud(), bodies_, density);
+        averaged_.begin(faces_.columns(), faces_.cloud(), bodies_, density);
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) { faces_.close(m, surface); }
 
@@ -71,37 +71,41 @@ public:
     /// pressure.
     void slow(FaceField<3>& u, const FlowStage& stage) {
         const auto wet = [&](Offset cell) { return !stage.held || (*stage.held)[cell] >= 0.5; };
+        FaceColumns& f = faces_.columns();
         faces_.by_planes(
-            [&](CoveredFace& f) {
-                const Real held = wet(f.face) && wet(f.low) ? held_by(f, stage) : 0;
-                f.taken = held * (u[f.axis][f.face] - f.solid);
+            [&](std::size_t i) {
+                const Real held = wet(f.face[i]) && wet(f.low[i]) ? held_by(i, stage) : 0;
+                f.taken[i] = held * (f.at(u, i) - f.solid[i]);
             },
-            [&](const CoveredFace& f) { u[f.axis][f.face] -= f.taken; });
+            [&](std::size_t i) { f.at(u, i) -= f.taken[i]; });
     }
     void give_back(FaceField<3>& u, Real share) const {
-        faces_.by_planes([&](const CoveredFace& f) { u[f.axis][f.face] += share * f.taken; });
+        const FaceColumns& f = faces();
+        faces_.by_planes([&](std::size_t i) { f.at(u, i) += share * f.taken[i]; });
     }
 
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         look_at(u, pressure, stage);
+        FaceColumns& f = faces_.columns();
         parallel_for_resolved([&](std::size_t b) {
-            find_motion(b, pressure, [&](const CoveredFace& f) { return held_by(f, stage_); });
+            find_motion(b, pressure, [&](std::size_t i) { return held_by(i, stage_); });
             if (stage_.pushed)  // or by the `push` to come
                 motion_[b].q += detail::accelerated(
                     bodies_[b], stage_.dt * stage_.density * detail::pressed(faces_.cover(b), pressure));
-            for (CoveredFace& f : faces_.of(b))
-                f.target = detail::along(f, motion_[b].held), f.solid = detail::along(f, motion_[b].q);
+            for (const std::size_t i : faces_.of(b))
+                f.target[i] = f.along(i, motion_[b].held), f.solid[i] = f.along(i, motion_[b].q);
         });
-        averaged_.force(faces_.of_cloud(), faces_.cloud(), bodies_, pressure, stage_);
-        find_loss([](const CoveredFace& f) {
-            return f.mass * f.water * f.held * (1 - 0.5 * f.held) * square(f.target - f.velocity);
+        averaged_.force(f, faces_.cloud(), bodies_, pressure, stage_);
+        find_loss([&](std::size_t i) {
+            const Real left = f.held[i] * (1 - 0.5 * f.held[i]);
+            return f.mass[i] * f.water[i] * left * square(f.target[i] - f.velocity[i]);
         });
         faces_.by_planes(
-            [&](const CoveredFace& f) { u[f.axis][f.face] += f.held * (f.target - f.velocity) + f.given; },
-            [&](CoveredFace& f) { f.velocity = u[f.axis][f.face]; },
-            [&](CoveredFace& f) {
-                u[f.axis][f.face] += f.covered * (f.solid - f.velocity);
-                if (stage_.pushed || f.leaves) f.velocity += stage_.dt * f.gradient(pressure);
+            [&](std::size_t i) { f.at(u, i) += f.held[i] * (f.target[i] - f.velocity[i]) + f.given[i]; },
+            [&](std::size_t i) { f.velocity[i] = f.at(u, i); },
+            [&](std::size_t i) {
+                f.at(u, i) += f.covered[i] * (f.solid[i] - f.velocity[i]);
+                if (stage_.pushed || f.leaves[i]) f.velocity[i] += stage_.dt * f.gradient(pressure, i);
             });
     }
 
@@ -116,12 +120,14 @@ public:
     }
     template <class Number>
     void correct(FaceField<3>& u, const Field<Number>& of, Real factor, int plane, bool old) const {
-        faces_.on_plane(plane, [&](const CoveredFace& f) {
+        const FaceColumns& f = faces();
+        faces_.on_plane(plane, [&](std::size_t i) {
             // A closed face has lost none, but at the surface.
-            const bool lost = f.leaves ? !old : f.conducts || f.at_surface();
-            const Real kept = old ? 1 : 1 - f.yields();  // the old pressure has moved a cloud already
-            const Real back = lost ? factor * kept * f.gradient(of) : 0;
-            u[f.axis][f.face] += f.covered * (back + detail::along(f, motion_[f.body].push));
+            const bool lost = f.leaves[i] ? !old : f.conducts[i] || f.at_surface(i);
+            const Real kept = old ? 1 : 1 - f.yields(i);  // the old pressure has moved a cloud already
+            const Real back = lost ? factor * kept * f.gradient(of, i) : 0;
+            const Real pushed = i < f.cloud ? 0 : f.along(i, motion_[f.body[i]].push);
+            f.at(u, i) += f.covered[i] * (back + pushed);
         });
     }
     Real add_product(const Field<float>& p, Field<float>& product) {
@@ -143,16 +149,17 @@ public:
     }
 
     void settle(FaceField<3>& u, Field<Real>& pressure) {
-        faces_.by_planes([&](const CoveredFace& f) {
-            if (f.water > 0 && f.share > 0) u[f.axis][f.face] = f.velocity - stage_.dt * f.gradient(pressure);
+        FaceColumns& f = faces_.columns();
+        faces_.covered_by_planes([&](std::size_t i) {
+            if (f.water[i] > 0) f.at(u, i) = f.velocity[i] - stage_.dt * f.gradient(pressure, i);
         });
-        averaged_.yield(faces_.of_cloud(), pressure, stage_.dt);
-        find_fluxes([&](const CoveredFace& f) { return f.covered * (f.solid - u[f.axis][f.face]); });
+        averaged_.yield(f, pressure, stage_.dt);
+        find_fluxes([&](std::size_t i) { return f.covered[i] * (f.solid[i] - f.at(u, i)); });
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {
             fill_inside(b, pressed.template head<3>(), pressure);
             return Six(pressed + motion_[b].by_friction);
         });
-        averaged_.settle(faces_.of_cloud(), faces_.cloud(), bodies_, faces_.covers(), pressure, stage_);
+        averaged_.settle(f, faces_.cloud(), bodies_, faces_.covers(), pressure, stage_);
         finish();
     }
     static void fields(auto&& field) {
@@ -162,12 +169,13 @@ public:
 private:
     /// Share of the way to a body's velocity that friction takes a face's water in a step: bodies share what
     /// all of them do there. What is left of a face that they nearly close sticks to them.
-    Real held_by(const CoveredFace& f, const FlowStage& stage) const noexcept {
+    Real held_by(std::size_t i, const FlowStage& stage) const noexcept {
         constexpr Real sliver = 0.1;  // of what walls leave of a face
-        if (f.all_friction == 0) return 0;
-        const Real stiff = params_.friction * stage.viscosity * stage.dt * f.all_friction;
-        const Real sticks = f.open > 0 ? 1 - f.water / (sliver * f.open) : 0;
-        return std::max(stiff / (1 + stiff), sticks) * f.friction / f.all_friction;
+        const FaceColumns& f = faces();
+        if (f.all_friction[i] == 0) return 0;
+        const Real stiff = params_.friction * stage.viscosity * stage.dt * f.all_friction[i];
+        const Real sticks = f.open[i] > 0 ? 1 - f.water[i] / (sliver * f.open[i]) : 0;
+        return std::max(stiff / (1 + stiff), sticks) * f.friction[i] / f.all_friction[i];
     }
 
     /// The pressure goes on into the body as if its force were that of one gradient.

@@ -79,20 +79,22 @@ public:
 
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         look_at(u, pressure, stage);
+        FaceColumns& f = faces_.columns();
         parallel_for_resolved([&](std::size_t b) {
-            find_motion(b, pressure, [](const CoveredFace&) { return Real(0); });
+            find_motion(b, pressure, [](std::size_t) { return Real(0); });
             const Six by_old = stage_.dt * stage_.density * detail::pressed(faces_.cover(b), pressure);
             const Six expected = motion_[b].q + detail::accelerated(bodies_[b], by_old);
-            for (CoveredFace& f : faces_.of(b)) {
-                const Real push = stage_.dt * f.gradient(pressure);
-                if (f.leaves && !stage_.pushed) f.velocity += push;  // the old pressure does not act there
-                f.solid = detail::along(f, expected);
-                f.given = mixed_by(f) * (f.solid - f.velocity);
-                if (!stage_.pushed && !f.leaves) f.given -= f.heavier * push;  // `correct` gives it back
-                f.velocity += push;                                            // without the pressure
+            for (const std::size_t i : faces_.of(b)) {
+                const Real push = stage_.dt * f.gradient(pressure, i);
+                if (f.leaves[i] && !stage_.pushed) f.velocity[i] += push;  // the old one does not act there
+                f.solid[i] = f.along(i, expected);
+                f.given[i] = mixed_by(i) * (f.solid[i] - f.velocity[i]);
+                // `correct` gives it back
+                if (!stage_.pushed && !f.leaves[i]) f.given[i] -= f.heavier[i] * push;
+                f.velocity[i] += push;  // without the pressure
             }
         });
-        faces_.by_planes([&](const CoveredFace& f) { u[f.axis][f.face] += f.given; });
+        faces_.by_planes([&](std::size_t i) { f.at(u, i) += f.given[i]; });
     }
 
     void slow(FaceField<3>&, const FlowStage&) const noexcept {}  // replaced as a whole, at the end
@@ -101,24 +103,26 @@ public:
     void push(const Field<Number>&, Real) const noexcept {}
     template <class Number>
     void correct(FaceField<3>& u, const Field<Number>& of, Real factor, int plane, bool old) const {
-        faces_.on_plane(plane, [&](const CoveredFace& f) {
-            if (f.open > 0 && !(old && f.leaves)) u[f.axis][f.face] += f.heavier * factor * f.gradient(of);
+        const FaceColumns& f = faces();
+        faces_.on_plane(plane, [&](std::size_t i) {
+            if (f.open[i] > 0 && !(old && f.leaves[i]))
+                f.at(u, i) += f.heavier[i] * factor * f.gradient(of, i);
         });
     }
     Real add_product(const Field<float>&, Field<float>&) const noexcept { return 0; }
 
     void settle(FaceField<3>& u, Field<Real>& pressure) {
         parallel_for_resolved([&](std::size_t b) { replace(b, u, pressure); });
-        faces_.by_planes([&](CoveredFace& f) { f.velocity = u[f.axis][f.face]; },
-                         [&](const CoveredFace& f) {
-                             u[f.axis][f.face] += f.held * (detail::along(f, motion_[f.body].q) - f.velocity);
-                         });
+        FaceColumns& f = faces_.columns();
+        const auto moves = [&](std::size_t i) { return f.along(i, motion_[f.body[i]].q); };
+        faces_.by_planes([&](std::size_t i) { f.velocity[i] = f.at(u, i); },
+                         [&](std::size_t i) { f.at(u, i) += f.held[i] * (moves(i) - f.velocity[i]); });
         // What water gains by mixing and replacing it gains from a body that moves with `q`.
-        find_loss([&](const CoveredFace& f) {
-            const Real now = u[f.axis][f.face], moves = detail::along(f, motion_[f.body].q);
-            return f.mass * part_of(f) * (now - f.target) * (moves - 0.5 * (now + f.target));
+        find_loss([&](std::size_t i) {
+            const Real now = f.at(u, i), was = f.target[i];
+            return f.mass[i] * part_of(i) * (now - was) * (moves(i) - 0.5 * (now + was));
         });
-        find_fluxes([&](const CoveredFace& f) { return -f.held * (f.solid - f.velocity); });
+        find_fluxes([&](std::size_t i) { return -f.held[i] * (f.solid[i] - f.velocity[i]); });
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {
             return Six(pressed + motion_[b].by_friction + motion_[b].push);
         });
@@ -131,18 +135,21 @@ private:
         ratio_[b] = Density::of(bodies_[b], density_) / density_;
         if (!mixes || bodies_[b].inverse_mass == 0) return;
         Real wet = 0;
-        for (const CoveredFace& f : faces_.of(b))
-            if (f.axis == Grid<3>::vertical && f.open > 0) wet += f.share * f.area / f.per_gap;
+        const FaceColumns& f = faces();
+        for (const std::size_t i : faces_.of(b))
+            if (f.axis[i] == Grid<3>::vertical && f.open[i] > 0)
+                wet += f.share[i] * f.volume[i] / (f.gap[i] * f.per_gap[i]);
         ratio_[b] *= std::max(bodies_[b].volume / std::max(wet, least_wet * bodies_[b].volume), Real(1));
     }
-    static Real core_of(const CoveredFace& f) noexcept {
-        return f.open > 0 ? std::min(f.core / f.open, 1.0) : 0;
+    Real core_of(std::size_t i) const noexcept {
+        return faces().open[i] > 0 ? std::min(faces().core[i] / faces().open[i], 1.0) : 0;
     }
     /// Share of the body in the momentum of what is in its core, if it is free to take any.
-    Real mixed_by(const CoveredFace& f) const noexcept {
-        if (!mixes || bodies_[f.body].inverse_mass == 0) return 0;
-        const Real heavy = core_of(f) * ratio_[f.body];
-        return heavy / (1 - core_of(f) + heavy);
+    Real mixed_by(std::size_t i) const noexcept {
+        const std::size_t b = faces().body[i];
+        if (!mixes || bodies_[b].inverse_mass == 0) return 0;
+        const Real heavy = core_of(i) * ratio_[b];
+        return heavy / (1 - core_of(i) + heavy);
     }
 
     /// The body's velocity after the pressure and with what replacing the face's velocity takes from it.
@@ -152,14 +159,15 @@ private:
         Motion& motion = motion_[b];
         Matrix6 drag = Matrix6::Zero();
         Six brought = Six::Zero();  // to the body: brought - drag q
-        for (CoveredFace& f : faces_.of(b)) {
-            const Real mixed = u[f.axis][f.face];
-            f.target = f.velocity - stage_.dt * f.gradient(pressure);  // the water's by itself
-            f.held = core_of(f);
-            const Real mass = f.mass * f.water / std::max(f.open, tiny);
-            const Six c = detail::coefficient(f);
-            drag += mass * f.held * c * c.transpose();
-            brought += (mass * f.held * mixed - f.mass * part_of(f) * (mixed - f.target)) * c;
+        FaceColumns& f = faces_.columns();
+        for (const std::size_t i : faces_.of(b)) {
+            const Real mixed = f.at(u, i);
+            f.target[i] = f.velocity[i] - stage_.dt * f.gradient(pressure, i);  // the water's by itself
+            f.held[i] = core_of(i);
+            const Real mass = f.mass[i] * f.water[i] / std::max(f.open[i], tiny<Real>);
+            const Six c = f.coefficient(i);
+            drag += mass * f.held[i] * c * c.transpose();
+            brought += (mass * f.held[i] * mixed - f.mass[i] * part_of(i) * (mixed - f.target[i])) * c;
         }
         if (body.inverse_mass > 0) {
             const Matrix6 inertia = detail::inertia_of(body);
@@ -170,13 +178,14 @@ private:
     }
 
     /// Water in a face, its part beside this one of the bodies that cover it [-].
-    static Real part_of(const CoveredFace& f) noexcept {
-        const Real water = f.water / std::max(f.open, tiny), all = 1 - water;
-        return all > 0 ? water * f.covered / all : 0;
+    Real part_of(std::size_t i) const noexcept {
+        const FaceColumns& f = faces();
+        const Real water = f.water[i] / std::max(f.open[i], tiny<Real>), all = 1 - water;
+        return all > 0 ? water * f.covered[i] / all : 0;
     }
 
     static constexpr bool mixes = std::same_as<Density, MixtureDensity>;
-    static constexpr Real tiny = 1e-300, least_wet = 1e-3;
+    static constexpr Real least_wet = 1e-3;
 
     Params params_;
     Real density_ = 1;         ///< of the water [kg/m3]

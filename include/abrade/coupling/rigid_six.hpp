@@ -1,19 +1,21 @@
 #pragma once
 // Velocity and spin of a rigid body, or a force and a torque on it, in six numbers.
 
-#include <abrade/coupling/solid_shares.hpp>
+#include <abrade/coupling/solid_cover.hpp>
 
 namespace abrade::detail {
 
 using Six = Eigen::Matrix<Real, 6, 1>;
 
-inline Six coefficient(const SolidFace& f) noexcept {
+/// What the velocity of a face across `axis` owes to a body's spin: component `axis` of spin x arm.
+inline Vec3 lever(int axis, const Vec3& arm) noexcept { return arm.cross(Vec3::Unit(axis)); }
+inline Six coefficient(int axis, const Vec3& arm) noexcept {
     Six c = Six::Zero();
-    c[f.axis] = 1, c.template tail<3>() = f.lever();
+    c[axis] = 1, c.template tail<3>() = lever(axis, arm);
     return c;
 }
-inline Real along(const SolidFace& f, const Six& q) noexcept {
-    return q[f.axis] + q.template tail<3>().dot(f.lever());
+inline Real along(int axis, const Vec3& arm, const Six& q) noexcept {
+    return q[axis] + q.template tail<3>().dot(lever(axis, arm));
 }
 inline Six velocity_of(const FlowBody& body) noexcept {
     return (Six() << body.velocity, body.angular_velocity).finished();

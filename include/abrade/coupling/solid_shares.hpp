@@ -1,94 +1,24 @@
 #pragma once
 // Which parts of the faces of a staggered grid a rigid body covers.
 
+#include <abrade/core/simd.hpp>
+#include <abrade/coupling/solid_cover.hpp>
 #include <abrade/fluid/cut_cell.hpp>
-#include <abrade/fluid/grid_place.hpp>
-#include <abrade/fluid/solids_in_flow.hpp>
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 #include <vector>
 
 namespace abrade {
 
-/// A face of whose control volume, which lies half in either cell, a body covers some, or whose centre is
-/// less than a cell from its surface.
-struct SolidFace {
-    Offset face = 0;  ///< of the velocity component
-    Offset low = 0;   ///< of the cell below it, across a periodic side where there is one
-    int axis = 0;
-    int plane = 0;            ///< of the face, across the longest axis; the last of the upper side's, too
-    Real share = 0;           ///< sigma, of the control volume [-]
-    Real core = 0;            ///< share of a body whose surface is retracted [-]
-    Real friction = 0;        ///< rate of friction over C nu [1/m2]
-    Real area = 0, gap = 0;   ///< of the face [m2]; between the centres of its cells [m]
-    Vec3 arm = Vec3::Zero();  ///< from the body's centroid to the face's centre [m]
-
-    Real volume() const noexcept { return area * gap; }
-    /// What the face's velocity owes to the body's spin: component `axis` of spin x arm.
-    Vec3 lever() const noexcept { return arm.cross(Vec3::Unit(axis)); }
-};
-
-/// A cell of which a body covers some. As the body moves by V dt and turns by W dt it gives
-/// dt (way . V + turn . W) to the cells around.
-struct SolidCell {
-    Offset cell = 0;
-    Vec3 way = Vec3::Zero();   ///< [m2]
-    Vec3 turn = Vec3::Zero();  ///< [m3]
-    Vec3 arm = Vec3::Zero();   ///< from the body's centroid to the cell's centre [m]
-};
-
-/// A body on the grid.
-struct SolidCover {
-    std::vector<SolidFace> faces;
-    std::vector<SolidCell> cells;   ///< that it covers in part
-    std::vector<SolidCell> inside;  ///< and as a whole
-    std::vector<SolidPart> parts;   ///< its volume in cells
-    bool cut = false;               ///< some of it lies beyond a side where water flows in or out
-    bool averaged = false;          ///< too small for its shape to count: it has its part in a cloud
-
-    void clear() noexcept { faces.clear(), cells.clear(), inside.clear(), parts.clear(), cut = false; }
-};
-
 namespace detail {
-
-/// Numbers of cells and faces that go on beyond a box.
-struct GridNumbers {
-    const Grid<3>& grid;
-    const Sides<3>& sides;
-
-    Real size(int a, int i) const noexcept { return grid.size(a, std::clamp(i, 0, grid.cells(a) - 1)); }
-    /// Lower face of cell i, which may be one beyond the ghosts.
-    Real face(int a, int i) const noexcept {
-        const int n = grid.cells(a);
-        if (i < 0) return grid.low(a) + i * size(a, 0);
-        if (i > n) return grid.high(a) + (i - n) * size(a, n - 1);
-        return grid.face(a, i);
-    }
-    Real centre(int a, int i) const noexcept { return face(a, i) + 0.5 * size(a, i); }
-    int cell_at(int a, Real x) const noexcept {
-        const int n = grid.cells(a);
-        if (x < grid.low(a)) return static_cast<int>(std::floor((x - grid.low(a)) / size(a, 0)));
-        if (x >= grid.high(a)) return n + static_cast<int>((x - grid.high(a)) / size(a, n - 1));
-        const bool even = a != Grid<3>::vertical || grid.uniform();
-        return detail::place_between(x, 0, n, size(a, 0), even, [&](int i) { return grid.face(a, i); }).low;
-    }
-    int wrapped(int a, int i) const noexcept {
-        const int n = grid.cells(a);
-        return sides.periodic(a) ? (i % n + n) % n : i;
-    }
-    /// Of a cube as large as the cell about a point [m].
-    Real cell_width(const Vec3& x) const noexcept {
-        Real volume = 1;
-        for (int a = 0; a < 3; ++a) volume *= size(a, cell_at(a, x[a]));
-        return std::cbrt(volume);
-    }
-};
 
 /// Shares of a body that is a union of spheres, in the control volumes of the faces about it.
 ///
@@ -118,10 +48,10 @@ public:
         for (int a = 0; a < 3; ++a) find_shares(a), list_faces(a, cover);
         list_cells(cover);
         find_shares(of_cells);
-        for (const Volume& v : covered_)
-            if (kind_[of_cells][v.k] == Kind::open && share_[of_cells][v.k] > 0)
-                cover.parts.push_back(
-                    {grid.layout().at(inside_box(v.n)), share_[of_cells][v.k] * v.size.prod()});
+        for_each_covered(of_cells, [&](const Number& n, std::size_t p, int lane) {
+            const Real share = share_[of_cells][p][lane];
+            if (share > 0) cover.parts.push_back({offset(n), share * extent(of_cells, n).prod()});
+        });
     }
 
 private:
@@ -132,26 +62,24 @@ private:
     struct Line {
         Real face, centre, size, gap;
     };
-    /// A control volume that the body covers some of; k in `share_`, [m].
-    struct Volume {
-        Number n;
-        std::size_t k;
-        Vec3 centre, size;
-        Real core, friction;
+    struct Place {
+        std::size_t pack;
+        int lane;
     };
     enum class Kind : char {
         closed,
         open,
         beyond  ///< could let water through, but is no part of the box
     };
+    using Packs = std::vector<Pack>;
 
     /// The cells about the body, one more on either side than it reaches: the control volumes of their
-    /// outermost faces hold nothing.
+    /// outermost faces hold nothing. Rows along x are whole packs.
     void find_box() {
         const Real radius = 0.5 * body_->diameter(), least = 0.9 * cell_width(body_->position);
         grown_ = std::max(least - radius, 0.0);
         scale_ = grown_ > 0 ? cube(radius / least) : 1;
-        std::size_t count = 1;
+        amid_ = true;
         for (int a = 0; a < 3; ++a) {
             Real low = std::numeric_limits<Real>::infinity(), high = -low;
             for (const Sphere& s : body_->spheres) {
@@ -160,22 +88,48 @@ private:
             }
             first_[a] = cell_at(a, low) - 1;
             length_[a] = cell_at(a, high) + 3 - first_[a];
-            stride_[a] = count;
-            count *= static_cast<std::size_t>(length_[a]);
+            amid_ &= first_[a] >= 1 && first_[a] + length_[a] <= grid.cells(a);
             auto& lines = lines_[a];
             lines.clear();
             for (int i = first_[a]; i < first_[a] + length_[a]; ++i)
                 lines.push_back({face(a, i), centre(a, i), size(a, i), centre(a, i) - centre(a, i - 1)});
         }
-        for (auto& share : share_) share.assign(count, 0);
-        for (auto& kind : kind_) kind.assign(count, Kind::closed);
+        in_row_ = static_cast<std::size_t>((length_[0] + pack_lanes - 1) / pack_lanes);
+        for (Packs& x : x_) x.assign(in_row_, Pack(far));
+        for (int i = 0; i < length_[0]; ++i) {
+            const auto [pack, lane] = std::div(i, pack_lanes);
+            const Line& line = lines_[0][index(i)];
+            x_[0][index(pack)].set(lane, line.face), x_[1][index(pack)].set(lane, line.centre);
+        }
+        const std::size_t rows = index(length_[1]) * index(length_[2]);
+        for (auto& share : share_) share.assign(rows * in_row_, Pack(0));
+        friction_.resize(rows * in_row_), core_.resize(rows * in_row_);
+        for (auto& covered : covered_) covered.assign(rows, false);
     }
-    void for_each(auto&& visit) const {
-        std::size_t k = 0;
-        Number n;
+    static constexpr Real far = 1e30;  ///< from all bodies [m]
+    static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// Calls visit(number of its first volume, row).
+    void for_each_row(auto&& visit) const {
+        std::size_t row = 0;
+        Number n{first_[0], 0, 0};
         for (n[2] = first_[2]; n[2] < first_[2] + length_[2]; ++n[2])
-            for (n[1] = first_[1]; n[1] < first_[1] + length_[1]; ++n[1])
-                for (n[0] = first_[0]; n[0] < first_[0] + length_[0]; ++n[0], ++k) visit(std::as_const(n), k);
+            for (n[1] = first_[1]; n[1] < first_[1] + length_[1]; ++n[1]) visit(std::as_const(n), row++);
+    }
+    /// Calls visit(number, pack, lane) for the volumes that `find_shares` has found last.
+    void for_each_covered(int axis, auto&& visit) const {
+        for_each_row([&](Number n, std::size_t row) {
+            if (!covered_[axis][row]) return;
+            for (std::size_t q = 0; q < in_row_; ++q) {
+                const std::size_t p = row * in_row_ + q;
+                unsigned lanes = lanes_of((share_[axis][p] > Pack(0)) | (friction_[p] > Pack(0)));
+                for (; lanes != 0; lanes &= lanes - 1) {
+                    const int lane = std::countr_zero(lanes);
+                    n[0] = first_[0] + static_cast<int>(q) * pack_lanes + lane;
+                    visit(std::as_const(n), p, lane);
+                }
+            }
+        });
     }
     /// Centre and size of the control volume of a face, or of a cell.
     Vec3 place(int axis, const Number& n) const noexcept {
@@ -188,14 +142,12 @@ private:
         for (int a = 0; a < 3; ++a) s[a] = a == axis ? line(a, n).gap : line(a, n).size;
         return s;
     }
-    const Line& line(int a, const Number& n) const noexcept {
-        return lines_[a][static_cast<std::size_t>(n[a] - first_[a])];
+    const Line& line(int a, const Number& n) const noexcept { return lines_[a][index(n[a] - first_[a])]; }
+    Number inside_box(Number n) const noexcept {
+        for (int a = 0; a < 3; ++a) n[a] = wrapped(a, n[a]);
+        return n;
     }
-    Number inside_box(const Number& n) const noexcept {
-        Number inside;
-        for (int a = 0; a < 3; ++a) inside[a] = wrapped(a, n[a]);
-        return inside;
-    }
+    Offset offset(const Number& n) const noexcept { return grid.layout().at(amid_ ? n : inside_box(n)); }
 
     bool is_cut() const noexcept {
         for (int a = 0; a < 3; ++a)
@@ -210,156 +162,195 @@ private:
 
     Kind kind(int axis, const Number& n) const noexcept {
         bool beyond = false;
-        for (int a = 0; a < 3; ++a) {
+        for (int a = 0; a < 3 && !amid_; ++a) {
             const int first = a == axis ? 1 : 0, end = grid.cells(a);
             if (sides.periodic(a) || (n[a] >= first && n[a] < end)) continue;
             if (is_closed(sides[a][n[a] < first ? 0 : 1])) return Kind::closed;
             beyond |= a != axis || (n[a] != 0 && n[a] != end);  // and not the side itself
         }
         if (beyond) return Kind::beyond;
-        return axis < 3 && closed_(axis, grid.layout().at(inside_box(n))) ? Kind::closed : Kind::open;
+        return axis < 3 && closed_(axis, offset(n)) ? Kind::closed : Kind::open;
     }
 
+    /// Of boxes of size s in a row, the nearest of the body's spheres.
     struct Near {
-        Real distance = std::numeric_limits<Real>::infinity();  ///< to the surface, negative inside [m]
-        Real radius = 0;
-        Vec3 from = Vec3::Zero();  ///< that sphere's centre [m]
-        Real length = 0;           ///< of that
+        PackMask found;              ///< it is no farther from their middles than it could matter
+        Pack distance, radius;       ///< to the surface, negative inside [m]
+        std::array<Pack, 3> across;  ///< s times the surface's normal [m]
+        Pack across2;                ///< its square [m2]
     };
-    /// Of spheres whose surface is no farther than `reach`.
-    Near nearest(const Vec3& x, Real reach) const noexcept {
-        Near near{.distance = reach};
-        for (const Sphere& s : body_->spheres) {
-            const Vec3 from = x - s.centre;
-            const Real radius = s.radius + grown_, within = radius + near.distance,
-                       square2 = from.squaredNorm();
-            if (!(within > 0 && square2 < square(within))) continue;
-            const Real length = std::sqrt(square2);
-            near = {length - radius, radius, from, length};
+    Near nearest(Pack x, Real y, Real z, const Vec3& s) const noexcept {
+        const Real reach = std::max(0.6 * s.norm(), s.maxCoeff());
+        Pack distance = reach, radius = 0, length = 0;
+        std::array<Pack, 3> from{Pack(0), Pack(0), Pack(0)};
+        for (const Sphere& sphere : body_->spheres) {
+            const Real up = y - sphere.centre[1], over = z - sphere.centre[2];
+            const Real grown = sphere.radius + grown_, beside = square(up) + square(over);
+            if (!(beside < square(grown + reach))) continue;
+            const Pack along = x - Pack(sphere.centre[0]), way = sqrt(along * along + Pack(beside));
+            const PackMask nearer = way - Pack(grown) < distance;
+            distance = select(nearer, way - Pack(grown), distance);
+            radius = select(nearer, Pack(grown), radius), length = select(nearer, way, length);
+            from[0] = select(nearer, along, from[0]);
+            from[1] = select(nearer, Pack(up), from[1]), from[2] = select(nearer, Pack(over), from[2]);
         }
+        const PackMask has_normal = length > Pack(0);
+        const Pack per_length = Pack(1) / select(has_normal, length, Pack(1));
+        Near near{radius > Pack(0), distance, radius, from, Pack(0)};
+        for (int a = 0; a < 3; ++a) near.across[index(a)] *= Pack(s[a]) * per_length;
+        near.across[2] = select(has_normal, near.across[2], Pack(s.z()));
+        for (const Pack& part : near.across) near.across2 += part * part;
         return near;
     }
-
-    /// A box of size s about a point, times the surface's normal.
-    static Vec3 across(const Near& near, const Vec3& s) noexcept {
-        return near.length > 0 ? Vec3(s.cwiseProduct(near.from) / near.length) : Vec3(0, 0, s.z());
+    /// Of boxes of size s, as if the surface were `retracted` [m].
+    Pack share_of(const Near& near, const Vec3& s, Real retracted = 0) const noexcept {
+        const Pack curved = (Pack(s.squaredNorm()) - near.across2) / (Pack(24) * near.radius);
+        return select(
+            near.found,
+            Pack(scale_) * liquid_fraction<3>(near.across, -near.distance - Pack(retracted) - curved),
+            Pack(0));
     }
-    /// Of a box of size s about a point.
-    Real share_of(const Near& near, const Vec3& s) const noexcept {
-        const Vec3 across = this->across(near, s);
-        const Real curved = (s.squaredNorm() - across.squaredNorm()) / (24 * near.radius);
-        return scale_ *
-               liquid_fraction<3>(std::array{across[0], across[1], across[2]}, -near.distance - curved);
-    }
-
-    Real core_of(Near near, const Vec3& s) const noexcept {
-        near.distance += retracted_ * std::cbrt(s.prod());
-        return share_of(near, s);
-    }
-
-    Real friction_of(const Near& near, const Vec3& s) const noexcept {
-        const Real size = across(near, s).norm(), d = near.distance / size;
-        const Real within = scale_ * std::clamp(0.5 * (1 - d), 0.0, 1.0);
+    Pack friction_of(const Near& near) const noexcept {
+        const Pack d = near.distance / sqrt(near.across2);
+        const Pack within = Pack(scale_) * min(max(Pack(0.5) * (Pack(1) - d), Pack(0)), Pack(1));
         constexpr Real least = 1e-12;  // of two cells: less is none
-        return within / (std::max(1 - within, least) * square(size));
+        return select(near.found, within / (max(Pack(1) - within, Pack(least)) * near.across2), Pack(0));
     }
 
     void find_shares(int axis) {
-        auto& share = share_[axis];
-        covered_.clear();
-        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-        const Real unit = std::cbrt(body_->volume);  // lest the equations be as uneven as metres make them
-        const auto terms = [&](const Vec3& x) {
-            const Vec3 arm = (x - body_->position) / unit;
-            return Vec3(1, arm[b], arm[c]);
-        };
-        for_each([&](const Number& n, std::size_t k) {
-            const Vec3 x = place(axis, n), s = extent(axis, n);
-            const Near near = nearest(x, std::max(0.6 * s.norm(), s.maxCoeff()));
-            if (near.radius == 0) return;
-            kind_[axis][k] = kind(axis, n);
-            if (kind_[axis][k] == Kind::closed) return;
-            share[k] = share_of(near, s);
-            const Real friction = axis == of_cells ? 0 : friction_of(near, s);
-            if (share[k] > 0 || friction > 0)
-                covered_.push_back({n, k, x, s, retracted_ > 0 ? core_of(near, s) : 0, friction});
+        beyond_.clear();
+        for_each_row([&](const Number& first, std::size_t row) {
+            const Vec3 x = place(axis, first), s = extent(axis, first);
+            for (std::size_t p = row * in_row_, q = 0; q < in_row_; ++q, ++p) {
+                const Near near = nearest(x_[axis != 0][q], x[1], x[2], s);
+                friction_[p] = core_[p] = Pack(0);
+                if (!any(near.found)) continue;
+                covered_[axis][row] = true;
+                share_[axis][p] = share_of(near, s);
+                if (axis == of_cells && amid_) continue;
+                if (axis != of_cells) friction_[p] = friction_of(near);
+                if (retracted_ > 0) core_[p] = share_of(near, s, retracted_ * std::cbrt(s.prod()));
+                for (unsigned lanes = lanes_of(near.found); lanes != 0; lanes &= lanes - 1) {
+                    const int lane = std::countr_zero(lanes);
+                    Number n = first;
+                    n[0] += static_cast<int>(q) * pack_lanes + lane;
+                    const Kind kind = this->kind(axis, n);
+                    if (kind == Kind::closed) clear(axis, {p, lane});
+                    if (kind == Kind::beyond) beyond_.push_back({p, lane});
+                }
+            }
         });
-        constexpr int most_rounds =
-            4;  // one, but where a floor takes so much that shares are at their bounds
+        correct_shares(axis);
+        for (const Place& place : beyond_) clear(axis, place);
+    }
+
+    void correct_shares(int axis) {
+        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        const Real per_unit = 1 / std::cbrt(body_->volume);  // or the equations are as uneven as metres
+        /// Calls visit(shares, their volume, arms along b and c).
+        const auto for_each_pack = [&](auto&& visit) {
+            for_each_row([&](const Number& first, std::size_t row) {
+                if (!covered_[axis][row]) return;
+                const Vec3 arm = (place(axis, first) - body_->position) * per_unit;
+                const Real volume = extent(axis, first).prod();
+                for (std::size_t q = 0; q < in_row_; ++q) {
+                    const Pack along = (x_[axis != 0][q] - Pack(body_->position[0])) * Pack(per_unit);
+                    visit(share_[axis][row * in_row_ + q], volume, b == 0 ? along : Pack(arm[b]),
+                          c == 0 ? along : Pack(arm[c]));
+                }
+            });
+        };
+        // One, but where a floor takes so much that shares are at their bounds.
+        constexpr int most_rounds = 4;
         for (int round = 0; round < most_rounds; ++round) {
-            Mat3 matrix = 1e-12 * body_->volume * Mat3::Identity();
-            Vec3 lacks(body_->volume, 0, 0);
-            for (const Volume& v : covered_) {
-                if (share[v.k] == 0) continue;
-                const Vec3 x = terms(v.centre);
-                const Real covers = share[v.k] * v.size.prod();
-                lacks -= covers * x;
-                matrix += covers * (1 - share[v.k]) * x * x.transpose();
-            }
+            std::array<Pack, 3> covers;
+            std::array<Pack, 6> moves;
+            covers.fill(Pack(0)), moves.fill(Pack(0));
+            for_each_pack([&](const Pack& share, Real volume, Pack at_b, Pack at_c) {
+                const Pack all = share * Pack(volume);
+                if (!any(all > Pack(0))) return;
+                const Pack all_b = all * at_b, all_c = all * at_c, free = Pack(1) - share;
+                covers[0] += all, covers[1] += all_b, covers[2] += all_c;
+                moves[0] += free * all, moves[1] += free * all_b, moves[2] += free * all_c;
+                moves[3] += free * all_b * at_b, moves[4] += free * all_b * at_c;
+                moves[5] += free * all_c * at_c;
+            });
+            const Vec3 lacks(body_->volume - sum(covers[0]), -sum(covers[1]), -sum(covers[2]));
             if (lacks.norm() < 1e-14 * body_->volume) return;
-            const Vec3 by = matrix.ldlt().solve(lacks);
-            for (const Volume& v : covered_) {
-                Real& of = share[v.k];
-                if (of > 0 && of < 1) of += of * (1 - of) * std::clamp(by.dot(terms(v.centre)), -1.0, 1.0);
-            }
+            Mat3 matrix = 1e-12 * body_->volume * Mat3::Identity();
+            for (const auto& [i, j, k] :
+                 {std::array{0, 0, 0}, {1, 0, 1}, {2, 0, 2}, {1, 1, 3}, {2, 1, 4}, {2, 2, 5}})
+                matrix(i, j) += sum(moves[index(k)]);
+            const Vec3 by = matrix.ldlt().solve(lacks);  // which reads what is below the diagonal
+            for_each_pack([&](Pack& share, Real, Pack at_b, Pack at_c) {
+                const Pack more = Pack(by[0]) + Pack(by[1]) * at_b + Pack(by[2]) * at_c;
+                share += share * (Pack(1) - share) * min(max(more, Pack(-1)), Pack(1));
+            });
         }
     }
 
     /// After `find_shares`.
     void list_faces(int axis, SolidCover& cover) const {
         const Layout<3>& l = grid.layout();
-        for (const auto& [n, k, centre, s, core, friction] : covered_) {
-            if (kind_[axis][k] != Kind::open) continue;
-            const Number inside = inside_box(n);
-            Number below = inside;
-            below[axis] = wrapped(axis, inside[axis] - 1);
-            cover.faces.push_back({.face = l.at(inside),
-                                   .low = l.at(below),
-                                   .axis = axis,
-                                   .plane = std::min(inside[Layout<3>::outer], l.planes() - 1),
-                                   .share = share_[axis][k],
-                                   .core = retracted_ > 0 ? core : share_[axis][k],
-                                   .friction = friction,
-                                   .area = s.prod() / s[axis],
-                                   .gap = s[axis],
-                                   .arm = centre - body_->position});
-        }
+        for_each_covered(axis, [&](const Number& n, std::size_t p, int lane) {
+            const Vec3 s = extent(axis, n);
+            Number below = n;
+            --below[axis];
+            cover.faces.push_back(
+                {.face = offset(n),
+                 .low = offset(below),
+                 .axis = axis,
+                 .plane = std::min(wrapped(Layout<3>::outer, n[Layout<3>::outer]), l.planes() - 1),
+                 .share = share_[axis][p][lane],
+                 .core = (retracted_ > 0 ? core_[p] : share_[axis][p])[lane],
+                 .friction = friction_[p][lane],
+                 .area = s.prod() / s[axis],
+                 .gap = s[axis],
+                 .arm = place(axis, n) - body_->position});
+        });
     }
 
     void list_cells(SolidCover& cover) const {
-        for_each([&](const Number& n, std::size_t k) {
-            const Number inside = inside_box(n);
-            bool last = !grid.has(inside), all = true, none = true;
-            for (int a = 0; a < 3; ++a) last |= n[a] == first_[a] + length_[a] - 1;
-            if (last) return;
-            SolidCell cell{.cell = grid.layout().at(inside), .arm = place(of_cells, n) - body_->position};
-            for (int a = 0; a < 3; ++a)
-                for (int up = 0; up < 2; ++up) {
-                    const std::size_t at = k + static_cast<std::size_t>(up) * stride_[a];
-                    const Real share = kind_[a][at] == Kind::open ? share_[a][at] : 0;
-                    all &= share == 1, none &= share == 0;
-                    if (share == 0) continue;
-                    Number of = n;
-                    of[a] += up;
-                    const Vec3 s = extent(a, of);
-                    const Real out = (up == 1 ? share : -share) * s.prod() / s[a];
-                    cell.way[a] += out;
-                    cell.turn += out * (place(a, of) - body_->position).cross(Vec3::Unit(a));
-                }
-            if (!none) (all ? cover.inside : cover.cells).push_back(cell);
+        for_each_row([&](Number n, std::size_t row) {
+            const PerAxis<std::size_t, 3> up{row, row + 1, row + index(length_[1])};
+            for (int a = 1; a < 3; ++a)
+                if (n[a] == first_[a] + length_[a] - 1) return;
+            bool some = false;
+            for (int a = 0; a < 3; ++a) some |= covered_[a][row] || covered_[a][up[a]];
+            if (!some) return;
+            const Vec3 s = extent(of_cells, n), area = s.prod() * s.cwiseInverse();
+            for (int i = 0; i < length_[0] - 1; ++i, ++n[0]) {
+                Vec3 low, high;
+                for (int a = 0; a < 3; ++a)
+                    low[a] = share_at(a, row, i), high[a] = share_at(a, up[a], i + (a == 0));
+                if (low.isZero(0) && high.isZero(0)) continue;
+                if (!amid_ && !grid.has(inside_box(n))) continue;
+                const Vec3 way = area.cwiseProduct(high - low), arm = place(of_cells, n) - body_->position;
+                const bool all = low.isOnes(0) && high.isOnes(0);
+                (all ? cover.inside : cover.cells).push_back({offset(n), way, arm.cross(way), arm});
+            }
         });
+    }
+    void clear(int axis, const Place& at) noexcept {
+        share_[axis][at.pack].set(at.lane, 0), friction_[at.pack].set(at.lane, 0);
+    }
+    Real share_at(int axis, std::size_t row, int i) const noexcept {
+        return share_[axis][row * in_row_ + index(i / pack_lanes)][i % pack_lanes];
     }
 
     Closed closed_;
     Real retracted_;
     const FlowBody* body_ = nullptr;
     Real grown_ = 0, scale_ = 1;  ///< of a small body's spheres [m], of its shares [-]
+    bool amid_ = true;            ///< the box of cells has no side of the grid near by
     Number first_{}, length_{};
-    PerAxis<std::size_t, 3> stride_{};
+    std::size_t in_row_ = 0;  ///< packs
     PerAxis<std::vector<Line>, 3> lines_;
-    std::vector<Volume> covered_;          ///< in the order of k
-    PerAxis<std::vector<Real>, 4> share_;  ///< of the faces across each axis, of cells
-    PerAxis<std::vector<Kind>, 4> kind_;
+    std::array<Packs, 2> x_;                 ///< of faces across x, of centres [m]
+    PerAxis<Packs, 4> share_;                ///< of the faces across each axis, of cells
+    Packs friction_, core_;                  ///< of those looked at last
+    PerAxis<std::vector<char>, 4> covered_;  ///< [row]
+    std::vector<Place> beyond_;
 };
 
 }  // namespace detail

@@ -3,7 +3,7 @@
 
 #include <abrade/core/parallel.hpp>
 #include <abrade/coupling/dense_drag.hpp>
-#include <abrade/coupling/solid_shares.hpp>
+#include <abrade/coupling/solid_cover.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -22,18 +22,16 @@ struct SpreadPart {
 /// Bodies spread over what walls and other solids leave: each of their spheres by a triangle along each axis
 /// that has the variance of a ball of three diameters, or of three cells where these are wider. Its parts
 /// hold the body's volume along each axis: a pressure that is linear in space pushes with rho g V. All bodies
-/// together make one cover.
+/// together cover its faces.
 class SpreadCloud {
 public:
     /// `which`: numbers of those among `bodies` that are spread; `open(axis, face)`: share that is left of a
     /// face.
     template <class Open>
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
-               std::vector<std::size_t> which, Open&& open, SolidCover& cover) {
+               std::vector<std::size_t> which, Open&& open) {
         which_ = std::move(which);
-        cover.clear();
         spread_.resize(which_.size());
-        if (which_.empty()) return;
         parallel_blocks(
             static_cast<Index>(which_.size()),
             [&](Index, Index first, Index last) {
@@ -41,7 +39,7 @@ public:
                     spread({grid, sides}, bodies[which_[n]], open, spread_[n]);
             },
             block_of_bodies);
-        gather({grid, sides}, cover);
+        gather(grid.layout());
     }
 
     std::span<const std::size_t> which() const noexcept { return which_; }
@@ -52,7 +50,22 @@ public:
         return spread_[n].parts[axis];
     }
 
+    std::size_t faces() const noexcept { return start_[3]; }
+    /// The i-th of them, and the share that all bodies cover.
+    SolidFace face(const detail::GridNumbers& in, std::size_t i) const noexcept {
+        int axis = 0;
+        while (i >= start_[axis + 1]) ++axis;
+        const Covered& covered = faces_[axis][i - start_[axis]];
+        SolidFace f = face_of(in, axis, covered.face);
+        f.share = covered.share;
+        return f;
+    }
+
 private:
+    struct Covered {
+        Offset face = 0;
+        Real share = 0;
+    };
     struct Spread {
         Real reach = 0;  ///< [m]
         PerAxis<std::vector<SpreadPart>, 3> parts;
@@ -126,39 +139,35 @@ private:
         return volume;
     }
 
-    /// Numbers the faces that any of them has a part in.
-    void gather(const detail::GridNumbers& in, SolidCover& cover) {
-        const Layout<3>& l = in.grid.layout();
+    /// Numbers the faces that any of them has a part in; axes share none.
+    void gather(const Layout<3>& layout) {
         constexpr std::uint32_t none = ~std::uint32_t{0};
+        for (auto& faces : faces_) faces.clear();
+        start_.fill(0);
+        if (which_.empty()) return;
         if (number_[0].empty())
-            for (auto& numbers : number_) numbers.assign(static_cast<std::size_t>(l.total), none);
-        PerAxis<std::vector<SolidFace>, 3> found;  // axes share no face
-        parallel_tasks(3, [&](Index task) {
-            const auto axis = static_cast<std::size_t>(task);
-            auto& faces = found[axis];
+            for (auto& numbers : number_) numbers.assign(static_cast<std::size_t>(layout.total), none);
+        parallel_tasks(3, [&](Index axis) {
+            auto& faces = faces_[axis];
             for (Spread& one : spread_)
                 for (std::size_t i = 0; i < one.parts[axis].size(); ++i) {
                     const Offset face = one.at[axis][i];
                     std::uint32_t& number = number_[axis][static_cast<std::size_t>(face)];
                     if (number == none) {
                         number = static_cast<std::uint32_t>(faces.size());
-                        faces.push_back(face_of(in, static_cast<int>(axis), face));
+                        faces.push_back({face, 0});
                     }
                     one.parts[axis][i].face = number;
                     faces[number].share += one.parts[axis][i].share;
                 }
-            for (const SolidFace& f : faces) number_[axis][static_cast<std::size_t>(f.face)] = none;
+            for (const Covered& f : faces) number_[axis][static_cast<std::size_t>(f.face)] = none;
         });
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto before = static_cast<std::uint32_t>(cover.faces.size());
-            cover.faces.insert(cover.faces.end(), found[axis].begin(), found[axis].end());
-            for (Spread& one : spread_)
-                for (SpreadPart& part : one.parts[axis]) part.face += before;
-        }
-        for (const SolidFace& f : cover.faces) {
-            const Real half = f.share * f.volume() / 6;  // of each axis' a third
-            cover.parts.push_back({f.face, half}), cover.parts.push_back({f.low, half});
-        }
+        for (std::size_t axis = 0; axis < 3; ++axis) start_[axis + 1] = start_[axis] + faces_[axis].size();
+        parallel_for(static_cast<Index>(spread_.size()), [&](Index n) {
+            for (std::size_t axis = 1; axis < 3; ++axis)
+                for (SpreadPart& part : spread_[static_cast<std::size_t>(n)].parts[axis])
+                    part.face += static_cast<std::uint32_t>(start_[axis]);
+        });
     }
     static SolidFace face_of(const detail::GridNumbers& in, int axis, Offset face) noexcept {
         const Layout<3>& l = in.grid.layout();
@@ -173,6 +182,8 @@ private:
 
     std::vector<std::size_t> which_;
     std::vector<Spread> spread_;
+    PerAxis<std::vector<Covered>, 3> faces_;
+    PerAxis<std::size_t, 4> start_{};                ///< [axis] number of its first face
     PerAxis<std::vector<std::uint32_t>, 3> number_;  ///< of faces, while they are gathered
 };
 

@@ -73,9 +73,10 @@ public:
             for (int row = 0; row < l.rows_per_plane(); ++row) conduct(water, plane, row);
         });
         if constexpr (Solids::present) solids.close(m, open_faces());
-        for (const OpenFace& open : open_) {
+        for (std::size_t n = 0; n < open_.size(); ++n) {
+            const OpenFace& open = open_[n];
             Real area = face_area(open);
-            if constexpr (Solids::present) area *= solids.water_share(open);
+            if constexpr (Solids::present) area *= solids.water_share(n);
             m.dirichlet[open.cell] += static_cast<float>(area * std::abs(open.slope));
         }
         multigrid_.build();
@@ -259,7 +260,8 @@ private:
             for (int row = 0; row < m.layout.rows_per_plane(); ++row)
                 push ? take_gradient(u, pressure, dt, plane, row) : take_gradient(u, e, State(1), plane, row);
             if constexpr (Solids::present)
-                push ? solids.correct(u, pressure, step_, plane, true) : solids.correct(u, e, 1, plane, false);
+                push ? solids.correct(u, pressure, step_, plane, true)
+                     : solids.correct(u, e, 1, plane, false);
             for (int row = 0; row < m.layout.rows_per_plane() && !push; ++row) {
                 const RowRange r = m.range(plane, row);
                 const Offset start = m.layout.row_start(plane, row);

@@ -50,7 +50,7 @@ struct FlowStage {
 ///   as the last step left them, and `unseep`, back from it; `fluxes`: the solids' part of it;
 /// - `place`: where they stand at its end, in water of a density, and `parts`, what they cover of cells there; of `resolved_parts` the water
 ///   flows around the shape;
-/// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface among them,
+/// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface by their numbers,
 ///   before the operator is built and after it;
 /// - `slow`: friction on the water of the first stage, that the second starts from a flow which knows of them, and
 ///   `give_back`: a share of it, before `force` does it all: so a steady flow does not depend on the step;
@@ -72,7 +72,7 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
                                                std::span<const FlowBody> bodies, const FaceField<3>* open) {
     s.place(grid, sides, bodies, open, Real{});
     s.close(m, std::span<const OpenFace>{});
-    { still.water_share(OpenFace{}) } -> std::same_as<Real>;
+    { still.water_share(std::size_t{}) } -> std::same_as<Real>;
     s.keep_wet(m);
     s.slow(u, FlowStage{}), still.give_back(u, Real{});
     s.mix(u), still.unmix(u);
