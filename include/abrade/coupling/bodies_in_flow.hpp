@@ -26,16 +26,8 @@ public:
     const FaceColumns& faces() const noexcept { return faces_.columns(); }
     Real fastest() const noexcept { return fastest_; }  ///< of the bodies [m/s]
 
-    std::vector<SolidPart> parts() const {
-        std::vector<SolidPart> parts = faces_.parts_of_cloud();
-        faces_.add_parts_of_bodies(parts);
-        return parts;
-    }
-    std::vector<SolidPart> resolved_parts() const {
-        std::vector<SolidPart> parts;
-        faces_.add_parts_of_bodies(parts);
-        return parts;
-    }
+    std::span<const SolidPart> parts() const noexcept { return faces_.parts(); }
+    std::span<const SolidPart> resolved_parts() const noexcept { return faces_.parts_of_bodies(); }
     std::span<const SolidFlux> fluxes() const noexcept { return fluxes_; }
     void mix_last(FaceField<3>& u) const {
         for_fluxes([&](std::size_t i) { at(u, i) += beyond_[i]; });

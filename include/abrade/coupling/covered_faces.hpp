@@ -66,6 +66,7 @@ public:
                 }
             },
             block_of_bodies);
+        list_parts();
         sort_by_plane(grid.layout().planes());
         share_out(grid.layout(), open_area);
     }
@@ -79,21 +80,10 @@ public:
     const SpreadCloud& cloud() const noexcept { return cloud_; }
     const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }
     std::span<const SolidCover> covers() const noexcept { return covers_; }
-    /// Volume in cells.
-    std::vector<SolidPart> parts_of_cloud() const {
-        const FaceColumns& f = columns_;
-        std::vector<SolidPart> parts(2 * f.cloud);
-        parallel_for(static_cast<Index>(f.cloud), [&](Index n) {
-            const std::size_t i = at(n);
-            const Real half = f.share[i] * f.volume[i] / 6;  // of each axis' a third
-            parts[2 * i] = {f.face[i], half}, parts[2 * i + 1] = {f.low[i], half};
-        });
-        return parts;
-    }
-    void add_parts_of_bodies(std::vector<SolidPart>& parts) const {
-        for (const SolidCover& cover : covers_)
-            parts.insert(parts.end(), cover.parts.begin(), cover.parts.end());
-    }
+    /// Volume in cells: of bodies, of their cloud, of both.
+    std::span<const SolidPart> parts_of_bodies() const noexcept { return parts().first(of_bodies_); }
+    std::span<const SolidPart> parts_of_cloud() const noexcept { return parts().subspan(of_bodies_); }
+    std::span<const SolidPart> parts() const noexcept { return parts_; }
     /// All, in parallel.
     void for_each(auto&& visit) const {
         parallel_for(static_cast<Index>(columns_.count()), [&](Index i) { visit(at(i)); });
@@ -251,6 +241,21 @@ private:
                   [&](std::size_t i) { f.all_friction[i] = sum(i); }, [&](std::size_t i) { sum(i) = 0; });
     }
 
+    void list_parts() {
+        const FaceColumns& f = columns_;
+        of_bodies_ = 0;
+        for (const SolidCover& cover : covers_) of_bodies_ += cover.parts.size();
+        parts_.resize(of_bodies_ + 2 * f.cloud);
+        auto next = parts_.begin();
+        for (const SolidCover& cover : covers_) next = std::ranges::copy(cover.parts, next).out;
+        const std::span of_cloud = std::span(parts_).subspan(of_bodies_);
+        parallel_for(static_cast<Index>(f.cloud), [&](Index n) {
+            const std::size_t i = at(n);
+            const Real half = f.share[i] * f.volume[i] / 6;  // of each axis' a third
+            of_cloud[2 * i] = {f.face[i], half}, of_cloud[2 * i + 1] = {f.low[i], half};
+        });
+    }
+
     /// In each plane those come first of which bodies cover some.
     void sort_by_plane(int planes) {
         const FaceColumns& f = columns_;
@@ -294,6 +299,8 @@ private:
     std::vector<SolidCover> covers_;  ///< [body]
     SpreadCloud cloud_;
     FaceColumns columns_;
+    std::vector<SolidPart> parts_;  ///< of bodies, then of the cloud
+    std::size_t of_bodies_ = 0;
     std::vector<std::size_t> first_;        ///< [body] of its rows
     std::vector<std::uint32_t> by_plane_;   ///< rows in the order of their planes
     std::vector<std::size_t> plane_start_;  ///< [2 plane, + 1 of those near by] in `by_plane_`

@@ -85,14 +85,23 @@ Real HeightOfFluid<Dim>::level_around(Index n) const noexcept {
 /// Solid carries momentum's volumes with it, as far as it is below the surface.
 template <int Dim>
 void HeightOfFluid<Dim>::add_solid(std::span<const SolidFlux> fluxes, Real dt) {
-    solid_moved_.clear();
-    for (const SolidFlux& f : fluxes)
-        if (f.axis != vertical) solid_moved_.push_back({f.face, f.axis, f.speed});
-    parallel_for(static_cast<Index>(solid_moved_.size()), [&](Index i) {
-        SolidVolume& moved = solid_moved_[at(i)];
-        moved.volume = solid_below({moved.face, moved.axis, moved.volume}, dt);
+    solid_moved_.resize(fluxes.size());
+    const auto plane_of = [&](Index i) { return layout_.number(fluxes[at(i)].face)[Layout<Dim>::outer]; };
+    const auto count = static_cast<Index>(fluxes.size());
+    // Bodies may share a face: a block begins and ends with a plane.
+    const auto whole = [&](Index i) {
+        while (i > 0 && i < count && plane_of(i) == plane_of(i - 1)) ++i;
+        return i;
+    };
+    parallel_blocks(count, [&](Index, Index first, Index last) {
+        const Index end = whole(last);
+        for (Index i = whole(first); i < end; ++i) {
+            const SolidFlux& f = fluxes[at(i)];
+            const Real volume = f.axis == vertical ? 0 : solid_below(f, dt);
+            solid_moved_[at(i)] = {f.face, f.axis, volume};
+            if (volume != 0) moved_[f.axis][f.face] += volume;
+        }
     });
-    for (const SolidVolume& moved : solid_moved_) moved_[moved.axis][moved.face] += moved.volume;
 }
 
 /// Of what goes through a face in a step, what does so below the surface [m3].

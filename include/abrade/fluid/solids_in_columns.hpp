@@ -5,6 +5,7 @@
 #include <abrade/fluid/solids_in_flow.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -20,35 +21,27 @@ class SolidsInColumns {
 
 public:
     void set(std::span<const SolidPart> parts, const Grid<Dim>& grid, const HeightColumns<Dim>& columns) {
-        std::vector<Part> found(parts.size());
+        const auto pitch = at(columns.pitch()), planes = columns.count() / pitch;
+        found_.resize(parts.size()), by_plane_.resize(parts.size()), parts_.resize(parts.size());
         parallel_for(static_cast<Index>(parts.size()), [&](Index i) {
-            const SolidPart& part = parts[static_cast<std::size_t>(i)];
-            const CellNumber<Dim> number = grid.layout().number(part.cell);
-            found[static_cast<std::size_t>(i)] = {columns.column(number), number[vertical], part.volume};
+            const CellNumber<Dim> number = grid.layout().number(parts[at(i)].cell);
+            found_[at(i)] = {columns.column(number), number[vertical], parts[at(i)].volume};
         });
-        Index last = -1;
-        for (const Part& part : found) last = std::max(last, part.column);
-        start_.assign(static_cast<std::size_t>(last + 2), 0);
-        for (const Part& part : found) ++start_[static_cast<std::size_t>(part.column + 1)];
-        std::partial_sum(start_.begin(), start_.end(), start_.begin());
-        parts_.resize(found.size());
-        std::vector<std::size_t> end(start_.begin(), start_.end());
-        for (const Part& part : found) {  // what is in the same cell is one part
-            const auto column = static_cast<std::size_t>(part.column);
-            std::size_t at = start_[column];
-            while (at < end[column] && parts_[at].level != part.level) ++at;
-            if (at < end[column])
-                parts_[at].volume += part.volume;
-            else
-                parts_[end[column]++] = part;
-        }
-        std::size_t kept = 0;
-        for (std::size_t column = 0; column + 1 < start_.size(); ++column) {
-            const std::size_t first = std::exchange(start_[column], kept);
-            for (std::size_t at = first; at < end[column]; ++at) parts_[kept++] = parts_[at];
-        }
-        start_.back() = kept;
-        parts_.resize(kept);
+        std::vector<std::size_t> start(planes + 1, 0);
+        for (const Part& part : found_) ++start[at(part.column) / pitch + 1];
+        std::partial_sum(start.begin(), start.end(), start.begin());
+        std::vector<std::size_t> next = start;
+        for (std::size_t i = 0; i < found_.size(); ++i)
+            by_plane_[next[at(found_[i].column) / pitch]++] = static_cast<std::uint32_t>(i);
+        of_column_.assign(columns.count(), {});
+        parallel_blocks(
+            static_cast<Index>(planes),
+            [&](Index, Index first, Index last) {
+                for (std::size_t plane = at(first); plane < at(last); ++plane)
+                    merge(std::span(by_plane_).subspan(start[plane], start[plane + 1] - start[plane]),
+                          std::span(of_column_).subspan(plane * pitch, pitch), start[plane]);
+            },
+            block_of_planes);
     }
 
     bool empty() const noexcept { return parts_.empty(); }
@@ -101,7 +94,8 @@ public:
     }
 
     static void fields(auto&& field) {
-        field.bytes("parts", &SolidsInColumns::parts_), field.bytes("start", &SolidsInColumns::start_);
+        field.bytes("parts", &SolidsInColumns::parts_),
+            field.bytes("of_column", &SolidsInColumns::of_column_);
     }
 
 private:
@@ -110,14 +104,40 @@ private:
         int level = 0;
         Real volume = 0;
     };
+    struct Range {
+        std::size_t first = 0, count = 0;  ///< in `parts_`
+    };
+    static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
+
+    /// Parts of a plane to its columns; what is in the same cell is one.
+    void merge(std::span<const std::uint32_t> which, std::span<Range> columns, std::size_t first) {
+        const auto range_of = [&](std::uint32_t i) -> Range& {
+            return columns[at(found_[i].column) % columns.size()];
+        };
+        for (const std::uint32_t i : which) ++range_of(i).count;
+        for (Range& range : columns)
+            range.first = std::exchange(first, first + std::exchange(range.count, 0));
+        for (const std::uint32_t i : which) {
+            Range& range = range_of(i);
+            const auto own = std::span(parts_).subspan(range.first, range.count);
+            const auto same = std::ranges::find(own, found_[i].level, &Part::level);
+            if (same != own.end())
+                same->volume += found_[i].volume;
+            else
+                parts_[range.first + range.count++] = found_[i];
+        }
+    }
     std::span<const Part> of(Index column) const noexcept {
-        const auto at = static_cast<std::size_t>(column);
-        if (column < 0 || at + 1 >= start_.size()) return {};
-        return std::span(parts_).subspan(start_[at], start_[at + 1] - start_[at]);
+        if (parts_.empty()) return {};
+        const Range& range = of_column_[at(column)];
+        return std::span(parts_).subspan(range.first, range.count);
     }
 
-    std::vector<Part> parts_;         ///< by column
-    std::vector<std::size_t> start_;  ///< [column] in `parts_`
+    std::vector<Part> parts_;       ///< by column, with gaps
+    std::vector<Range> of_column_;  ///< [column]
+    // While they are set:
+    std::vector<Part> found_;
+    std::vector<std::uint32_t> by_plane_;  ///< in `found_`
 };
 
 }  // namespace abrade::detail

@@ -47,7 +47,7 @@ struct FlowStage {
 /// Solids that move in water on a grid. There are two velocities at a face: the water's, which momentum is reckoned
 /// with, and that of the mixture of water and solid, which carries and has no divergence. A step asks
 /// - `mix_last`, `seep`: from the water's velocity that of the mixture, or that of the water times its share of a face,
-///   as the last step left them, and `unseep`, back from it; `fluxes`: the solids' part of it;
+///   as the last step left them, and `unseep`, back from it; `fluxes`: the solids' part of it, plane by plane;
 /// - `place`: where they stand at its end, in water of a density, and `parts`, what they cover of cells there; of `resolved_parts` the water
 ///   flows around the shape;
 /// - `close`, `water_share`, `keep_wet`: what they take from what faces conduct, those at the surface by their numbers,
