@@ -52,11 +52,11 @@ public:
             block_of_bodies);
         spread(grid, sides, bodies, std::move(small), open_area);
         first_.resize(bodies.size());
-        std::size_t all = cloud_.faces();
-        for (const std::size_t b : order) first_[b] = std::exchange(all, all + covers_[b].faces.size());
-        columns_.resize(all, cloud_.faces());
-        parallel_for(static_cast<Index>(cloud_.faces()),
-                     [&](Index i) { columns_.place(at(i), cloud_.face(numbers, at(i)), bodies.size()); });
+        std::size_t rows = cloud_.faces();
+        for (const std::size_t b : order) first_[b] = std::exchange(rows, rows + covers_[b].faces.size());
+        columns_.resize(rows, cloud_.faces());
+        cloud_.number(numbers,
+                      [&](std::size_t i, const SolidFace& f) { columns_.place(i, f, bodies.size()); });
         parallel_blocks(
             static_cast<Index>(covers_.size()),
             [&](Index, Index first, Index last) {
@@ -91,29 +91,33 @@ public:
     /// Those of which bodies cover some, in an order that does not depend on threads: bodies may share a
     /// face.
     void on_plane(int plane, auto&& visit) const {
-        if (!by_plane_.empty()) visit_range(at(2 * plane), at(2 * plane + 1), visit);
+        if (columns_.count() > 0) visit_plane(plane, covered, visit);
     }
     /// Plane by plane in parallel, each of the visits to all faces of a plane before the next.
-    void by_planes(auto&&... visits) const { visit_planes(2, visits...); }
+    void by_planes(auto&&... visits) const { visit_planes(every, visits...); }
     /// Without those of which bodies cover nothing.
-    void covered_by_planes(auto&&... visits) const { visit_planes(1, visits...); }
+    void covered_by_planes(auto&&... visits) const { visit_planes(covered, visits...); }
+    /// Without the cloud's.
+    void of_bodies_by_planes(auto&&... visits) const { visit_planes(of_bodies, visits...); }
 
     /// [plane] How many faces are covered in those before it.
     std::vector<std::size_t> covered_before() const {
         std::vector<std::size_t> before{0};
-        for (std::size_t p = 0; p + 1 < plane_start_.size(); p += 2)
-            before.push_back(before.back() + plane_start_[p + 1] - plane_start_[p]);
+        for (int p = 0; p < planes_; ++p)
+            before.push_back(before.back() + cloud_.first_on(p + 1) - cloud_.first_on(p) +
+                             plane_start_[at(2 * p + 1)] - plane_start_[at(2 * p)]);
         return before;
     }
     /// Calls visit(row, number) for covered ones in the order of their planes, in parallel; `before`: see
     /// `covered_before`.
     void number_covered(const std::vector<std::size_t>& before, auto&& visit) const {
         parallel_blocks(
-            static_cast<Index>(before.size()) - 1,
+            planes_,
             [&](Index, Index first, Index last) {
-                for (std::size_t plane = at(first); plane < at(last); ++plane)
-                    for (std::size_t i = before[plane]; i < before[plane + 1]; ++i)
-                        visit(row(plane_start_[2 * plane] + i - before[plane]), i);
+                for (Index plane = first; plane < last; ++plane) {
+                    std::size_t number = before[at(plane)];
+                    visit_plane(plane, covered, [&](std::size_t i) { visit(i, number++); });
+                }
             },
             planes_at_once);
     }
@@ -205,17 +209,22 @@ private:
 
     static std::size_t at(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
 
-    std::size_t row(std::size_t in_order) const noexcept { return by_plane_[in_order]; }
-    void visit_range(std::size_t first, std::size_t last, auto& visit) const {
-        for (std::size_t n = plane_start_[first]; n < plane_start_[last]; ++n) visit(row(n));
+    struct Which {
+        bool cloud, near;  ///< and those that are near by, beside covered ones
+    };
+    static constexpr Which every{true, true}, covered{true, false}, of_bodies{false, true};
+    void visit_plane(Index plane, Which which, auto&& visit) const {
+        const auto p = static_cast<int>(plane);
+        if (which.cloud)
+            for (std::size_t i = cloud_.first_on(p); i < cloud_.first_on(p + 1); ++i) visit(i);
+        for (std::size_t n = plane_start_[at(2 * p)]; n < plane_start_[at(2 * p + 1 + which.near)]; ++n)
+            visit(std::size_t{by_plane_[n]});
     }
-    /// Of each plane the first, or both its parts.
-    void visit_planes(Index parts, auto&... visits) const {
+    void visit_planes(Which which, auto&... visits) const {
         parallel_blocks(
-            static_cast<Index>(plane_start_.size()) / 2,
+            planes_,
             [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane)
-                    (visit_range(at(2 * plane), at(2 * plane + parts), visits), ...);
+                for (Index plane = first; plane < last; ++plane) (visit_plane(plane, which, visits), ...);
             },
             planes_at_once);
     }
@@ -237,8 +246,10 @@ private:
                       f.water[i] = std::max(f.open[i] - sum(i), 0.0);
                       f.part[i] = sum(i) > 0 ? f.share[i] / sum(i) : 0, f.cover(i);
                   },
-                  [&](std::size_t i) { sum(i) = 0; }, [&](std::size_t i) { sum(i) += f.friction[i]; },
-                  [&](std::size_t i) { f.all_friction[i] = sum(i); }, [&](std::size_t i) { sum(i) = 0; });
+                  [&](std::size_t i) { sum(i) = 0; });
+        of_bodies_by_planes([&](std::size_t i) { sum(i) += f.friction[i]; },
+                            [&](std::size_t i) { f.all_friction[i] = sum(i); },
+                            [&](std::size_t i) { sum(i) = 0; });
     }
 
     void list_parts() {
@@ -256,16 +267,17 @@ private:
         });
     }
 
-    /// In each plane those come first of which bodies cover some.
+    /// Bodies' rows; in each plane those come first of which they cover some.
     void sort_by_plane(int planes) {
         const FaceColumns& f = columns_;
         const auto part = [&](std::size_t i) { return at(2 * f.plane[i] + (f.share[i] == 0)); };
+        planes_ = planes;
         plane_start_.assign(at(2 * planes) + 1, 0);
-        for (std::size_t i = 0; i < f.count(); ++i) ++plane_start_[part(i) + 1];
+        for (std::size_t i = f.cloud; i < f.count(); ++i) ++plane_start_[part(i) + 1];
         std::partial_sum(plane_start_.begin(), plane_start_.end(), plane_start_.begin());
-        by_plane_.resize(f.count());
+        by_plane_.resize(f.count() - f.cloud);
         std::vector<std::size_t> next = plane_start_;
-        for (std::size_t i = 0; i < f.count(); ++i)
+        for (std::size_t i = f.cloud; i < f.count(); ++i)
             by_plane_[next[part(i)]++] = static_cast<std::uint32_t>(i);
     }
 
@@ -301,8 +313,9 @@ private:
     FaceColumns columns_;
     std::vector<SolidPart> parts_;  ///< of bodies, then of the cloud
     std::size_t of_bodies_ = 0;
-    std::vector<std::size_t> first_;        ///< [body] of its rows
-    std::vector<std::uint32_t> by_plane_;   ///< rows in the order of their planes
+    std::vector<std::size_t> first_;  ///< [body] of its rows
+    int planes_ = 0;
+    std::vector<std::uint32_t> by_plane_;   ///< bodies' rows in the order of their planes
     std::vector<std::size_t> plane_start_;  ///< [2 plane, + 1 of those near by] in `by_plane_`
     std::vector<Real> surface_;             ///< [number of a face at the surface] see `water_share`
     FaceField<3> sums_;                     ///< of what bodies have at a face; 0 but while they are needed

@@ -30,7 +30,7 @@ struct FaceColumns {
     Reals water;         ///< share that bodies leave to the water, too [-]
     Reals covered;       ///< by the one body, of what is open; with all of them just what is no water [-]
     Reals part;          ///< of the one body in what all cover [-]
-    Reals all_friction;  ///< of all bodies here [1/m2]
+    Reals all_friction;  ///< of all bodies here; none of a cloud [1/m2]
     Reals lighter;       ///< the water's density over the face's, where `weigh` asks for it [-]
     Reals heavier;       ///< what the body adds to the face's density, over this [-]
     Reals per_gap;       ///< 1 over the distance of the pressures to both sides [1/m]

@@ -72,7 +72,7 @@ public:
     void slow(FaceField<3>& u, const FlowStage& stage) {
         const auto wet = [&](Offset cell) { return !stage.held || (*stage.held)[cell] >= 0.5; };
         FaceColumns& f = faces_.columns();
-        faces_.by_planes(
+        faces_.of_bodies_by_planes(
             [&](std::size_t i) {
                 const Real held = wet(f.face[i]) && wet(f.low[i]) ? held_by(i, stage) : 0;
                 f.taken[i] = held * (f.at(u, i) - f.solid[i]);
@@ -81,7 +81,7 @@ public:
     }
     void give_back(FaceField<3>& u, Real share) const {
         const FaceColumns& f = faces();
-        faces_.by_planes([&](std::size_t i) { f.at(u, i) += share * f.taken[i]; });
+        faces_.of_bodies_by_planes([&](std::size_t i) { f.at(u, i) += share * f.taken[i]; });
     }
 
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {

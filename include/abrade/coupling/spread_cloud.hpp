@@ -4,9 +4,12 @@
 #include <abrade/core/parallel.hpp>
 #include <abrade/coupling/dense_drag.hpp>
 #include <abrade/coupling/solid_cover.hpp>
+#include <abrade/fluid/wet_rows.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -50,26 +53,49 @@ public:
         return spread_[n].parts[axis];
     }
 
-    std::size_t faces() const noexcept { return start_[3]; }
-    /// The i-th of them, and the share that all bodies cover.
-    SolidFace face(const detail::GridNumbers& in, std::size_t i) const noexcept {
-        int axis = 0;
-        while (i >= start_[axis + 1]) ++axis;
-        const Covered& covered = faces_[axis][i - start_[axis]];
-        SolidFace f = face_of(in, axis, covered.face);
-        f.share = covered.share;
-        return f;
+    std::size_t faces() const noexcept { return start_.empty() ? 0 : start_.back(); }
+    /// Number of the first face on a plane.
+    std::size_t first_on(int plane) const noexcept { return start_[index(3 * plane)]; }
+
+    /// After `place`: gives parts the numbers of their faces, which go on in memory as the grid's do. Calls
+    /// visit(number, face, of which all bodies cover the share), in parallel.
+    void number(const detail::GridNumbers& in, auto&& visit) {
+        if (which_.empty()) return;
+        for_planes(in.grid.layout(), [&](int plane, int axis) {
+            std::size_t n = start_[index(3 * plane + axis)];
+            SolidFace f{.axis = axis, .plane = plane};
+            for_each_covered(plane, axis, [&](int row, int i, Offset face) {
+                const CellNumber<3> cell{plane, i, row};
+                f.gap = in.centre(axis, cell[axis]) - in.centre(axis, cell[axis] - 1);
+                f.area = 1;
+                for (int a = 0; a < 3; ++a)
+                    if (a != axis) f.area *= in.size(a, cell[a]);
+                CellNumber<3> below = cell;
+                below[axis] = in.wrapped(axis, cell[axis] - 1);
+                f.face = face, f.low = in.grid.layout().at(below);
+                f.share = std::exchange(covered_[axis][face], 0);
+                number_[axis][index(face)] = static_cast<std::uint32_t>(n);
+                visit(n++, std::as_const(f));
+            });
+        });
+        parallel_for(
+            static_cast<Index>(spread_.size()),
+            [&](Index n) {
+                Spread& one = spread_[index(n)];
+                for (int axis = 0; axis < 3; ++axis)
+                    for (std::size_t i = 0; i < one.at[axis].size(); ++i)
+                        one.parts[axis][i].face = number_[axis][index(one.at[axis][i])];
+            },
+            block_of_bodies);
     }
 
 private:
-    struct Covered {
-        Offset face = 0;
-        Real share = 0;
-    };
+    static std::size_t index(std::integral auto i) noexcept { return static_cast<std::size_t>(i); }
     struct Spread {
         Real reach = 0;  ///< [m]
         PerAxis<std::vector<SpreadPart>, 3> parts;
-        PerAxis<std::vector<Offset>, 3> at;  ///< their faces
+        PerAxis<std::vector<Offset>, 3> at;    ///< their faces
+        PerAxis<PerAxis<RowRange, 3>, 3> box;  ///< numbers of these along each axis
     };
     struct Layer {
         int number = 0;
@@ -105,7 +131,7 @@ private:
         for (int axis = 0; axis < 3; ++axis) {
             auto& parts = to.parts[axis];
             auto& at = to.at[axis];
-            parts.clear(), at.clear();
+            parts.clear(), at.clear(), to.box[axis].fill({});
             Real sum = 0;
             for (const Sphere& s : body.spheres) {
                 Real largest = body.spheres.size() > 1 ? cube(s.radius) : 1;
@@ -113,12 +139,15 @@ private:
                 for (int a = 0; a < 3; ++a) {
                     find_layers(in, a, a == axis, s.centre[a], half, layers[a]);
                     Real top = 0;
-                    for (const Layer& layer : layers[a]) top = std::max(top, layer.weight);
+                    for (const Layer& layer : layers[a]) {
+                        top = std::max(top, layer.weight);
+                        to.box[axis][a] = hull(to.box[axis][a], {layer.number, layer.number + 1});
+                    }
                     largest *= top;
                 }
                 for (const Layer& x : layers[0])
-                    for (const Layer& y : layers[1])
-                        for (const Layer& z : layers[2]) {
+                    for (const Layer& z : layers[2])
+                        for (const Layer& y : layers[1]) {
                             const Real weight = volume * x.weight * y.weight * z.weight;
                             if (weight < least * largest) continue;
                             const Offset face = in.grid.layout().at({x.number, y.number, z.number});
@@ -131,60 +160,57 @@ private:
             for (SpreadPart& part : parts) part.share = std::min(part.share * body.volume / sum, most);
         }
     }
-    static Real control_volume(const detail::GridNumbers& in, int axis, Offset face) noexcept {
-        const CellNumber<3> n = in.grid.layout().number(face);
-        Real volume = in.centre(axis, n[axis]) - in.centre(axis, n[axis] - 1);
-        for (int a = 0; a < 3; ++a)
-            if (a != axis) volume *= in.size(a, n[a]);
-        return volume;
-    }
 
-    /// Numbers the faces that any of them has a part in; axes share none.
+    /// What all of them cover of each face, and how many faces that are on each plane.
     void gather(const Layout<3>& layout) {
-        constexpr std::uint32_t none = ~std::uint32_t{0};
-        for (auto& faces : faces_) faces.clear();
-        start_.fill(0);
+        start_.assign(index(3 * layout.planes() + 1), 0);
         if (which_.empty()) return;
-        if (number_[0].empty())
-            for (auto& numbers : number_) numbers.assign(static_cast<std::size_t>(layout.total), none);
-        parallel_tasks(3, [&](Index axis) {
-            auto& faces = faces_[axis];
-            for (Spread& one : spread_)
-                for (std::size_t i = 0; i < one.parts[axis].size(); ++i) {
-                    const Offset face = one.at[axis][i];
-                    std::uint32_t& number = number_[axis][static_cast<std::size_t>(face)];
-                    if (number == none) {
-                        number = static_cast<std::uint32_t>(faces.size());
-                        faces.push_back({face, 0});
-                    }
-                    one.parts[axis][i].face = number;
-                    faces[number].share += one.parts[axis][i].share;
-                }
-            for (const Covered& f : faces) number_[axis][static_cast<std::size_t>(f.face)] = none;
+        if (covered_[0].size() == 0) {
+            covered_ = face_field<3>(layout);
+            for (auto& numbers : number_) numbers.resize(index(layout.total));
+        }
+        parallel_tasks(3, [&](Index axis) {  // which share no face
+            rows_[axis] = WetRows<3>(layout);
+            for (const Spread& one : spread_) {
+                for (std::size_t i = 0; i < one.at[axis].size(); ++i)
+                    covered_[axis][one.at[axis][i]] += one.parts[axis][i].share;
+                const auto& box = one.box[axis];
+                for (int plane = box[0].begin; plane < box[0].end; ++plane)
+                    for (int row = box[2].begin; row < box[2].end; ++row)
+                        rows_[axis].row(plane, row) = hull(rows_[axis].row(plane, row), box[1]);
+            }
         });
-        for (std::size_t axis = 0; axis < 3; ++axis) start_[axis + 1] = start_[axis] + faces_[axis].size();
-        parallel_for(static_cast<Index>(spread_.size()), [&](Index n) {
-            for (std::size_t axis = 1; axis < 3; ++axis)
-                for (SpreadPart& part : spread_[static_cast<std::size_t>(n)].parts[axis])
-                    part.face += static_cast<std::uint32_t>(start_[axis]);
+        for_planes(layout, [&](int plane, int axis) {
+            std::size_t& count = start_[index(3 * plane + axis + 1)];
+            for_each_covered(plane, axis, [&](int, int, Offset) { ++count; });
         });
+        std::partial_sum(start_.begin(), start_.end(), start_.begin());
     }
-    static SolidFace face_of(const detail::GridNumbers& in, int axis, Offset face) noexcept {
-        const Layout<3>& l = in.grid.layout();
-        CellNumber<3> below = l.number(face);
-        SolidFace f{.face = face, .axis = axis, .plane = std::min(below[Layout<3>::outer], l.planes() - 1)};
-        f.gap = in.centre(axis, below[axis]) - in.centre(axis, below[axis] - 1);
-        f.area = control_volume(in, axis, face) / f.gap;
-        below[axis] = in.wrapped(axis, below[axis] - 1);
-        f.low = l.at(below);
-        return f;
+    static void for_planes(const Layout<3>& layout, auto&& body) {
+        parallel_blocks(
+            layout.planes(),
+            [&](Index, Index first, Index last) {
+                for (Index plane = first; plane < last; ++plane)
+                    for (int axis = 0; axis < 3; ++axis) body(static_cast<int>(plane), axis);
+            },
+            block_of_planes);
+    }
+    void for_each_covered(int plane, int axis, auto&& visit) const {
+        const Layout<3>& layout = rows_[axis].layout();
+        for (int row = 0; row < layout.rows_per_plane(); ++row) {
+            const RowRange range = rows_[axis].row(plane, row);
+            const Offset start = layout.row_start(plane, row);
+            for (int i = range.begin; i < range.end; ++i)
+                if (covered_[axis][start + i] > 0) visit(row, i, start + i);
+        }
     }
 
     std::vector<std::size_t> which_;
     std::vector<Spread> spread_;
-    PerAxis<std::vector<Covered>, 3> faces_;
-    PerAxis<std::size_t, 4> start_{};                ///< [axis] number of its first face
-    PerAxis<std::vector<std::uint32_t>, 3> number_;  ///< of faces, while they are gathered
+    std::vector<std::size_t> start_;                 ///< [3 plane + axis] number of its first face
+    FaceField<3> covered_;                           ///< share of a face until it gets its number, or 0
+    PerAxis<WetRows<3>, 3> rows_;                    ///< that hold all of them
+    PerAxis<std::vector<std::uint32_t>, 3> number_;  ///< of faces
 };
 
 }  // namespace abrade
