@@ -48,7 +48,7 @@ public:
         visit(*this, [&](auto& one) { one.mix(u); });
     }
     void unmix(FaceField<3>& u) const { base().unmix(u); }
-    Real water_share(const OpenFace& open) const { return base().water_share(open); }
+    Real water_share(std::size_t n) const { return base().water_share(n); }
     auto volumes(bool only_new) const { return base().volumes(only_new); }
     Vec3 moment(const Grid<3>& grid, const Field<Real>* fraction, bool only_new) const {
         return base().moment(grid, fraction, only_new);
