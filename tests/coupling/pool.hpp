@@ -4,21 +4,21 @@
 
 namespace resolved {
 
-template <class Solids>
-using PoolAmong = GridFluid<3, HeightSurface, Limited, Real, NoTurbulence, Solids>;
+template <class Solids, class Surface = HeightSurface>
+using PoolAmong = GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>;
 
 constexpr Real g = 9.81, h = 0.05, level = 0.613;
 
 /// A box of 1 m x 1 m, filled up to `level`.
-template <class Solids = MonolithicSolids<>>
-PoolAmong<Solids> pool() {
-    return PoolAmong<Solids>({.grid = {.cells = {20, 20, 24}, .spacing = Vec3::Constant(h)},
-                              .sides = Sides<3>::all(Side::slip),
-                              .water = [](const Vec3& x) { return level - x.z(); },
-                              .gravity = {0, 0, -g},
-                              .density = 1000,
-                              .viscosity = 1e-3,
-                              .tolerance = 1e-8});
+template <class Solids = MonolithicSolids<>, class Surface = HeightSurface>
+PoolAmong<Solids, Surface> pool() {
+    return PoolAmong<Solids, Surface>({.grid = {.cells = {20, 20, 24}, .spacing = Vec3::Constant(h)},
+                                       .sides = Sides<3>::all(Side::slip),
+                                       .water = [](const Vec3& x) { return level - x.z(); },
+                                       .gravity = {0, 0, -g},
+                                       .density = 1000,
+                                       .viscosity = 1e-3,
+                                       .tolerance = 1e-8});
 }
 Real fastest(const auto& water) {
     Real most = 0;

@@ -44,8 +44,8 @@ class GridFluid {
     static constexpr bool is_height = std::same_as<Surface, HeightSurface>;
     static constexpr bool has_surface = is_height || std::same_as<Surface, FreeSurface>;
     static_assert(!has_surface || std::same_as<State, Real>, "a surface is kept in double precision");
-    static_assert(!Solids::present || (Dim == 3 && std::same_as<State, Real> && (is_height || !has_surface)),
-                  "solids that move: in 3-D, in double precision, in a full box or below a HeightSurface");
+    static_assert(!Solids::present || (Dim == 3 && std::same_as<State, Real>),
+                  "solids that move: in 3-D, in double precision");
 
 public:
     static constexpr std::string_view name = "GridFluid";

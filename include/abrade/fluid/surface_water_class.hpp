@@ -78,15 +78,15 @@ public:
     /// Copies to beyond periodic sides.
     void join(auto& field) const noexcept { fill_periodic(field, layout(), sides_); }
 
-    /// As HeightOfFluid's.
-    void set_solids(std::span<const SolidPart> parts, std::span<const SolidFlux> fluxes) requires is_height {
+    /// As the liquid's.
+    void set_solids(std::span<const SolidPart> parts, std::span<const SolidFlux> fluxes) {
         liquid_.set_solids(parts, fluxes);
     }
-    void stand_solids(std::span<const SolidPart> parts) requires is_height {
+    void stand_solids(std::span<const SolidPart> parts) {
         liquid_.stand_solids(parts);
         find_rows(), find_held();
     }
-    void take_back_solids() requires is_height { liquid_.take_back_solids(); }
+    void take_back_solids() { liquid_.take_back_solids(); }
 
     /// Moves the liquid with the velocity over a step.
     void move(const FaceField<Dim>& velocity, Real step) {
@@ -135,7 +135,7 @@ public:
             });
         join(wet_);
         find_open_faces(projection);
-        projection.set({wet_, rows, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()}, solids);
+        projection.set({wet_, rows, open_, room(), open_area()}, solids);
         find_air();
     }
 
@@ -256,7 +256,7 @@ public:
         WetRows<Dim> rows = rows_;
         rows.include(rows_before_);
         for (const WetRows<Dim>& all : {WetRows<Dim>::whole(layout()), rows})
-            projection.set({wet_, all, open_, walls_ ? &walls_->open_volume() : nullptr, open_area()});
+            projection.set({wet_, all, open_, room(), open_area()});
     }
 
 private:
@@ -272,6 +272,11 @@ private:
         }
     }
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
+    /// Of cells, in shares of which the liquid's surplus is told; none: all.
+    const Field<Real>* room() const noexcept {
+        if constexpr (!is_height) return liquid_.room();
+        return walls_ ? &walls_->open_volume() : nullptr;
+    }
     bool is_open(Offset c) const noexcept { return !walls_ || walls_->open_volume()[c] > 0; }
 
     void find_air() { extension_.find({wet_, rows_, held(), still_}); }

@@ -2,6 +2,7 @@
 // The class VolumeOfFluid: what it holds and answers. What a step does stands in volume_sweeps.hpp and
 // volume_settling.hpp; users include volume_of_fluid.hpp, which has all.
 
+#include <abrade/fluid/solids_in_cells.hpp>
 #include <abrade/fluid/surface_at_walls.hpp>
 #include <abrade/fluid/surface_band.hpp>
 #include <abrade/fluid/surface_marks.hpp>
@@ -141,7 +142,9 @@ public:
             for (std::size_t k = 0; k < areas_[a].size(); ++k) swept_per_speed_[a][k] = dt * areas_[a][k];
         carry_bulk();
         for (int sweep = 0; sweep < Dim; ++sweep) this->sweep(sweep);
+        if (solids_.any()) move_solids(dt);
         settle(step);
+        if (solids_.any()) close_voids();
         ++steps_;
         wet_.find_within(active_, fraction_);
         locate();
@@ -156,6 +159,22 @@ public:
         const Real rate = outflow_rate(velocity);
         return rate > 0 ? params_.courant / rate : std::numeric_limits<Real>::infinity();
     }
+
+    /// Solids that are among the liquid from the next step on, and what of them goes through faces in it
+    /// (SolidsInCells). Velocities are then those of the liquid times its share of a face, shares of volume
+    /// those that solids leave, too. `moved()` holds both.
+    void set_solids(std::span<const SolidPart> parts, std::span<const SolidFlux> fluxes) {
+        if (solids_.any() || !parts.empty()) solids_.set(grid_, open_volumes_, parts);
+        solid_fluxes_ = fluxes;
+    }
+    /// Solids that the liquid has been given around, up to its surface as it stands.
+    void stand_solids(std::span<const SolidPart> parts) { solids_.stand(grid_, open_volumes_, parts); }
+    /// After a step that went wrong.
+    void take_back_solids() { solids_.take_back(); }
+    bool has_solid(Offset cell) const noexcept { return solids_.has(cell); }
+    std::span<const SolidVolume> solid_moved() const noexcept { return solid_moved_; }  ///< part of `moved`
+    /// Shares of cells that walls and solids leave to the liquid [-]; none: all.
+    const Field<Real>* room() const noexcept { return solids_.any() ? &solids_.room() : open_volumes_; }
 
     /// Steps taken: they say in which order the axes are swept. Set to go back.
     Index steps() const noexcept { return steps_; }
@@ -190,7 +209,8 @@ public:
                 for (int i = 0; i < layout_.row_length(); ++i) {
                     const Offset c = start + i;
                     if ((marks_[c] & cell_mark::open) != 0)
-                        sum += (fraction_[c] + surplus_[c]) * open_volume(c, Dim == 3 ? r : i);
+                        sum += (fraction_[c] + surplus_[c]) * open_volume(c, Dim == 3 ? r : i) +
+                               (solids_.has(c) ? solids_.lag(c) * sizes_.volume(Dim == 3 ? r : i) : 0);
                 }
             }
             plane[static_cast<std::size_t>(p)] = sum;
@@ -261,7 +281,8 @@ public:
             field("band", &VolumeOfFluid::band_), field("at_walls", &VolumeOfFluid::at_walls_),
             field("wet", &VolumeOfFluid::wet_), field("active", &VolumeOfFluid::active_),
             field("touched", &VolumeOfFluid::touched_), field("filled", &VolumeOfFluid::filled_),
-            field("settled", &VolumeOfFluid::settled_), field("steps", &VolumeOfFluid::steps_);
+            field("settled", &VolumeOfFluid::settled_), field("steps", &VolumeOfFluid::steps_),
+            field("solids", &VolumeOfFluid::solids_);
     }
 
 private:
@@ -295,7 +316,7 @@ private:
     }
 
     Real open_volume(Offset c, Index level) const noexcept {
-        return sizes_.volume(level) * (open_volumes_ ? (*open_volumes_)[c] : 1);
+        return sizes_.volume(level) * (room() ? (*room())[c] : 1);
     }
     /// Volume that a lower face sweeps in a step, positive upwards [m3].
     Real swept(int axis, Offset c, Index level) const noexcept {
@@ -345,6 +366,8 @@ private:
     void join_periodic(int axis);
     bool is_stray(int axis, Offset c, int way) const noexcept;
     void even_out_rims(int axis);
+    void move_solids(Real dt);
+    void close_voids();
     void settle(VolumeStep& step);
     Real share_out(Offset c, Index level, Real amount);
     void push_surplus(Offset c, Index level, std::size_t reach);
@@ -382,6 +405,9 @@ private:
     WetRows<Dim> wet_, active_, touched_;        ///< touched: active now or in the step before
     Field<std::uint8_t> filled_;                 ///< 1: c of Weymouth and Yue; of cells of the band
     std::vector<std::vector<CellAt>> overfull_;  ///< [plane] of the bulk, beyond `most_surplus`
+    detail::SolidsInCells<Dim> solids_;
+    std::vector<SolidVolume> solid_moved_;
+    std::span<const SolidFlux> solid_fluxes_;  ///< of the step to come
     /// Cells outside of the last band that may have to be closed: set from outside, or given what was moved
     /// aside.
     std::vector<Index> settled_;

@@ -212,6 +212,56 @@ void VolumeOfFluid<Dim>::settle(VolumeStep& step) {
             if (std::abs(surplus_[c]) > params_.most_surplus) push_surplus(c, level, reach);
 }
 
+/// Liquid in the room that solids leave it now; what of them is below the surface carries momentum, too.
+template <int Dim>
+void VolumeOfFluid<Dim>::move_solids(Real dt) {
+    solid_moved_.clear();
+    for (const SolidFlux& f : std::exchange(solid_fluxes_, {})) {
+        CellNumber<Dim> number = layout_.number(f.face);
+        const Real open = open_faces_ ? (*open_faces_)[index(f.axis)][f.face] : 1;
+        solid_moved_.push_back({f.face, f.axis, f.speed * open * dt * sizes_.face(f.axis, number[vertical])});
+    }
+    std::vector<Real> below;
+    for (const SolidVolume& s : solid_moved_)
+        below.push_back(std::clamp(fraction_[s.volume > 0 ? s.face - layout_.stride[index(s.axis)] : s.face],
+                                   Real(0), Real(1)));
+    // No faster than water falls through a cell, however short the step.
+    constexpr Real most = 0.05;
+    const Real falls = gravity_.norm() > 0 ? dt * std::sqrt(gravity_.norm() / grid_.smallest()) : most;
+    solids_.move(grid_, sides_, fraction_, surplus_, solid_moved_, std::min(falls, most));
+    for (std::size_t n = 0; n < below.size(); ++n) {
+        SolidVolume& s = solid_moved_[n];
+        s.volume *= below[n], moved_[index(s.axis)][s.face] += s.volume;
+    }
+}
+
+/// A plane that cuts a cell leaves the centre of one of the cells around it dry. A cell that is not full and
+/// has no such neighbour holds a void that nothing can fill, for its pressure is that of water: it is full,
+/// and lacks what the pressure is to draw in.
+template <int Dim>
+void VolumeOfFluid<Dim>::close_voids() {
+    constexpr Real wet = 0.5;
+    std::vector<Offset> around{0};
+    for (const Offset stride : layout_.stride)
+        for (std::size_t n = around.size(); n-- > 0;)
+            around.push_back(around[n] - stride), around.push_back(around[n] + stride);
+    std::vector<std::vector<Offset>> voids(index(layout_.planes()));
+    for_band_packs([&](int plane, Offset c, Index, const PackMask& band) {
+        const Pack f = Pack::load(fraction_.data() + c);
+        for (unsigned lanes = lanes_of(band & (f >= Pack(wet)) & (f < Pack(1))); lanes != 0;
+             lanes &= lanes - 1) {
+            const Offset cell = c + std::countr_zero(lanes);
+            if (std::ranges::all_of(around, [&](Offset s) {
+                    return fraction_[cell + s] >= wet || (marks_[cell + s] & cell_mark::open) == 0;
+                }))
+                voids[index(plane)].push_back(cell);
+        }
+    });
+    for (const auto& plane : voids)
+        for (const Offset c : plane) solids_.lag_by(c, (fraction_[c] - 1) * (*room())[c]), fraction_[c] = 1;
+    solids_.keep_surplus(fraction_, surplus_);
+}
+
 template <int Dim>
 void VolumeOfFluid<Dim>::make_room() {
     grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) {

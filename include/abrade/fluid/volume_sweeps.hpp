@@ -105,7 +105,7 @@ Real VolumeOfFluid<Dim>::outflow_rate(const FaceField<Dim>& velocity) const {
         }
         rate *= at_level(per_volume_, level);
         // Cells that are mostly wall do not rule the step: what is too much for them is moved aside.
-        if (open_volumes_) rate /= max(Pack::load(open_volumes_->data() + c), Pack(0.5));
+        if (room()) rate /= max(Pack::load(room()->data() + c), Pack(0.5));
         Pack& largest = most[index(plane)];
         largest = select(holds & !(rate <= largest), rate, largest);  // keeps what is not a number
     });
@@ -130,7 +130,7 @@ Real VolumeOfFluid<Dim>::rate_of(const FaceField<Dim>& velocity, Index i) const 
         const Real high = open_faces_ ? (*open_faces_)[index(a)][up] : 1;
         rate += (high * std::max(u[up], Real(0)) + low * std::max(-u[c], Real(0))) / sizes_.edge(a, level);
     }
-    return rate / (open_volumes_ ? std::max((*open_volumes_)[c], Real(0.5)) : 1);
+    return rate / (room() ? std::max((*room())[c], Real(0.5)) : 1);
 }
 
 /// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
@@ -188,7 +188,7 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         std::memcpy(in_band.data(), band + i, pack_lanes);
         const bool deep = in_band == std::array<std::uint8_t, pack_lanes>{};
         Pack lost = gone * at_level(per_volume_, level_of(i));
-        if (open_volumes_) lost /= Pack::load(open_volumes_->data() + start + i);
+        if (room()) lost /= Pack::load(room()->data() + start + i);
         if (deep && full == (1u << pack_lanes) - 1) {
             const Pack left = Pack::load(surplus + i) - lost;
             left.store(surplus + i);
@@ -200,7 +200,7 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         for (int lane = 0; lane < pack_lanes; ++lane)
             if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0 &&
                 std::abs(surplus[i + lane]) > params_.most_surplus &&
-                (marks_[start + i + lane] & cell_mark::inside) != 0)
+                (marks_[start + i + lane] & cell_mark::inside) != 0 && !solids_.has(start + i + lane))
                 overfull.push_back({start + i + lane, Dim == 3 ? level : Index{i + lane}});
     }
 }
@@ -258,7 +258,7 @@ void VolumeOfFluid<Dim>::sweep(int number) {
             left -= select(filled, added, Pack(0));
         }
         Pack change = left * at_level(per_volume_, level);
-        if (open_volumes_) change /= Pack::load(open_volumes_->data() + c);
+        if (room()) change /= Pack::load(room()->data() + c);
         const Pack f = Pack::load(fraction_.data() + c);
         select(band, f - change, f).store(fraction_.data() + c);
     });
@@ -379,7 +379,7 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 template <int Dim>
 bool VolumeOfFluid<Dim>::is_stray(int axis, Offset c, int way) const noexcept {
     if (planes_.told[index(plane_of_[c])] != 0) return false;
-    const bool whole = !open_volumes_ || (*open_volumes_)[c] == 1;
+    const bool whole = !room() || (*room())[c] == 1;
     const Offset behind = c - way * layout_.stride[index(axis)];
     const bool open_behind = (marks_[behind] & cell_mark::open) != 0 &&
                              ((marks_[behind] & cell_mark::inside) != 0 || sides_.periodic(axis));
