@@ -8,8 +8,9 @@ using namespace drop_into_pool;
 
 namespace {
 
+template <class Surface>
 void check(const Drop& d) {
-    const Fall f = fall(d);
+    const Fall f = fall<Surface>(d);
     MESSAGE(d.cells << " cells, off " << d.off.x() << ", " << d.off.z() << ", " << (d.below ? 0 : d.speed)
                     << " m/s: " << f.depth << " diameters deep at " << f.speed << " m/s; without history "
                     << f.free.depth / diameter << " at " << f.free.speed << ", with it "
@@ -31,9 +32,16 @@ void check(const Drop& d) {
 }  // namespace
 
 TEST_CASE("a sphere in a pool, let go below the surface: between the models with and without history") {
-    check({.off = {0.3, 0.1, 0.2}, .below = true});
+    check<HeightSurface>({.off = {0.3, 0.1, 0.2}, .below = true});
 }
 
 TEST_CASE("a sphere goes through the surface, and the water closes over it, wherever it is on the grid") {
-    for (const Vec3& off : {Vec3(0, 0, 0), Vec3(0.3, 0.1, 0.2), Vec3(0.5, 0.5, 0.7)}) check({.off = off});
+    for (const Vec3& off : {Vec3(0, 0, 0), Vec3(0.3, 0.1, 0.2), Vec3(0.5, 0.5, 0.7)})
+        check<HeightSurface>({.off = off});
+}
+
+TEST_CASE("the same of a volume of fluid") {
+    check<FreeSurface>({.off = {0.3, 0.1, 0.2}, .below = true});
+    for (const Vec3& off : {Vec3(0, 0, 0), Vec3(0.3, 0.1, 0.2), Vec3(0.5, 0.5, 0.7)})
+        check<FreeSurface>({.off = off});
 }

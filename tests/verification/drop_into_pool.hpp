@@ -7,7 +7,8 @@ namespace drop_into_pool {
 
 using namespace resolved;
 
-using Pool = GridFluid<3, HeightSurface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+template <class Surface>
+using Pool = GridFluid<3, Surface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
 
 constexpr Real diameter = 0.1, density = 2650, rho = 1000, g = 9.81;  // [m], [kg/m3], [m/s2]
 constexpr Real volume = pi / 6 * diameter * diameter * diameter, radius = 0.5 * diameter;
@@ -78,18 +79,19 @@ struct Fall {
 };
 
 /// Into a pool 6 diameters wide and 8 deep, up and down alone, until its lowest point is 6 diameters deep.
-inline Fall fall(const Drop& d) {
+template <class Surface = HeightSurface>
+Fall fall(const Drop& d) {
     const Real h = diameter / d.cells, level = 8 * diameter + d.off.z() * h;
     const int n = static_cast<int>(std::round(6 * d.cells)), up = static_cast<int>(std::round(10 * d.cells));
-    Pool water({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(h)},
-                .sides = Sides<3>::all(Side::slip),
-                .water = [level](const Vec3& x) { return level - x.z(); },
-                .gravity = {0, 0, -g},
-                .density = rho,
-                .viscosity = d.viscosity,
-                .largest_step = 0.004,
-                .tolerance = 1e-8},
-               {}, MonolithicSolids<>({.resolved_from = 0}));
+    Pool<Surface> water({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(h)},
+                         .sides = Sides<3>::all(Side::slip),
+                         .water = [level](const Vec3& x) { return level - x.z(); },
+                         .gravity = {0, 0, -g},
+                         .density = rho,
+                         .viscosity = d.viscosity,
+                         .largest_step = 0.004,
+                         .tolerance = 1e-8},
+                        {}, MonolithicSolids<>({.resolved_from = 0}));
     const Real above = d.below ? -2 * diameter : 0.1 * diameter;  // of its lowest point
     const Real speed = d.below ? 0 : std::sqrt(square(d.speed) - 2 * g * above);
     const Vec3 middle(0.5 * n * h + d.off.x() * h, 0.5 * n * h + d.off.y() * h, level + above + radius);
@@ -111,7 +113,7 @@ inline Fall fall(const Drop& d) {
         Real low = 0;
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j)
-                low = std::min(low, (liquid.height(liquid.columns().column(i, j)) - level) / diameter);
+                low = std::min(low, (water.surface_at({(i + 0.5) * h, (j + 0.5) * h, 0}) - level) / diameter);
         found.crater = std::min(found.crater, low);
         if (low < -0.5) found.closes = found.depth - 1;
         if (found.depth > 5) found.dent = std::min(found.dent, low);

@@ -262,6 +262,7 @@ private:
         };
         // One, but where a floor takes so much that shares are at their bounds.
         constexpr int most_rounds = 4;
+        constexpr Real sliver = 1e-2;  // of a face: less would be a nozzle
         for (int round = 0; round < most_rounds; ++round) {
             std::array<Pack, 3> covers;
             std::array<Pack, 6> moves;
@@ -285,6 +286,7 @@ private:
             for_each_pack([&](Pack& share, Real, Pack at_b, Pack at_c) {
                 const Pack more = Pack(by[0]) + Pack(by[1]) * at_b + Pack(by[2]) * at_c;
                 share += share * (Pack(1) - share) * min(max(more, Pack(-1)), Pack(1));
+                share = select(share > Pack(1 - sliver), Pack(1), share);
             });
         }
     }

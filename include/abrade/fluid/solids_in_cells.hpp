@@ -59,9 +59,10 @@ public:
     }
 
     /// Once the liquid has moved: its fractions and surplus in the room that is left. `moved`: solid that
-    /// went through faces in the step; `at_once`: how much of a lag is handed over in it [-].
+    /// went through faces in the step; `at_once`: how much of a lag is handed over in it [-]; `full`: what is
+    /// more is no surface [-].
     void move(const Grid<Dim>& grid, const Sides<Dim>& sides, Field<Real>& fraction, Field<Real>& surplus,
-              std::span<const SolidVolume> moved, Real at_once) {
+              std::span<const SolidVolume> moved, Real at_once, Real full) {
         for (const SolidVolume& solid : moved) {
             CellNumber<Dim> number = grid.layout().number(solid.face);
             if (grid.has(number)) came(grid, number, solid.volume);
@@ -78,7 +79,7 @@ public:
             room_[c] = room;
             put(c, liquid, at_once, fraction, surplus);
         }
-        tell_covered(grid, sides, fraction, surplus);
+        tell_covered(grid, sides, full, fraction, surplus);
         std::erase_if(cells_, [&](Offset c) {
             const bool gone = next_[c] == open_of(c) && lag_[c] == 0;
             if (gone) forget(c);
@@ -139,7 +140,7 @@ private:
         surplus[c] = liquid - fraction[c] + part / room_[c];
     }
     /// Fractions of covered cells: what those beside them have, layer by layer from outside.
-    void tell_covered(const Grid<Dim>& grid, const Sides<Dim>& sides, Field<Real>& fraction,
+    void tell_covered(const Grid<Dim>& grid, const Sides<Dim>& sides, Real full, Field<Real>& fraction,
                       Field<Real>& surplus) {
         constexpr std::uint8_t known = 1, unknown = 2;
         std::vector<Told> told;
@@ -155,7 +156,8 @@ private:
                 for_each_beside(grid, sides, cell.number, [&](Offset b) {
                     if (marks_[b] != unknown && open_of(b) > 0) sum += fraction[b], ++cell.beside;
                 });
-                if (cell.beside > 0) cell.fraction = std::clamp(sum / cell.beside, Real(0), Real(1));
+                if (cell.beside > 0) sum /= cell.beside;
+                cell.fraction = sum < 1 - full ? 0 : sum > full ? 1 : sum;
             }
             const std::size_t before = std::exchange(left, 0);
             for (Told& cell : told) {

@@ -78,7 +78,6 @@ public:
     /// Copies to beyond periodic sides.
     void join(auto& field) const noexcept { fill_periodic(field, layout(), sides_); }
 
-    /// As the liquid's.
     void set_solids(std::span<const SolidPart> parts, std::span<const SolidFlux> fluxes) {
         liquid_.set_solids(parts, fluxes);
     }
@@ -220,8 +219,7 @@ public:
     void make_room() {
         if constexpr (!is_height) liquid_.make_room();
         rows_before_.include(rows_);
-        find_rows();
-        find_held();
+        find_rows(), find_held();
     }
 
     /// Puts back fractions and surplus as they were saved, in the rows of then, after so many steps.
@@ -278,7 +276,6 @@ private:
         return walls_ ? &walls_->open_volume() : nullptr;
     }
     bool is_open(Offset c) const noexcept { return !walls_ || walls_->open_volume()[c] > 0; }
-
     void find_air() { extension_.find({wet_, rows_, held(), still_}); }
     /// In the control volume of a face [m3].
     Real liquid_of(int a, Offset face) const noexcept;
@@ -286,8 +283,7 @@ private:
     void settle() {
         liquid_.prepare();
         rows_before_ = rows_;
-        find_rows();
-        find_held();
+        find_rows(), find_held();
     }
     void find_held() {
         if (!walls_) return;

@@ -3,4 +3,5 @@
 
 #include <abrade/fluid/volume_of_fluid_class.hpp>
 #include <abrade/fluid/volume_settling.hpp>
+#include <abrade/fluid/volume_surface.hpp>
 #include <abrade/fluid/volume_sweeps.hpp>

@@ -228,7 +228,8 @@ void VolumeOfFluid<Dim>::move_solids(Real dt) {
     // No faster than water falls through a cell, however short the step.
     constexpr Real most = 0.05;
     const Real falls = gravity_.norm() > 0 ? dt * std::sqrt(gravity_.norm() / grid_.smallest()) : most;
-    solids_.move(grid_, sides_, fraction_, surplus_, solid_moved_, std::min(falls, most));
+    solids_.move(grid_, sides_, fraction_, surplus_, solid_moved_, std::min(falls, most),
+                 1 - void_amid_water());
     for (std::size_t n = 0; n < below.size(); ++n) {
         SolidVolume& s = solid_moved_[n];
         s.volume *= below[n], moved_[index(s.axis)][s.face] += s.volume;

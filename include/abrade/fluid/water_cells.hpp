@@ -21,7 +21,8 @@ struct OpenFace {
         0;  ///< 1 / distance from the cell's centre to the known pressure; negative if that lies above [1/m]
     Real plain =
         0;  ///< 1 / distance to the next centre, of the same sign [1/m]; 0: the old pressure has no part
-    Real weight = 1;  ///< share of what moves through the face that lies below the surface, and has weight [-]
+    Real weight =
+        1;  ///< share of what moves through the face that lies below the surface, and has weight [-]
 };
 
 /// Cells that take part in a projection and what lies between them.
