@@ -7,8 +7,6 @@ using namespace resolved;
 
 namespace {
 
-constexpr Real g = 9.81;
-
 Water::Params box(int n, Real h, Side side, Real viscosity) {
     return {.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(h)},
             .sides = Sides<3>::all(side),

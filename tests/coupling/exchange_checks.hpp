@@ -6,10 +6,8 @@
 
 namespace resolved {
 
-constexpr Real g = 9.81;
-
-inline Water::Params box(int n, Real h, Side side) {
-    return {.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(h)},
+inline Water::Params box(int n, Real width, Side side) {
+    return {.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(width)},
             .sides = Sides<3>::all(side),
             .gravity = {0, 0, -g},
             .density = 1000,

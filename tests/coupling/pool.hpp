@@ -7,7 +7,7 @@ namespace resolved {
 template <class Solids, class Surface = HeightSurface>
 using PoolAmong = GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>;
 
-constexpr Real g = 9.81, h = 0.05, level = 0.613;
+constexpr Real h = 0.05, level = 0.613;
 
 /// A box of 1 m x 1 m, filled up to `level`.
 template <class Solids = MonolithicSolids<>, class Surface = HeightSurface>

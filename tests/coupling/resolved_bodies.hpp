@@ -13,6 +13,8 @@ namespace resolved {
 
 using namespace abrade;
 
+constexpr Real g = 9.81;  // [m/s2]
+
 template <class Solids>
 using WaterAmong = GridFluid<3, FullBox, Limited, Real, NoTurbulence, Solids>;
 using Water = WaterAmong<MonolithicSolids<>>;

@@ -105,7 +105,8 @@ public:
             body.velocity = m.v;
             const Vec3 after_blow = m.struck.taken_by(m.added, body, stage.dt);
             if (!covers[cloud.which()[n]].cut) {
-                body.load.force = pressed + m.by_drag + by_added + after_blow, body.load.torque.setZero();
+                const Vec3 load = pressed + m.by_drag + by_added + after_blow;
+                body.load.force += stage.lasts() * (load - body.load.force), body.load.torque.setZero();
                 m.struck.hand_out(body, m.added, stage.dt);
             }
             m.pressed = pressed;

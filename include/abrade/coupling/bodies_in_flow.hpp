@@ -249,14 +249,18 @@ protected:
             load.template head<3>() +=
                 motion_[b].struck.taken_by(of_a_sphere * motion_[b].covers, body, stage_.dt);
             body.velocity = q.template head<3>(), body.angular_velocity = q.template tail<3>();
+            const Memory* const before = with_id(memory_, body.id);
+            const Real lasts = before ? stage_.lasts() : 1;
             if (!faces_.cover(b).cut) {
-                body.load.force = load.template head<3>(), body.load.torque = load.template tail<3>();
+                body.load.force += lasts * (load.template head<3>() - body.load.force);
+                body.load.torque += lasts * (load.template tail<3>() - body.load.torque);
                 motion_[b].struck.hand_out(body, of_a_sphere * motion_[b].covers, stage_.dt);
             }
-            const Memory* const before = with_id(memory_, body.id);
-            const Six gained = before ? Six(q - before->q) / stage_.dt : Six(Six::Zero());
-            next.push_back(
-                {body.id, q, gained, motion_[b].covers, slip_of(b, u), pressed, motion_[b].struck.velocity});
+            Memory& now = next.emplace_back(before ? *before : Memory{.id = body.id});
+            if (before) now.gained += lasts * ((q - before->q) / stage_.dt - before->gained);
+            now.pressed += lasts * (pressed - now.pressed);
+            now.q = q, now.covers = motion_[b].covers, now.slip = slip_of(b, u);
+            now.struck = motion_[b].struck.velocity;
         }
         std::ranges::sort(next, {}, &Memory::id);
         memory_ = std::move(next);

@@ -177,9 +177,13 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
     std::swap(velocity_, saved_velocity_);
     if (!params_.steady_sides) sides_.fill(velocity_);
     if constexpr (Solids::present)
-        solids_.force(
-            velocity_, pressure_,
-            {.density = params_.density, .dt = dt, .viscosity = nu(), .pushed = true, .falls = falls});
+        solids_.force(velocity_, pressure_,
+                      {.density = params_.density,
+                       .dt = dt,
+                       .viscosity = nu(),
+                       .pushed = true,
+                       .falls = falls,
+                       .pace = late_.pace(dt)});
     project({dt, params_.tolerance, false, nullptr, late_.pace(dt)});
     if constexpr (Solids::present) solids_.settle(velocity_, pressure_);
     finish(velocity_);
@@ -254,9 +258,13 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
     // Whole sides: where they change there may not have been water before.
     if (!params_.steady_sides) sides_.fill(velocity_);
     if constexpr (Solids::present)
-        solids_.force(
-            velocity_, pressure_,
-            {.density = params_.density, .dt = dt, .viscosity = nu(), .held = &water.held(), .falls = falls});
+        solids_.force(velocity_, pressure_,
+                      {.density = params_.density,
+                       .dt = dt,
+                       .viscosity = nu(),
+                       .held = &water.held(),
+                       .falls = falls,
+                       .pace = late_.pace(dt)});
     project({dt, params_.tolerance, true, surplus(), late_.pace(dt)});
     if constexpr (is_height) detail::slow_thin_water(velocity_, water.liquid(), dt, nu());
     if constexpr (Solids::present) solids_.settle(velocity_, pressure_);

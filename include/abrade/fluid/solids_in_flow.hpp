@@ -41,6 +41,11 @@ struct FlowStage {
         nullptr;                ///< water and solid in each cell, as a share of it [-]; none: all full
     bool pushed = false;        ///< the old pressure has acted on velocities already
     Vec3 falls = Vec3::Zero();  ///< what the water's weight accelerates it by [m/s2]
+    Real pace = 0;              ///< as long as steps have been of late [s]
+
+    /// How much of what is found in the step goes on in the next one: a blow takes no longer in a long step
+    /// than in a brief one, where it looks like a large force [-].
+    Real lasts() const noexcept { return pace > dt ? dt / pace : 1; }
 };
 
 // clang-format off
