@@ -19,7 +19,7 @@ auto stones_in_water() {
     GridFluidParams<3> params{.grid = {.cells = {14, 12, 14}, .spacing = Vec3::Constant(0.05)},
                               .sides = Sides<3>::all(Side::slip),
                               .gravity = {0, 0, -9.81}};
-    if constexpr (std::same_as<Surface, HeightSurface>)
+    if constexpr (!std::same_as<Surface, FullBox>)
         params.water = [](const Vec3& x) { return 0.41 + 0.05 * x.x() - x.z(); };
     Scene scene;
     scene.gravity = params.gravity;
@@ -77,3 +77,4 @@ void check(const std::string& name) {
 
 TEST_CASE("in a full box") { check<FullBox>("resolved_box"); }
 TEST_CASE("below a height") { check<HeightSurface>("resolved_height"); }
+TEST_CASE("in a volume of fluid") { check<FreeSurface>("resolved_volume"); }

@@ -29,20 +29,24 @@ class SolidsInCells {
     static constexpr Real covered = 0.25;  ///< less room tells nothing of where the surface is [-]
 
 public:
+    SolidsInCells() = default;
+    explicit SolidsInCells(Offset total) : total_(total) {}
+
+    /// Shares of cells that walls leave; none: all. They must outlive this.
+    void set_walls(const Field<Real>* open) noexcept { open_ = open; }
     bool any() const noexcept { return room_.size() > 0; }
     const Field<Real>& room() const noexcept { return room_; }  ///< K of all cells [-]
     bool has(Offset cell) const noexcept { return any() && marks_[cell] != 0; }
     Real lag(Offset cell) const noexcept { return lag_[cell]; }  ///< in shares of the cell [-]
 
     /// Solids that liquid has been given around: up to its surface as it stands.
-    void stand(const Grid<Dim>& grid, const Field<Real>* open, std::span<const SolidPart> parts) {
-        set(grid, open, parts);
+    void stand(const Grid<Dim>& grid, std::span<const SolidPart> parts) {
+        set(grid, parts);
         for (const Offset c : cells_) room_[c] = std::max(next_[c], least * open_of(c));
     }
-    /// Where they are at the end of the step to come. `open`: shares of cells that walls leave; none: all.
-    void set(const Grid<Dim>& grid, const Field<Real>* open, std::span<const SolidPart> parts) {
-        open_ = open;
-        if (!any()) begin(grid);
+    /// Where they are at the end of the step to come.
+    void set(const Grid<Dim>& grid, std::span<const SolidPart> parts) {
+        if (!any()) begin();
         before_.clear();
         for (const Offset c : cells_) before_.push_back({c, room_[c], lag_[c]}), next_[c] = open_of(c);
         for (const SolidPart& part : parts) {
@@ -55,7 +59,7 @@ public:
         if (!any()) return;
         for (const Offset c : cells_) forget(c);
         cells_.clear();
-        for (const Before& b : before_) look_at(b.cell), room_[b.cell] = b.room, lag_[b.cell] = b.lag;
+        put_back(before_);
     }
 
     /// Once the liquid has moved: its fractions and surplus in the room that is left. `moved`: solid that
@@ -89,23 +93,28 @@ public:
 
     /// Once it has settled: what full cells hold too much among solids they lag by.
     void keep_surplus(const Field<Real>& fraction, Field<Real>& surplus) {
-        for (const Offset c : cells_)
+        now_.clear();
+        for (const Offset c : cells_) {
             if (fraction[c] == 1 && next_[c] != open_of(c))
                 lag_[c] += std::exchange(surplus[c], 0) * room_[c];
+            now_.push_back({c, room_[c], lag_[c]});
+        }
     }
     /// Adds to what a cell lags by [-].
     void lag_by(Offset cell, Real more) { look_at(cell), lag_[cell] += more; }
 
-    static void fields(auto&& field) {
-        field("room", &SolidsInCells::room_), field("lag", &SolidsInCells::lag_);
-        field("next", &SolidsInCells::next_), field("marks", &SolidsInCells::marks_);
-        field("came", &SolidsInCells::came_), field("cells", &SolidsInCells::cells_);
+    static void fields(auto&& field) { field.bytes("cells", &SolidsInCells::now_); }
+    void restored() {
+        if (now_.empty() && !any()) return;
+        if (any()) cells_.clear();
+        begin();
+        put_back(now_);
     }
 
 private:
-    struct Before {
-        Offset cell;
-        Real room, lag;
+    struct Kept {
+        Offset cell = 0;
+        Real room = 1, lag = 0;
     };
     struct Told {
         Offset cell;
@@ -115,11 +124,14 @@ private:
     };
 
     Real open_of(Offset c) const noexcept { return open_ ? (*open_)[c] : 1; }
-    void begin(const Grid<Dim>& grid) {
-        const Offset total = grid.layout().total;
-        room_ = Field<Real>(total, 1);
+    void begin() {
+        room_ = Field<Real>(total_, 1);
         if (open_) room_ = *open_;
-        next_ = room_, lag_ = came_ = Field<Real>(total, 0), marks_ = Field<std::uint8_t>(total, 0);
+        next_ = room_, lag_ = came_ = Field<Real>(total_, 0), marks_ = Field<std::uint8_t>(total_, 0);
+    }
+    void put_back(const std::vector<Kept>& cells) {
+        for (const Kept& kept : cells)
+            look_at(kept.cell), room_[kept.cell] = kept.room, lag_[kept.cell] = kept.lag;
     }
     void look_at(Offset c) {
         if (std::exchange(marks_[c], std::uint8_t{1}) == 0) cells_.push_back(c), next_[c] = open_of(c);
@@ -189,12 +201,13 @@ private:
             }
     }
 
+    Offset total_ = 0;
     const Field<Real>* open_ = nullptr;
     Field<Real> room_, next_;  ///< of cells [-]; without the least that a cell keeps, at the end of the step
     Field<Real> lag_, came_;   ///< [-]
     Field<std::uint8_t> marks_;
-    std::vector<Offset> cells_;   ///< that solids have some of, or had
-    std::vector<Before> before_;  ///< the last step
+    std::vector<Offset> cells_;       ///< that solids have some of, or had
+    std::vector<Kept> before_, now_;  ///< the last step; after it
 };
 
 }  // namespace abrade::detail

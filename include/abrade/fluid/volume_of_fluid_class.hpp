@@ -80,7 +80,8 @@ public:
           at_walls_(layout_, sizes_, params_.smallest_void), fraction_(layout_.total, 0),
           surplus_(layout_.total, 0), moved_(face_field<Dim>(layout_)), plane_of_(layout_.total, -1),
           band_(layout_, void_amid_water()), wet_(layout_), active_(layout_), touched_(layout_),
-          filled_(layout_.total), overfull_(static_cast<std::size_t>(layout_.planes())) {
+          filled_(layout_.total), solids_(layout_.total),
+          overfull_(static_cast<std::size_t>(layout_.planes())) {
         for (int a = 0; a < Dim; ++a)
             for (int k = -Layout<Dim>::ghosts; k < grid.cells(vertical) + Layout<Dim>::ghosts; ++k)
                 areas_[index(a)].push_back(sizes_.face(a, k));
@@ -105,6 +106,7 @@ public:
         open_faces_ = open_faces;
         open_volumes_ = open_volumes;
         at_walls_.set_walls(open_faces, open_volumes);
+        solids_.set_walls(open_volumes);
         marks_ = surface_marks(grid_, sides_, open_volumes_);
     }
 
@@ -164,11 +166,11 @@ public:
     /// (SolidsInCells). Velocities are then those of the liquid times its share of a face, shares of volume
     /// those that solids leave, too. `moved()` holds both.
     void set_solids(std::span<const SolidPart> parts, std::span<const SolidFlux> fluxes) {
-        if (solids_.any() || !parts.empty()) solids_.set(grid_, open_volumes_, parts);
+        if (solids_.any() || !parts.empty()) solids_.set(grid_, parts);
         solid_fluxes_ = fluxes;
     }
     /// Solids that the liquid has been given around, up to its surface as it stands.
-    void stand_solids(std::span<const SolidPart> parts) { solids_.stand(grid_, open_volumes_, parts); }
+    void stand_solids(std::span<const SolidPart> parts) { solids_.stand(grid_, parts); }
     /// After a step that went wrong.
     void take_back_solids() { solids_.take_back(); }
     bool has_solid(Offset cell) const noexcept { return solids_.has(cell); }
@@ -363,10 +365,10 @@ private:
     Field<Index> plane_of_;
     SurfacePlanes<Dim> planes_, planes_before_;
     SurfaceBand<Dim> band_;
-    WetRows<Dim> wet_, active_, touched_;        ///< touched: active now or in the step before
-    Field<std::uint8_t> filled_;                 ///< 1: c of Weymouth and Yue; of cells of the band
-    std::vector<std::vector<CellAt>> overfull_;  ///< [plane] of the bulk, beyond `most_surplus`
+    WetRows<Dim> wet_, active_, touched_;  ///< touched: active now or in the step before
+    Field<std::uint8_t> filled_;           ///< 1: c of Weymouth and Yue; of cells of the band
     detail::SolidsInCells<Dim> solids_;
+    std::vector<std::vector<CellAt>> overfull_;  ///< [plane] of the bulk, beyond `most_surplus`
     std::vector<SolidVolume> solid_moved_;
     std::span<const SolidFlux> solid_fluxes_;  ///< of the step to come
     /// Cells outside of the last band that may have to be closed: set from outside, or given what was moved
