@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <ranges>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -74,8 +73,8 @@ public:
     FaceColumns& columns() noexcept { return columns_; }
     const FaceColumns& columns() const noexcept { return columns_; }
     /// Rows of a body.
-    auto of(std::size_t body) const noexcept {
-        return std::views::iota(first_[body], first_[body] + covers_[body].faces.size());
+    FaceRows of(std::size_t body) const noexcept {
+        return {first_[body], first_[body] + covers_[body].faces.size()};
     }
     const SpreadCloud& cloud() const noexcept { return cloud_; }
     const SolidCover& cover(std::size_t body) const noexcept { return covers_[body]; }

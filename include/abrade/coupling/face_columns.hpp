@@ -8,6 +8,19 @@
 
 namespace abrade {
 
+/// Numbers of rows that follow each other, for range-based loops.
+struct FaceRows {
+    struct Iterator {
+        std::size_t row;
+        std::size_t operator*() const noexcept { return row; }
+        Iterator& operator++() noexcept { return ++row, *this; }
+        bool operator==(const Iterator&) const = default;
+    };
+    std::size_t first = 0, last = 0;
+    Iterator begin() const noexcept { return {first}; }
+    Iterator end() const noexcept { return {last}; }
+};
+
 /// A row is a face and one of the bodies that cover some of it (SolidFace). There are many, and each part of
 /// an exchange reads few of the columns. Rows of a cloud come first.
 struct FaceColumns {
