@@ -1,6 +1,6 @@
 // Bodies below, in and above the surface of a volume of fluid: rest, draft, what falls in, and where energy
 // goes.
-#include "pool.hpp"
+#include "fixed_ball.hpp"
 
 #include <abrade/coupling/one_fluid.hpp>
 
@@ -26,27 +26,11 @@ Real voids(const auto& water, int levels) {
 }  // namespace
 
 TEST_CASE("a fixed ball below the surface: all stays at rest, what it pushes up is its volume") {
-    auto water = free_pool();
-    Ball ball({0.515, 0.49, 0.3}, 0.1, 0);
-    advance(water, ball, 1);
-    CHECK(fastest(water) < 1e-6 * std::sqrt(g * level));
-    CHECK(ball.body.load.force.z() == doctest::Approx(1000 * g * ball.body.volume).epsilon(1e-7));
-    CHECK(ball.body.load.force.head<2>().norm() < 1e-7 * 1000 * g * ball.body.volume);
-    CHECK(water.liquid().volume() == doctest::Approx(level - ball.body.volume).epsilon(2e-4));
+    check_ball_below<FreeSurface>(2e-4);
 }
 
 TEST_CASE("a fixed ball that pierces the surface has the buoyancy of what is below it") {
-    for (const Real z : {0.56, 0.6, 0.66}) {
-        auto water = free_pool();
-        Ball ball({0.515, 0.49, z}, 0.1, 0);
-        advance(water, ball, 1);
-        const Real below = cap(0.1, level - (z - 0.1));
-        CAPTURE(z);
-        MESSAGE("buoyancy " << ball.body.load.force.z() / (1000 * g * below) << ", fastest "
-                            << fastest(water));
-        CHECK(std::abs(ball.body.load.force.z() - 1000 * g * below) < 0.025 * 1000 * g * ball.body.volume);
-        CHECK(fastest(water) < 0.02 * std::sqrt(g * level));
-    }
+    check_ball_that_pierces<FreeSurface>();
 }
 
 TEST_CASE("a ball that rises swims as deep as Archimedes has it; no water is lost") {

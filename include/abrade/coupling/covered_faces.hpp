@@ -125,18 +125,17 @@ public:
     void close(Poisson<3>& m, std::span<const OpenFace> surface) {
         FaceColumns& f = columns_;
         const auto conducts = [&](std::size_t i) -> float& { return f.at(m.face, i); };
-        const auto unit = [&](std::size_t i) { return f.volume[i] / square(f.gap[i]); };
-        const auto share = [&](std::size_t i) { return static_cast<Real>(conducts(i)) / unit(i); };
+        const auto share = [&](std::size_t i) { return static_cast<Real>(conducts(i)) / f.conductance(i); };
         by_planes([&](std::size_t i) { f.open[i] = share(i), f.be_amid(i); },
                   [&](std::size_t i) {
                       if (f.share[i] == 0) return;
                       const Real left = share(i) - f.share[i];
-                      conducts(i) = left > least ? static_cast<float>(left * unit(i)) : 0.0f;
+                      conducts(i) = left > least ? static_cast<float>(left * f.conductance(i)) : 0.0f;
                   },
                   [&](std::size_t i) { f.water[i] = share(i), f.cover(i); },
                   [&](std::size_t i) {
                       if (i < f.cloud && f.open[i] > 0)
-                          conducts(i) += static_cast<float>(f.share[i] * f.mobility[i] * unit(i));
+                          conducts(i) += static_cast<float>(f.share[i] * f.mobility[i] * f.conductance(i));
                   },
                   [&](std::size_t i) { f.conducts[i] = conducts(i) > 0; });
         close_surface(surface);
@@ -164,8 +163,7 @@ public:
         by_planes([&](std::size_t i) { f.heavier[i] = 0; }, wet([&](std::size_t i) { density(i) = 1; }),
                   wet([&](std::size_t i) { density(i) += static_cast<float>(beyond(i)); }),
                   wet([&](std::size_t i) { find(i, density(i)); }), wet([&](std::size_t i) {
-                      const Real unit = f.volume[i] / square(f.gap[i]);
-                      density(i) = static_cast<float>(f.open[i] * f.lighter[i] * unit);
+                      density(i) = static_cast<float>(f.open[i] * f.lighter[i] * f.conductance(i));
                   }),
                   at_surface([&](std::size_t i, std::size_t n) { surface_[n] += beyond(i); }),
                   at_surface([&](std::size_t i, std::size_t n) { find(i, surface_[n]); }));

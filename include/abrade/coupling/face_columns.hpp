@@ -85,6 +85,8 @@ struct FaceColumns {
         given[i] = 0;
     }
 
+    /// What a face conducts per share of it that is open [m].
+    Real conductance(std::size_t i) const noexcept { return volume[i] / square(gap[i]); }
     bool at_surface(std::size_t i) const noexcept { return high_wet[i] != low_wet[i]; }
     /// Between two cells with a pressure, as far as is known yet.
     void be_amid(std::size_t i) noexcept {

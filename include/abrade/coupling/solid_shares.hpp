@@ -247,7 +247,7 @@ private:
     void correct_shares(int axis) {
         const int b = (axis + 1) % 3, c = (axis + 2) % 3;
         const Real per_unit = 1 / std::cbrt(body_->volume);  // or the equations are as uneven as metres
-        /// Calls visit(shares, their volume, arms along b and c).
+        // Calls visit(shares, their volume, arms along b and c).
         const auto for_each_pack = [&](auto&& visit) {
             for_each_row([&](const Number& first, std::size_t row) {
                 if (!covered_[axis][row]) return;

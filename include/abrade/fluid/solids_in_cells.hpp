@@ -18,9 +18,9 @@ namespace abrade::detail {
 ///   K* = K - (solid that came in) / V,
 /// and as the mixture's velocity has no divergence, a full cell of that room stays full. Where the solid is
 /// at the end says something else, for shares of faces are means over a cell: the difference f (K* - K) is a
-/// `lag`, liquid that a cell has too much, or lacks. It goes as the solid does. What stays is handed over bit
-/// by bit, to the surface or, below it, to the pressure, which drives it out. So a solid that appears
-/// displaces its volume within some steps.
+/// `lag`, liquid that a cell has too much, or lacks. It goes as the solid does. What is left once the solid
+/// has gone is handed over bit by bit, to the surface or, below it, to the pressure, which drives it out. So
+/// a solid that appears displaces its volume as it leaves its place.
 ///
 /// Where solids leave next to nothing f tells nothing: it is that of the cells around.
 template <int Dim>
