@@ -22,10 +22,10 @@ struct SpreadPart {
     Real share = 0;          ///< sigma, of the face's control volume [-]
 };
 
-/// Bodies spread over what walls and other solids leave: each of their spheres by a triangle along each axis
-/// that has the variance of a ball of three diameters, or of three cells where these are wider. Its parts
-/// hold the body's volume along each axis: a pressure that is linear in space pushes with rho g V. All bodies
-/// together cover its faces.
+/// Bodies spread over what walls and other solids leave: each about its centroid, whatever its shape, by a
+/// triangle along each axis that has the variance of a ball of three diameters, or of three cells where these
+/// are wider. Its parts hold the body's volume along each axis: a pressure that is linear in space pushes
+/// with rho g V. All bodies together cover its faces.
 class SpreadCloud {
 public:
     /// `which`: numbers of those among `bodies` that are spread; `open(axis, face)`: share that is left of a
@@ -132,31 +132,27 @@ private:
             auto& parts = to.parts[axis];
             auto& at = to.at[axis];
             parts.clear(), at.clear(), to.box[axis].fill({});
-            Real sum = 0;
-            for (const Sphere& s : body.spheres) {
-                Real largest = body.spheres.size() > 1 ? cube(s.radius) : 1;
-                const Real volume = largest;
-                for (int a = 0; a < 3; ++a) {
-                    find_layers(in, a, a == axis, s.centre[a], half, layers[a]);
-                    Real top = 0;
-                    for (const Layer& layer : layers[a]) {
-                        top = std::max(top, layer.weight);
-                        to.box[axis][a] = hull(to.box[axis][a], {layer.number, layer.number + 1});
-                    }
-                    largest *= top;
+            Real sum = 0, largest = 1;
+            for (int a = 0; a < 3; ++a) {
+                find_layers(in, a, a == axis, body.position[a], half, layers[a]);
+                Real top = 0;
+                for (const Layer& layer : layers[a]) {
+                    top = std::max(top, layer.weight);
+                    to.box[axis][a] = hull(to.box[axis][a], {layer.number, layer.number + 1});
                 }
-                for (const Layer& x : layers[0])
-                    for (const Layer& z : layers[2])
-                        for (const Layer& y : layers[1]) {
-                            const Real weight = volume * x.weight * y.weight * z.weight;
-                            if (weight < least * largest) continue;
-                            const Offset face = in.grid.layout().at({x.number, y.number, z.number});
-                            const Real has = weight * open(axis, face);
-                            if (!(has > 0)) continue;
-                            parts.push_back({0, has / (x.size * y.size * z.size)});
-                            at.push_back(face), sum += has;
-                        }
+                largest *= top;
             }
+            for (const Layer& x : layers[0])
+                for (const Layer& z : layers[2])
+                    for (const Layer& y : layers[1]) {
+                        const Real weight = x.weight * y.weight * z.weight;
+                        if (weight < least * largest) continue;
+                        const Offset face = in.grid.layout().at({x.number, y.number, z.number});
+                        const Real has = weight * open(axis, face);
+                        if (!(has > 0)) continue;
+                        parts.push_back({0, has / (x.size * y.size * z.size)});
+                        at.push_back(face), sum += has;
+                    }
             for (SpreadPart& part : parts) part.share = std::min(part.share * body.volume / sum, most);
         }
     }
