@@ -14,23 +14,26 @@
 namespace abrade {
 
 /// Bodies of a SpreadCloud. Upon one acts
-///   F = -(1 + C_m) V grad p + C_m rho V (g - dv/dt) + beta (u - v),
-/// means over its parts: pressure; added mass, for which water is accelerated by g - grad p / rho; a law's
-/// drag, with the slip that the body itself has made less put back (SpreadBody) and the porosity that other
-/// bodies leave. The water has all of it: pressure by the cloud's shares of its faces; friction
+///   F = -(1 + C_m) V grad p + C_m rho V (g - dv/dt) + beta (u - v) + C_L rho V (u - v) x curl u,
+/// means over its parts, the curl over a cell: pressure; added mass, for which water is accelerated by
+/// g - grad p / rho; a law's drag and lift, with the slip that the body itself has made less put back
+/// (SpreadBody) and the porosity that other bodies leave. The water has all of it: pressure by the cloud's
+/// shares of its faces; friction
 ///   du/dt = sum of beta / (rho V) sigma (v - u) / (1 - sum of sigma),
-/// implicit in u, with v as drag alone would leave it; added mass as the last pressure has it, what the new
-/// one changes a step later. Where less than half of what is around a body is water, C_m is less: twice that
-/// share of its value, for what little water there is in a dense bed must not answer for all of it. These
-/// bodies are not turned. While the pressure is sought the cloud moves on with the velocity that they had
-/// before, and yields to the new pressure face by face, by (1 + C_m) / (s + C_m) of what water would, s their
-/// density over the water's: what bodies differ from that by, since their share of the pressure is a mean,
-/// they move a step later. So any ratio of densities is stable, and beds of any density are.
+/// implicit in u, with v as drag and lift would leave it; lift as an impulse; added mass as the last pressure
+/// has it, what the new one changes a step later. Where less than half of what is around a body is water, C_m
+/// is less: twice that share of its value, for what little water there is in a dense bed must not answer for
+/// all of it. These bodies are not turned. While the pressure is sought the cloud moves on with the velocity
+/// that they had before, and yields to the new pressure face by face, by (1 + C_m) / (s + C_m) of what water
+/// would, s their density over the water's: what bodies differ from that by, since their share of the
+/// pressure is a mean, they move a step later. So any ratio of densities is stable, and beds of any density
+/// are.
 template <DenseDragLaw Drag>
 class AveragedBodies {
 public:
     AveragedBodies() = default;
-    AveragedBodies(Real added_mass, typename Drag::Params drag) : added_mass_(added_mass), drag_(drag) {}
+    AveragedBodies(Real added_mass, Real lift, typename Drag::Params drag)
+        : added_mass_(added_mass), lift_(lift), drag_(drag) {}
 
     /// Faces of the cloud get the velocity that its bodies have been given, and learn how a pressure is going
     /// to move them. `density`: of the water [kg/m3].
@@ -53,11 +56,11 @@ public:
         carry(f, cloud);
     }
 
-    /// Before the pressure is found: what friction and added mass do to faces, whose velocity and mass are
-    /// known.
+    /// Before the pressure is found: what friction, lift and added mass do to faces, whose velocity and mass
+    /// are known. `curl(x)`: of the water's velocity at a place [1/s].
     void force(FaceColumns& f, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
-               const Field<Real>& old, const FlowStage& stage) {
-        for_each(cloud, [&](std::size_t n) { drag_alone(n, f, cloud, bodies, old, stage); });
+               const Field<Real>& old, const FlowStage& stage, auto&& curl) {
+        for_each(cloud, [&](std::size_t n) { alone(n, f, cloud, bodies, old, stage, curl); });
         for_each_face(f, [&](std::size_t i) {
             f.last_gradient[i] = f.gradient(old, i), f.rate[i] = f.target[i] = f.given[i] = 0;
         });
@@ -77,7 +80,7 @@ public:
             for (int axis = 0; axis < 3; ++axis)
                 for (const auto& [i, share] : cloud.parts(n, axis)) {
                     const Real slowed = f.velocity[i] + f.held[i] * (f.target[i] - f.velocity[i]);
-                    m.by_drag[axis] += f.mass[i] * share * m.rate * kept(f.water[i]) * (slowed - m.v[axis]);
+                    m.by_slip[axis] += f.mass[i] * share * m.rate * kept(f.water[i]) * (slowed - m.v[axis]);
                 }
         });
         carry(f, cloud);
@@ -99,13 +102,13 @@ public:
             Motion& m = motion_[n];
             const Vec3 pressed = pressed_by(n, f, cloud, pressure, stage.density);
             if (body.inverse_mass > 0)
-                m.v = (m.begun + m.added_momentum + stage.dt * (m.by_drag + (1 + m.coefficient) * pressed)) /
+                m.v = (m.begun + m.added_momentum + stage.dt * (m.by_slip + (1 + m.coefficient) * pressed)) /
                       (1 / body.inverse_mass + m.added);
             const Vec3 by_added = m.coefficient * pressed + (m.added_momentum - m.added * m.v) / stage.dt;
             body.velocity = m.v;
             const Vec3 after_blow = m.struck.taken_by(m.added, body, stage.dt);
             if (!covers[cloud.which()[n]].cut) {
-                const Vec3 load = pressed + m.by_drag + by_added + after_blow;
+                const Vec3 load = pressed + m.by_slip + by_added + after_blow;
                 body.load.force += stage.lasts() * (load - body.load.force), body.load.torque.setZero();
                 m.struck.hand_out(body, m.added, stage.dt);
             }
@@ -126,7 +129,7 @@ private:
         Vec3 v = Vec3::Zero();               ///< [m/s]
         Vec3 begun = Vec3::Zero();           ///< momentum by all but the water [kg m/s]
         Vec3 added_momentum = Vec3::Zero();  ///< of the added mass, with its weight [kg m/s]
-        Vec3 by_drag = Vec3::Zero();         ///< [N]
+        Vec3 by_slip = Vec3::Zero();         ///< drag and lift [N]
         Vec3 pressed = Vec3::Zero();         ///< by the pressure, without added mass [N]
         Vec3 reaction = Vec3::Zero();        ///< of the added mass on the water, an impulse [kg m/s]
         Vec3 pushed = Vec3::Zero();          ///< of the water by that impulse, over both their shares [m/s]
@@ -184,9 +187,10 @@ private:
         return sum;
     }
 
-    /// The body's velocity with drag against the water as it is.
-    void drag_alone(std::size_t n, const FaceColumns& f, const SpreadCloud& cloud,
-                    std::span<const FlowBody> bodies, const Field<Real>& old, const FlowStage& stage) {
+    /// The body's velocity with drag and lift in the water as it is.
+    void alone(std::size_t n, const FaceColumns& f, const SpreadCloud& cloud,
+               std::span<const FlowBody> bodies, const Field<Real>& old, const FlowStage& stage,
+               auto&& curl) {
         const FlowBody& body = bodies[cloud.which()[n]];
         Motion& m = motion_[n];
         Vec3 weight = Vec3::Zero(), open = Vec3::Zero(), among = Vec3::Zero(), flow = Vec3::Zero();
@@ -206,7 +210,10 @@ private:
                                 .slip = (flow - body.velocity).norm(),
                                 .viscosity = stage.viscosity,
                                 .porosity = shares > 0 ? 1 - others / shares : 1};
-        m.rate = weight.norm() > 0 ? spread.drag(drag_) / body.volume : 0;
+        const Real drag = weight.norm() > 0 ? spread.drag(drag_) : 0, put_back = spread.put_back(drag);
+        m.rate = drag * put_back / body.volume;
+        if (lift_ != 0)
+            m.by_slip = lift_ * weight.mean() * put_back * (flow - body.velocity).cross(curl(body.position));
         const Memory* const before = with_id(memory_, body.id);
         const Real dt = stage.dt;
         m.coefficient = added_mass_ * std::min(2 * open.sum() / std::max(weight.sum(), tiny<Real>), 1.0);
@@ -221,17 +228,18 @@ private:
                       body.load.along * m.struck.velocity;
             const Vec3 drags = dt * m.rate * weight;
             const Vec3 heavy = Vec3::Constant(1 / body.inverse_mass + m.added) + drags;
-            const Vec3 gains = dt * (1 + m.coefficient) * last + drags.cwiseProduct(flow);
+            const Vec3 gains = dt * ((1 + m.coefficient) * last + m.by_slip) + drags.cwiseProduct(flow);
             m.v = (m.begun + m.added_momentum + gains).cwiseQuotient(heavy);
         }
         m.reaction = dt * m.coefficient * last + m.added_momentum - m.added * m.v;
-        const Vec3 due = before ? Vec3(m.reaction + before->reaction) : m.reaction;
+        Vec3 due = m.reaction + dt * m.by_slip;
+        if (before) due += before->reaction;
         // What is left of the water around a body that has come out of it is not shot about.
         const Real least = least_water * stage.density * body.volume;
         m.pushed = -due.cwiseQuotient(among.cwiseMax(least));
     }
 
-    Real added_mass_ = 0.5;
+    Real added_mass_ = 0.5, lift_ = 0;
     Drag drag_;
     std::vector<Motion> motion_;  ///< [body of the cloud]
     std::vector<Memory> memory_;  ///< by id

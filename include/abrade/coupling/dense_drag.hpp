@@ -58,14 +58,17 @@ struct SpreadBody {
     Real viscosity = 0;  ///< nu [m2/s]
     Real porosity = 1;   ///< [-]
 
-    /// beta / rho of F = beta (u - v) with the slip that it has made less [m3/s].
+    /// beta / rho of F = beta (u - v), with the slip as it is [m3/s].
     template <DenseDragLaw Law>
     Real drag(const Law& law) const noexcept {
-        constexpr Real tiny = 1e-300, most = 0.6;
-        const Real reynolds = porosity * slip * diameter / std::max(viscosity, tiny);
-        const Real alone = pi / 8 * square(diameter) * slip * law.coefficient(reynolds, porosity);
+        const Real reynolds = porosity * slip * diameter / std::max(viscosity, tiny<Real>);
+        return pi / 8 * square(diameter) * slip * law.coefficient(reynolds, porosity);
+    }
+    /// The slip that it would have, had such a drag not made it less, over that which it has [-].
+    Real put_back(Real drag) const noexcept {
+        constexpr Real most = 0.6;
         const Real resists = 5 * pi * viscosity * reach + 2 * pi * square(reach) * slip;
-        return alone / (1 - std::min(alone / std::max(resists, tiny), most));
+        return 1 / (1 - std::min(drag / std::max(resists, tiny<Real>), most));
     }
 };
 

@@ -35,6 +35,7 @@ public:
         Real friction = 3.8;                  ///< C [-]
         Real resolved_from = 3;               ///< diameter of bodies that are not averaged [cell]
         Real added_mass = 0.5;                ///< C_m of those that are [-]
+        Real lift = 0;                        ///< C_L of those [-]
         typename DragOfSmall::Params drag{};  ///< theirs
         void validate() const {
             require(
@@ -45,16 +46,18 @@ public:
                     {"MonolithicSolids.resolved_from", ">= 0", "cells", "0 resolves all, infinity none"},
                     resolved_from);
             require_not_negative(added_mass, "MonolithicSolids.added_mass", "");
+            require_finite(lift, "MonolithicSolids.lift", "");
             drag.validate();
         }
         void visit(auto&& f) const {
             f("friction", friction, "-"), f("resolved_from", resolved_from, "cell");
-            f("added_mass", added_mass, "-"), drag.visit(f);
+            f("added_mass", added_mass, "-"), f("lift", lift, "-"), drag.visit(f);
         }
     };
 
     MonolithicSolids() = default;
-    explicit MonolithicSolids(Params params) : params_(params), averaged_(params.added_mass, params.drag) {
+    explicit MonolithicSolids(Params params)
+        : params_(params), averaged_(params.added_mass, params.lift, params.drag) {
         params_.validate();
     }
     const Params& params() const noexcept { return params_; }
@@ -62,6 +65,7 @@ public:
 
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                const FaceField<3>* open_area, Real density) {
+        grid_ = &grid, sides_ = &sides;
         stand(grid, sides, bodies, params_.resolved_from, open_area);
         averaged_.begin(faces_.columns(), faces_.cloud(), bodies_, density);
     }
@@ -95,7 +99,10 @@ public:
             for (const std::size_t i : faces_.of(b))
                 f.target[i] = f.along(i, motion_[b].held), f.solid[i] = f.along(i, motion_[b].q);
         });
-        averaged_.force(f, faces_.cloud(), bodies_, pressure, stage_);
+        averaged_.force(f, faces_.cloud(), bodies_, pressure, stage_, [&](const Vec3& x) -> Vec3 {
+            return detail::flow_change<3, Real>(*grid_, sides_->periodic_axes(), u, nullptr, 0, x)
+                .vorticity();
+        });
         find_loss([&](std::size_t i) {
             const Real left = f.held[i] * (1 - 0.5 * f.held[i]);
             return f.mass[i] * f.water[i] * left * square(f.target[i] - f.velocity[i]);
@@ -194,6 +201,8 @@ private:
 
     Params params_;
     AveragedBodies<DragOfSmall> averaged_;
+    const Grid<3>* grid_ = nullptr;  ///< of the step
+    const Sides<3>* sides_ = nullptr;
 };
 
 static_assert(SolidsInFlow<MonolithicSolids<>>);
