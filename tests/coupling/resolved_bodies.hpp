@@ -87,9 +87,10 @@ struct Drag {
     Index cells = 0, steps = 0;
 };
 /// Means over the last quarter of `end`.
-template <class Solids = MonolithicSolids<>>
-Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_from = 0})) {
-    using Flow = WaterAmong<Solids>;
+template <class Solids = MonolithicSolids<>, class Eddies = NoTurbulence>
+Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_from = 0}),
+             const Eddies& eddies = {}) {
+    using Flow = GridFluid<3, FullBox, Limited, Real, Eddies, Solids>;
     const Real h = 1 / stream.cells;
     const int across = static_cast<int>(8 * stream.cells), along = static_cast<int>(12 * stream.cells);
     typename Flow::Params params{.grid = {.cells = {along, across, across}, .spacing = Vec3::Constant(h)},
@@ -102,7 +103,7 @@ Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_f
     params.sides[0] = {Side::inflow, Side::outflow};
     params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
     params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
-    Flow water(params, {}, std::move(solids));
+    Flow water(params, eddies, std::move(solids));
     std::vector<Ball> balls{{Vec3(4, 4, 4) + stream.off * h * Vec3(1, 0.37, 0.71), 0.5, 0}};
     Real sum = 0, squares = 0, count = 0;
     while (water.time() < end) {
