@@ -1,9 +1,10 @@
 // Draws what each coupling of bodies and water buys on coarse grids: the error of a sphere's drag, of the
 // speed it settles with and of what it loses in impacts, which is what it wears, against processor time; CSV
 // beside it: chart_body_levels [FOLDER [FINEST]]. FINEST: most cells to a diameter, 8 unless told otherwise
-// (some minutes); 16 takes a quarter of an hour. One thread.
+// (some minutes); 16 takes twenty minutes. One thread.
 
 #include "../../tests/coupling/resolved_bodies.hpp"
+#include "../../tests/coupling/still_liquid.hpp"
 #include "../../tests/coupling/stone_tank.hpp"
 #include "../../tests/verification/settling_sphere.hpp"
 #include "panels.hpp"
@@ -67,8 +68,8 @@ std::vector<Level> levels(Real finest, auto&& measure) {
     };
     add("averaged", 4, MonolithicSolids<>({.resolved_from = none}));
     add("monolithic", none, MonolithicSolids<>({.resolved_from = 0}));
-    add("one fluid, mixture", 8, MixtureSolids());
-    add("one fluid, direct forcing", 8, DirectForcing());
+    add("mixture", 8, MixtureSolids());
+    add("direct forcing", 8, DirectForcing());
     return found;
 }
 
@@ -102,22 +103,6 @@ std::vector<Level> drag(Real reynolds, Real finest) {
     });
 }
 
-/// A liquid at rest that feels nothing.
-struct Still {
-    static constexpr std::string_view name = "Still";
-    using Params = NoParams;
-    Real density = 1000, viscosity = 1e-3;
-
-    explicit Still(Params = {}) {}
-    Still(Real rho, Real mu) : density(rho), viscosity(mu) {}
-    const Params& params() const noexcept {
-        static constexpr Params none{};
-        return none;
-    }
-    FluidSample sample(const Vec3&, Real) const noexcept { return {Vec3::Zero(), 1e3, density, viscosity}; }
-};
-static_assert(FluidModel<Still>);
-
 std::vector<Level> settling(const ReferenceRow& row, Real finest) {
     std::cout << "settling\n";
     constexpr Real end = 0.9;
@@ -127,7 +112,7 @@ std::vector<Level> settling(const ReferenceRow& row, Real finest) {
     });
     std::cout << "one way\n";
     const Point one_way = measured(0, [&](Real) {
-        const Still still(row.at("rho_f"), row.at("mu_f"));
+        const Still still({.viscosity = row.at("mu_f"), .density = row.at("rho_f")});
         return settling_sphere::settle(end, nothing, still, WithInertia<>{}).speed;
     });
     all.push_back({"one way", {one_way}});
@@ -152,21 +137,14 @@ std::vector<Level> impacts(Real finest) {
     };
     // On 12 cells a stone that has struck the floor ends the run.
     std::vector<Level> all = levels(std::min(finest, 8.0), [&](Real cells, Real off, auto solids) {
-        const Real h = diameter / cells;
-        using Flow = WaterAmong<decltype(solids)>;
         const int across = static_cast<int>(6 * cells), up = static_cast<int>(9 * cells);
-        typename Flow::Params params{.grid = {.cells = {across, across, up},
-                                              .low = Vec3(-3 * diameter, -3 * diameter, 0),
-                                              .spacing = Vec3::Constant(h)},
-                                     .sides = Sides<3>::all(Side::slip),
-                                     .gravity = {0, 0, -g},
-                                     .density = 1000,
-                                     .viscosity = 1e-3};
-        return lost(off * h * Vec3(1, 0.37, 0.71), Flow(params, {}, std::move(solids)));
+        const stone_tank::Tank tank{.cells = {across, across, up}, .h = diameter / cells};
+        return lost(off * tank.h * Vec3(1, 0.37, 0.71),
+                    stone_tank::water_in<FullBox>(tank, std::move(solids)));
     });
     std::cout << "one way\n";
     all.push_back(
-        {"one way", {measured(0, [&](Real) { return lost(Vec3::Zero(), Still(), WithInertia<>{}); })}});
+        {"one way", {measured(0, [&](Real) { return lost(Vec3::Zero(), Still({}), WithInertia<>{}); })}});
     return all;
 }
 
@@ -187,12 +165,10 @@ int main(int argc, char** argv) {
                             .max = 1e3,
                             .logarithmic = true},
                       .y = {.label = "error", .unit = "", .min = 5e-4, .max = 2.0, .logarithmic = true},
-                      .names = {"one way", "averaged", "monolithic", "one fluid, mixture",
-                                "one fluid, direct forcing"}}};
+                      .names = {"one way", "averaged", "monolithic", "mixture", "direct forcing"}}};
         sheet.csv << "what,level,cells_to_a_diameter,mean,exact,error,cpu_s\n";
-        // Of a grid that fits the sphere: docs/verification/resolved_bodies.md.
-        sheet.add("drag at Re 20", drag(20, std::min(finest, 12.0)), 2.802);
-        sheet.add("drag at Re 100", drag(100, finest), 1.113);
+        sheet.add("drag at Re 20", drag(20, std::min(finest, 12.0)), fitted_drag_at_20);
+        sheet.add("drag at Re 100", drag(100, finest), fitted_drag_at_100);
         const auto rows = reference_table("cpl01_tencate2002_parameters_peaks.csv");
         const auto e4 = std::ranges::find_if(rows, [](const ReferenceRow& r) { return r.is("case", "E4"); });
         sheet.add("speed of settling at Re 32", settling(*e4, finest), e4->at("umax_exp_mps"));

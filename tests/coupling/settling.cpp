@@ -1,4 +1,6 @@
 // Spheres in still water, through the whole engine, with a fluid written here as a user would.
+#include "still_liquid.hpp"
+
 #include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>
@@ -6,27 +8,6 @@
 using namespace abrade;
 
 namespace {
-
-struct StillParams {
-    Real viscosity = 1e-3, surface = 1e9;
-    void validate() const { require_positive(viscosity, "Still.viscosity", "Pa s"); }
-    void visit(auto&& f) const { f("viscosity", viscosity, "Pa s"); }
-};
-
-/// A lake.
-struct Still {
-    static constexpr std::string_view name = "Still";
-    using Params = StillParams;
-    explicit Still(Params p) : params_(p) { params_.validate(); }
-    const Params& params() const noexcept { return params_; }
-    FluidSample sample(const Vec3& x, Real) const noexcept {
-        return {Vec3::Zero(), params_.surface - x.z(), 1000, params_.viscosity};
-    }
-
-private:
-    Params params_;
-};
-static_assert(FluidModel<Still>);
 
 const LinearSpring law{{.stiffness = 1}};  // nothing touches: as soft as the steps want it
 

@@ -28,8 +28,8 @@ struct Tank {
     Real size(int axis) const { return cells[axis] * h; }
 };
 
-template <class Surface, class Solids = MonolithicSolids<>>
-auto water_in(const Tank& tank) {
+template <class Surface, class Solids>
+auto water_in(const Tank& tank, Solids solids) {
     using Flow = GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>;
     typename Flow::Params params{.grid = {.cells = tank.cells,
                                           .low = Vec3(-0.5 * tank.size(0), -0.5 * tank.size(1), 0),
@@ -41,10 +41,14 @@ auto water_in(const Tank& tank) {
                                  .largest_step = tank.largest_step,
                                  .tolerance = tank.tolerance};
     if (tank.level > 0) params.water = [level = tank.level](const Vec3& x) { return level - x.z(); };
+    return Flow(params, {}, std::move(solids));
+}
+template <class Surface, class Solids = MonolithicSolids<>>
+auto water_in(const Tank& tank) {
     Solids solids;
     if constexpr (requires { solids.params().resolved_from; })
         solids = Solids({.resolved_from = tank.resolved_from});
-    return Flow(params, {}, std::move(solids));
+    return water_in<Surface>(tank, std::move(solids));
 }
 
 /// With a floor, or without where concrete is one.
