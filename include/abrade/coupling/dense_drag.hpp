@@ -1,6 +1,7 @@
 #pragma once
 // Drag of a body among others, of which water leaves room.
 
+#include <abrade/core/pack.hpp>
 #include <abrade/coupling/drag.hpp>
 
 namespace abrade {
