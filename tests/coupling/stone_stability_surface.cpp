@@ -55,6 +55,27 @@ TEST_CASE("a metre of water on a stone that lies on the bed: it weighs as much a
     }
 }
 
+TEST_CASE("a stone that presses into the floor, with a cell below it that it closes: it weighs as much") {
+    constexpr Real diameter = 0.05;
+    for (const Real cells : {9, 16})
+        for (const Real off : {0.0, 0.5}) {  // the one cell is closed without, the other with
+            const int n = static_cast<int>(3 * cells);
+            const Tank tank{.cells = {n, n, n + 10}, .h = diameter / cells, .level = 3 * diameter};
+            const Real deep = 0.1 * tank.h;
+            const Real weight = stone_density * stone_tank::g * pi / 6 * cube(diameter);
+            Scene scene = walls_of(tank);
+            scene.add_sphere(0.5 * diameter,
+                             {.position = {off * tank.h, 0.37 * off * tank.h, 0.5 * diameter - deep}},
+                             stone_density);
+            const LinearSpring spring{{.stiffness = weight / deep, .restitution = 0.3, .friction = 0.3}};
+            auto sim = simulate(scene).contact(spring).fluid(water_in<HeightSurface>(tank));
+            sim.run({.end_time = 0.2});
+            const Real carried = sim.world().state().flow_load[0].force.z() / buoyancy(diameter);
+            MESSAGE(cells << " cells, " << off << " of one aside: carried " << carried << " of rho g V");
+            CHECK(carried == doctest::Approx(1).epsilon(1e-3));
+        }
+}
+
 TEST_CASE("a heap of 40 stones comes to rest and wears nothing then") {
     for (const Real from : {0.0, 99.0}) {  // resolved, averaged
         const Tank tank{.cells = {16, 16, 30}, .level = 0.34, .largest_step = 4e-3, .resolved_from = from};

@@ -281,7 +281,7 @@ protected:
         fluxes_.resize(flux_start_.back()), beyond_.resize(fluxes_.size());
         FaceColumns& f = faces_.columns();
         faces_.number_covered(flux_start_, [&](std::size_t i, std::size_t n) {
-            if (i >= f.cloud) f.solid[i] = f.along(i, motion_[f.body[i]].q);
+            if (i >= f.cloud) f.solid[i] = f.pushes(i, motion_[f.body[i]].q);
             fluxes_[n] = {f.face[i], f.axis[i], f.covered[i] * f.solid[i]}, beyond_[n] = beyond(i);
         });
     }

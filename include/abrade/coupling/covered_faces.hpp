@@ -171,10 +171,19 @@ public:
     }
     /// What the n-th of the faces at the surface conducts, over what it would without bodies [-].
     Real water_share(std::size_t n) const noexcept { return surface_[n]; }
-    /// Only cells that take part have a pressure.
+    /// Cells that bodies, and what is near them, leave no pressure of their own are inside. Those of them
+    /// that are no more than pockets, as between a body and a floor that it touches, pass on what is pushed
+    /// into them: or the same pressure all around would press a body somewhere.
     void keep_wet(const Poisson<3>& m) {
-        for (SolidCover& cover : covers_)
-            std::erase_if(cover.cells, [&](const SolidCell& c) { return !(m.inverse_diagonal[c.cell] > 0); });
+        for (std::size_t b = 0; b < covers_.size(); ++b) {
+            SolidCover& c = covers_[b];
+            const auto closed = std::ranges::stable_partition(
+                c.cells, [&](const SolidCell& cell) { return m.inverse_diagonal[cell.cell] > 0; });
+            c.inside.insert(c.inside.end(), closed.begin(), closed.end());
+            c.cells.erase(closed.begin(), closed.end());
+            for (const SolidCell& pocket : c.inside)
+                if (!pocket.way.isZero(0)) lead_out(b, pocket, m);
+        }
     }
 
 private:
@@ -199,6 +208,36 @@ private:
         cloud_.place(grid, sides, bodies, std::move(small), open);
         for (std::size_t b = 0; b < bodies.size() && some; ++b)
             for (const SolidFace& f : covers_[b].faces) sums_[f.axis][f.face] = 0;
+    }
+
+    /// To the cells beside it that have a pressure, behind faces that the body closes.
+    void lead_out(std::size_t body, const SolidCell& pocket, const Poisson<3>& m) {
+        FaceColumns& f = columns_;
+        struct Exit {
+            std::size_t row;
+            SolidCell* to;
+            Real open;  ///< the more faces of that cell conduct, the less of a jet
+        };
+        std::vector<Exit> exits;
+        Real open = 0;
+        for (const std::size_t i : of(body)) {
+            const bool high = f.low[i] == pocket.cell;
+            if ((!high && f.face[i] != pocket.cell) || f.covered[i] == 0 || f.at_surface(i)) continue;
+            const Offset beside = high ? f.face[i] : f.low[i];
+            const auto to = std::ranges::find(covers_[body].cells, beside, &SolidCell::cell);
+            if (to == covers_[body].cells.end()) continue;
+            exits.push_back({i, &*to, 1 / static_cast<Real>(m.inverse_diagonal[beside])});
+            open += exits.back().open;
+        }
+        detail::Six pushed;
+        pushed << pocket.way, pocket.turn;
+        for (const auto& [row, to, share] : exits) {
+            const Real part = share / open, away = f.low[row] == pocket.cell ? 1 : -1;
+            to->way += part * pocket.way, to->turn += part * pocket.turn;
+            const Real through = f.volume[row] / f.gap[row] * f.open[row] * f.covered[row];
+            f.detours.push_back({row, -away * part / through * pushed});
+            f.detour[row] = static_cast<std::uint32_t>(f.detours.size());
+        }
     }
 
     static constexpr int outer = Layout<3>::outer;

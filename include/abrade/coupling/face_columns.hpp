@@ -48,9 +48,10 @@ struct FaceColumns {
     Reals heavier;       ///< what the body adds to the face's density, over this [-]
     Reals per_gap;       ///< 1 over the distance of the pressures to both sides [1/m]
     Reals weight;        ///< share of the face's inertia that is below the surface [-]
-    Flags high_wet, low_wet;  ///< cells to both sides: dry ones have no pressure
-    Flags conducts;           ///< whether a pressure's gradient pushes what is in it
-    Flags leaves;             ///< at a side where water leaves: only what is added to a pressure pushes there
+    Flags high_wet, low_wet;            ///< cells to both sides: dry ones have no pressure
+    Flags conducts;                     ///< whether a pressure's gradient pushes what is in it
+    std::vector<std::uint32_t> detour;  ///< 1 + number in `detours`; 0: none
+    Flags leaves;  ///< at a side where water leaves: only what is added to a pressure pushes there
     std::vector<std::uint32_t> surface;  ///< number of the face among those at the surface, if it is there
 
     Reals mass;      ///< of the control volume, as far as walls leave it open and it is wet [kg]
@@ -62,6 +63,13 @@ struct FaceColumns {
     Reals given;    ///< to the water beside friction [m/s]
     Reals unmixed;  ///< velocity before `mix` [m/s]
 
+    /// What a body pushes, beyond its own velocity, through a face that it closes.
+    struct Detour {
+        std::size_t row;
+        detail::Six of;  ///< its velocity and spin [-], [m]
+    };
+    std::vector<Detour> detours;
+
     // Of a cloud's rows:
     Reals mobility;       ///< what a gradient moves the cloud by, over water [-]
     Reals last_gradient;  ///< of the pressure that it has felt already [m/s2]
@@ -69,11 +77,11 @@ struct FaceColumns {
 
     std::size_t count() const noexcept { return face.size(); }
     void resize(std::size_t count, std::size_t of_cloud) {
-        cloud = of_cloud;
+        cloud = of_cloud, detours.clear();
         const auto all = [count](auto&... columns) { (columns.resize(count), ...); };
         all(face, low, axis, plane, body, arm, share, core, friction, volume, gap);
         all(open, water, covered, part, all_friction, lighter, heavier, per_gap, weight);
-        all(high_wet, low_wet, conducts, leaves, surface);
+        all(high_wet, low_wet, conducts, leaves, surface, detour);
         all(mass, velocity, solid, held, target, taken, given, unmixed);
         for (Reals* column : {&mobility, &last_gradient, &rate}) column->resize(of_cloud);
     }
@@ -82,7 +90,7 @@ struct FaceColumns {
         body[i] = static_cast<std::uint32_t>(by);
         share[i] = f.share, friction[i] = f.friction, volume[i] = f.volume(), gap[i] = f.gap;
         if (i >= cloud) arm[i] = f.arm, core[i] = f.core;
-        given[i] = 0;
+        given[i] = 0, detour[i] = 0;
     }
 
     /// What a face conducts per share of it that is open [m].
@@ -114,6 +122,10 @@ struct FaceColumns {
     /// Of a body's velocity and spin.
     Real along(std::size_t i, const detail::Six& q) const noexcept {
         return detail::along(axis[i], arm[i], q);
+    }
+    /// What it pushes through the face is that of this velocity.
+    Real pushes(std::size_t i, const detail::Six& q) const noexcept {
+        return along(i, q) + (detour[i] ? detours[detour[i] - 1].of.dot(q) : 0);
     }
 };
 

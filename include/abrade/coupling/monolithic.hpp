@@ -97,7 +97,7 @@ public:
                 motion_[b].q += detail::accelerated(
                     bodies_[b], stage_.dt * stage_.density * detail::pressed(faces_.cover(b), pressure));
             for (const std::size_t i : faces_.of(b))
-                f.target[i] = f.along(i, motion_[b].held), f.solid[i] = f.along(i, motion_[b].q);
+                f.target[i] = f.along(i, motion_[b].held), f.solid[i] = f.pushes(i, motion_[b].q);
         });
         averaged_.force(f, faces_.cloud(), bodies_, pressure, stage_, [&](const Vec3& x) -> Vec3 {
             return detail::flow_change<3, Real>(*grid_, sides_->periodic_axes(), u, nullptr, 0, x)
@@ -133,7 +133,7 @@ public:
             const bool lost = f.leaves[i] ? !old : f.conducts[i] || f.at_surface(i);
             const Real kept = old ? 1 : 1 - f.yields(i);  // the old pressure has moved a cloud already
             const Real back = lost ? factor * kept * f.gradient(of, i) : 0;
-            const Real pushed = i < f.cloud ? 0 : f.along(i, motion_[f.body[i]].push);
+            const Real pushed = i < f.cloud ? 0 : f.pushes(i, motion_[f.body[i]].push);
             f.at(u, i) += f.covered[i] * (back + pushed);
         });
     }
@@ -160,6 +160,8 @@ public:
         faces_.covered_by_planes([&](std::size_t i) {
             if (f.water[i] > 0) f.at(u, i) = f.velocity[i] - stage_.dt * f.gradient(pressure, i);
         });
+        for (const FaceColumns::Detour& d : f.detours)  // which is no velocity of water
+            f.at(u, d.row) -= f.covered[d.row] * d.of.dot(motion_[f.body[d.row]].q);
         averaged_.yield(f, pressure, stage_.dt);
         find_fluxes([&](std::size_t i) { return f.covered[i] * (f.solid[i] - f.at(u, i)); });
         hand_out(u, pressure, [&](std::size_t b, const Six& pressed) {

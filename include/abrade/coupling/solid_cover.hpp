@@ -38,8 +38,8 @@ struct SolidCell {
 /// A body on the grid.
 struct SolidCover {
     std::vector<SolidFace> faces;
-    std::vector<SolidCell> cells;   ///< that it covers in part
-    std::vector<SolidCell> inside;  ///< and as a whole
+    std::vector<SolidCell> cells;   ///< of which it covers some
+    std::vector<SolidCell> inside;  ///< those among them that are left no pressure, once this is known
     std::vector<SolidPart> parts;   ///< its volume in cells
     bool cut = false;               ///< some of it lies beyond a side where water flows in or out
     bool averaged = false;          ///< too small for its shape to count: it has its part in a cloud

@@ -328,8 +328,7 @@ private:
                 if (low.isZero(0) && high.isZero(0)) continue;
                 if (!amid_ && !grid.has(inside_box(n))) continue;
                 const Vec3 way = area.cwiseProduct(high - low), arm = place(of_cells, n) - body_->position;
-                const bool all = low.isOnes(0) && high.isOnes(0);
-                (all ? cover.inside : cover.cells).push_back({offset(n), way, arm.cross(way), arm});
+                cover.cells.push_back({offset(n), way, arm.cross(way), arm});
             }
         });
     }
