@@ -135,8 +135,7 @@ std::vector<Level> impacts(Real finest) {
         sim.run({.end_time = 1});
         return sim.ledger().lost_normal + sim.ledger().lost_sliding;
     };
-    // On 12 cells a stone that has struck the floor ends the run.
-    std::vector<Level> all = levels(std::min(finest, 8.0), [&](Real cells, Real off, auto solids) {
+    std::vector<Level> all = levels(std::min(finest, 12.0), [&](Real cells, Real off, auto solids) {
         const int across = static_cast<int>(6 * cells), up = static_cast<int>(9 * cells);
         const stone_tank::Tank tank{.cells = {across, across, up}, .h = diameter / cells};
         return lost(off * tank.h * Vec3(1, 0.37, 0.71),
