@@ -22,10 +22,11 @@ inline Scene make_scene(const ChannelConfig& c) {
         scene.concrete->material = concrete_material;
     const Real half = 0.5 * c.invert.width;
     scene.add_wall({0, -half, 0}, {0, 1, 0}).add_wall({0, half, 0}, {0, -1, 0});
+    scene.add_wall({0, 0, 0}, {1, 0, 0});  // lets water in and no stone out: without water they pile up there
     scene.feed = c.feed;
     scene.outlet = c.invert.length;
     scene.gauge = c.comparison.gauge;
-    // Stones may bounce off the upstream end and high above the water, but not through the concrete.
+    // Stones may bounce high above the water, but not through the concrete.
     const Real floor = -c.lattice.layers * c.lattice.sphere_diameter;
     scene.bounds = {{-1, -1.2 * half, floor}, {c.invert.length + 1, 1.2 * half, ChannelConfig::ceiling}};
     return scene;

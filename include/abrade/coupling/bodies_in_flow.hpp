@@ -301,12 +301,8 @@ private:
             const auto p = static_cast<std::size_t>(plane);
             for (std::size_t i = flux_start_[p]; i < flux_start_[p + 1]; ++i) visit(i);
         };
-        parallel_blocks(
-            static_cast<Index>(flux_start_.size()) - 1,
-            [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane) (visit_plane(plane, visits), ...);
-            },
-            CoveredFaces::planes_at_once);
+        CoveredFaces::each_plane(static_cast<Index>(flux_start_.size()) - 1,
+                                 [&](Index plane) { (visit_plane(plane, visits), ...); });
     }
 
     bool is_new(std::size_t b) const noexcept { return !std::ranges::binary_search(seen_, bodies_[b].id); }

@@ -20,7 +20,16 @@ namespace abrade {
 /// numbers.
 class CoveredFaces {
 public:
-    static constexpr Index planes_at_once = 4;  ///< stones lie in heaps
+    /// In parallel: of_plane(p) for so many planes.
+    static void each_plane(Index planes, auto&& of_plane) {
+        constexpr Index at_once = 4;  // stones lie in heaps
+        parallel_blocks(
+            planes,
+            [&](Index, Index first, Index last) {
+                for (Index plane = first; plane < last; ++plane) of_plane(plane);
+            },
+            at_once);
+    }
 
     /// Bodies as they stand; those below `resolved_from` cells to a diameter make a cloud, which is one more
     /// body behind the others. `open_area`: shares that walls leave open; none: all is. `retracted`: the
@@ -110,15 +119,10 @@ public:
     /// Calls visit(row, number) for covered ones in the order of their planes, in parallel; `before`: see
     /// `covered_before`.
     void number_covered(const std::vector<std::size_t>& before, auto&& visit) const {
-        parallel_blocks(
-            planes_,
-            [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane) {
-                    std::size_t number = before[at(plane)];
-                    visit_plane(plane, covered, [&](std::size_t i) { visit(i, number++); });
-                }
-            },
-            planes_at_once);
+        each_plane(planes_, [&](Index plane) {
+            std::size_t number = before[at(plane)];
+            visit_plane(plane, covered, [&](std::size_t i) { visit(i, number++); });
+        });
     }
 
     /// Takes from what faces conduct what bodies cover. `surface`: faces at which the pressure is 0.
@@ -257,12 +261,7 @@ private:
             visit(std::size_t{by_plane_[n]});
     }
     void visit_planes(Which which, auto&... visits) const {
-        parallel_blocks(
-            planes_,
-            [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane) (visit_plane(plane, which, visits), ...);
-            },
-            planes_at_once);
+        each_plane(planes_, [&](Index plane) { (visit_plane(plane, which, visits), ...); });
     }
 
     void make_sums(const Layout<3>& layout) {
