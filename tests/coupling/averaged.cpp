@@ -108,6 +108,24 @@ TEST_CASE("momentum of water and small balls is kept to a hundredth of what they
     }
 }
 
+TEST_CASE("beyond a periodic side it is where it would be inside, resolved or averaged") {
+    for (const Real radius : {0.05, 0.3})
+        for (const Real x : {-0.02, 1.63}) {
+            std::array<Vec3, 2> velocity;
+            for (const bool inside : {false, true}) {
+                auto params = box(16, 0.1, Side::slip, 1e-3);
+                params.sides[0] = {Side::periodic, Side::periodic};
+                Water water(params);
+                const Real there = inside ? (x < 0 ? x + 1.6 : x - 1.6) : x;
+                std::vector<Ball> balls{{Vec3(there, 0.79, 0.8), radius, 2650}};
+                for (int k = 0; k < 5; ++k) step(water, balls, 0.01);
+                velocity[inside] = balls[0].body.velocity;
+            }
+            CHECK(velocity[0].z() < -0.05);
+            CHECK((velocity[0] - velocity[1]).norm() < 1e-9);
+        }
+}
+
 TEST_CASE(
     "in a shear it is lifted to where it lags more, by what the water loses; unless asked, not at all") {
     for (const Real lift : {0.0, 0.5})

@@ -56,11 +56,16 @@ public:
         carry(f, cloud);
     }
 
+    /// For lift, of a whole field of the water's velocity. `curl(x)`: of it, at a place [1/s].
+    void see(const SpreadCloud& cloud, std::span<const FlowBody> bodies, auto&& curl) {
+        if (lift_ == 0) return;
+        for_each(cloud, [&](std::size_t n) { motion_[n].curl = curl(bodies[cloud.which()[n]].position); });
+    }
     /// Before the pressure is found: what friction, lift and added mass do to faces, whose velocity and mass
-    /// are known. `curl(x)`: of the water's velocity at a place [1/s].
+    /// are known.
     void force(FaceColumns& f, const SpreadCloud& cloud, std::span<const FlowBody> bodies,
-               const Field<Real>& old, const FlowStage& stage, auto&& curl) {
-        for_each(cloud, [&](std::size_t n) { alone(n, f, cloud, bodies, old, stage, curl); });
+               const Field<Real>& old, const FlowStage& stage) {
+        for_each(cloud, [&](std::size_t n) { alone(n, f, cloud, bodies, old, stage); });
         for_each_face(f, [&](std::size_t i) {
             f.last_gradient[i] = f.gradient(old, i), f.rate[i] = f.target[i] = f.given[i] = 0;
         });
@@ -71,7 +76,7 @@ public:
             if (f.mass[i] > 0) f.given[i] += part.share * f.water[i] * motion_[n].pushed[axis];
         });
         for_each_face(f, [&](std::size_t i) {
-            const Real stiff = stage.dt * f.rate[i] / std::max(f.water[i], least_water);
+            const Real stiff = f.water[i] > 0 ? stage.dt * f.rate[i] / f.water[i] : 0;
             f.held[i] = stiff / (1 + stiff);
             f.target[i] = f.rate[i] > 0 ? f.target[i] / f.rate[i] : 0;
         });
@@ -107,12 +112,15 @@ public:
             const Vec3 by_added = m.coefficient * pressed + (m.added_momentum - m.added * m.v) / stage.dt;
             body.velocity = m.v;
             const Vec3 after_blow = m.struck.taken_by(m.added, body, stage.dt);
+            const Memory* const before = with_id(memory_, body.id);
+            const Real lasts = before ? stage.lasts() : 1;
             if (!covers[cloud.which()[n]].cut) {
                 const Vec3 load = pressed + m.by_slip + by_added + after_blow;
-                body.load.force += stage.lasts() * (load - body.load.force), body.load.torque.setZero();
+                body.load.force += lasts * (load - body.load.force), body.load.torque.setZero();
                 m.struck.hand_out(body, m.added, stage.dt);
             }
             m.pressed = pressed;
+            if (before) m.pressed = before->pressed + lasts * (pressed - before->pressed);
             m.reaction = stage.dt * by_added - m.reaction;
         });
         memory_.clear();
@@ -132,6 +140,7 @@ private:
         Vec3 by_slip = Vec3::Zero();         ///< drag and lift [N]
         Vec3 pressed = Vec3::Zero();         ///< by the pressure, without added mass [N]
         Vec3 reaction = Vec3::Zero();        ///< of the added mass on the water, an impulse [kg m/s]
+        Vec3 curl = Vec3::Zero();            ///< of the water's velocity [1/s]
         Vec3 pushed = Vec3::Zero();          ///< of the water by that impulse, over both their shares [m/s]
         Real rate = 0;                       ///< beta / (rho V) [1/s]
         Real coefficient = 0;                ///< C_m [-]
@@ -189,8 +198,7 @@ private:
 
     /// The body's velocity with drag and lift in the water as it is.
     void alone(std::size_t n, const FaceColumns& f, const SpreadCloud& cloud,
-               std::span<const FlowBody> bodies, const Field<Real>& old, const FlowStage& stage,
-               auto&& curl) {
+               std::span<const FlowBody> bodies, const Field<Real>& old, const FlowStage& stage) {
         const FlowBody& body = bodies[cloud.which()[n]];
         Motion& m = motion_[n];
         Vec3 weight = Vec3::Zero(), open = Vec3::Zero(), among = Vec3::Zero(), flow = Vec3::Zero();
@@ -212,8 +220,7 @@ private:
                                 .porosity = shares > 0 ? 1 - others / shares : 1};
         const Real drag = weight.norm() > 0 ? spread.drag(drag_) : 0, put_back = spread.put_back(drag);
         m.rate = drag * put_back / body.volume;
-        if (lift_ != 0)
-            m.by_slip = lift_ * weight.mean() * put_back * (flow - body.velocity).cross(curl(body.position));
+        if (lift_ != 0) m.by_slip = lift_ * weight.mean() * put_back * (flow - body.velocity).cross(m.curl);
         const Memory* const before = with_id(memory_, body.id);
         const Real dt = stage.dt;
         m.coefficient = added_mass_ * std::min(2 * open.sum() / std::max(weight.sum(), tiny<Real>), 1.0);

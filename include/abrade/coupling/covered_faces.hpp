@@ -76,7 +76,8 @@ public:
             block_of_bodies);
         list_parts();
         sort_by_plane(grid.layout().planes());
-        share_out(grid.layout(), open_area);
+        open_area_ = open_area;
+        share_out(grid.layout());
     }
 
     FaceColumns& columns() noexcept { return columns_; }
@@ -175,19 +176,27 @@ public:
     }
     /// What the n-th of the faces at the surface conducts, over what it would without bodies [-].
     Real water_share(std::size_t n) const noexcept { return surface_[n]; }
-    /// Cells that bodies, and what is near them, leave no pressure of their own are inside. Those of them
-    /// that are no more than pockets, as between a body and a floor that it touches, pass on what is pushed
-    /// into them: or the same pressure all around would press a body somewhere.
+    /// Once the operator is built: takes cells without a pressure of their own, which bodies and walls close,
+    /// to those inside a body, and pushes the others by what passes through their faces. A cell that is
+    /// closed without being covered is a pocket, as between a body and a floor that it touches. What a body
+    /// pushes into it goes on to cells beside it, or the same pressure all around would press on the body.
     void keep_wet(const Poisson<3>& m) {
-        for (std::size_t b = 0; b < covers_.size(); ++b) {
-            SolidCover& c = covers_[b];
-            const auto closed = std::ranges::stable_partition(
-                c.cells, [&](const SolidCell& cell) { return m.inverse_diagonal[cell.cell] > 0; });
-            c.inside.insert(c.inside.end(), closed.begin(), closed.end());
-            c.cells.erase(closed.begin(), closed.end());
-            for (const SolidCell& pocket : c.inside)
-                if (!pocket.way.isZero(0)) lead_out(b, pocket, m);
-        }
+        const auto wet = [&](Offset cell) { return m.inverse_diagonal[cell] > 0; };
+        parallel_blocks(
+            static_cast<Index>(covers_.size()),
+            [&](Index, Index first, Index last) {
+                for (std::size_t b = at(first); b < at(last); ++b) {
+                    SolidCover& c = covers_[b];
+                    const auto closed = std::ranges::stable_partition(
+                        c.cells, [&](const SolidCell& cell) { return wet(cell.cell); });
+                    c.inside.insert(c.inside.end(), closed.begin(), closed.end());
+                    c.cells.erase(closed.begin(), closed.end());
+                    push_what_passes(b, wet);
+                }
+            },
+            block_of_bodies);
+        for (std::size_t b = 0; b < covers_.size(); ++b)
+            if (std::ranges::any_of(covers_[b].inside, is_pushed)) lead_out(b, m);
     }
 
 private:
@@ -200,6 +209,7 @@ private:
             covers_[b].clear();
             for (int a = 0; a < 3; ++a) {
                 const Real x = bodies[b].position[a];
+                if (sides.periodic(a)) continue;
                 covers_[b].cut |= (!is_closed(sides[a][0]) && x < grid.low(a)) ||
                                   (!is_closed(sides[a][1]) && x > grid.high(a));
             }
@@ -214,33 +224,57 @@ private:
             for (const SolidFace& f : covers_[b].faces) sums_[f.axis][f.face] = 0;
     }
 
-    /// To the cells beside it that have a pressure, behind faces that the body closes.
-    void lead_out(std::size_t body, const SolidCell& pocket, const Poisson<3>& m) {
-        FaceColumns& f = columns_;
+    static SolidCell* find(std::vector<SolidCell>& in, Offset cell) noexcept {
+        const auto found = std::ranges::find(in, cell, &SolidCell::cell);
+        return found == in.end() ? nullptr : &*found;
+    }
+    static bool is_pushed(const SolidCell& cell) noexcept { return !cell.way.isZero(0); }
+
+    /// Walls and other bodies may leave less of a face than a body would cover.
+    void push_what_passes(std::size_t body, auto&& wet) {
+        constexpr Real least_lack = 1e-6;  // conductances are in single precision
+        const FaceColumns& f = columns_;
+        SolidCover& c = covers_[body];
+        for (const std::size_t i : of(body)) {
+            const Real lacks = f.open[i] * f.covered[i] - f.share[i];
+            if (std::abs(lacks) < least_lack) continue;
+            if (f.open[i] == 0 && !wet(f.face[i]) && !wet(f.low[i])) continue;  // in the air
+            const detail::Six pushes = lacks * f.volume[i] / f.gap[i] * f.coefficient(i);
+            for (const auto& [cell, sign] : {std::pair{f.face[i], -1.0}, std::pair{f.low[i], 1.0}})
+                if (SolidCell* const of_cell = find(wet(cell) ? c.cells : c.inside, cell))
+                    of_cell->way += sign * pushes.template head<3>(),
+                        of_cell->turn += sign * pushes.template tail<3>();
+        }
+    }
+
+    /// From pockets to the cells beside them that have a pressure, behind faces that the body closes.
+    void lead_out(std::size_t body, const Poisson<3>& m) {
         struct Exit {
             std::size_t row;
-            SolidCell* to;
-            Real open;  ///< the more faces of that cell conduct, the less of a jet
+            SolidCell *from, *to;
+            Real open;  ///< the more faces of `to` conduct, the less of a jet
         };
+        FaceColumns& f = columns_;
+        SolidCover& c = covers_[body];
         std::vector<Exit> exits;
-        Real open = 0;
         for (const std::size_t i : of(body)) {
-            const bool high = f.low[i] == pocket.cell;
-            if ((!high && f.face[i] != pocket.cell) || f.covered[i] == 0 || f.at_surface(i)) continue;
-            const Offset beside = high ? f.face[i] : f.low[i];
-            const auto to = std::ranges::find(covers_[body].cells, beside, &SolidCell::cell);
-            if (to == covers_[body].cells.end()) continue;
-            exits.push_back({i, &*to, 1 / static_cast<Real>(m.inverse_diagonal[beside])});
-            open += exits.back().open;
+            const bool above = m.inverse_diagonal[f.face[i]] > 0, below = m.inverse_diagonal[f.low[i]] > 0;
+            if (above == below || f.open[i] * f.covered[i] == 0 || f.at_surface(i)) continue;
+            const Offset to = above ? f.face[i] : f.low[i], from = above ? f.low[i] : f.face[i];
+            const Exit exit{i, find(c.inside, from), find(c.cells, to),
+                            1 / static_cast<Real>(m.inverse_diagonal[to])};
+            if (exit.from && exit.to && is_pushed(*exit.from)) exits.push_back(exit);
         }
-        detail::Six pushed;
-        pushed << pocket.way, pocket.turn;
-        for (const auto& [row, to, share] : exits) {
-            const Real part = share / open, away = f.low[row] == pocket.cell ? 1 : -1;
-            to->way += part * pocket.way, to->turn += part * pocket.turn;
-            const Real through = f.volume[row] / f.gap[row] * f.open[row] * f.covered[row];
-            f.detours.push_back({row, -away * part / through * pushed});
-            f.detour[row] = static_cast<std::uint32_t>(f.detours.size());
+        for (const Exit& exit : exits) {
+            Real open = 0;
+            for (const Exit& other : exits) open += other.from == exit.from ? other.open : 0;
+            const Real part = exit.open / open, away = exit.to->cell == f.face[exit.row] ? 1 : -1;
+            exit.to->way += part * exit.from->way, exit.to->turn += part * exit.from->turn;
+            const Real through =
+                f.volume[exit.row] / f.gap[exit.row] * f.open[exit.row] * f.covered[exit.row];
+            const detail::Six pushed = (detail::Six() << exit.from->way, exit.from->turn).finished();
+            f.detours.push_back({exit.row, -away * part / through * pushed});
+            f.detour[exit.row] = static_cast<std::uint32_t>(f.detours.size());
         }
     }
 
@@ -264,20 +298,22 @@ private:
         each_plane(planes_, [&](Index plane) { (visit_plane(plane, which, visits), ...); });
     }
 
+    /// By walls [-].
+    Real left_open(std::size_t i) const noexcept { return open_area_ ? columns_.at(*open_area_, i) : 1; }
     void make_sums(const Layout<3>& layout) {
         if (sums_[0].size() == 0) sums_ = face_field<3>(layout);
     }
 
     /// What walls and all bodies leave of faces, until `close` knows which of these have a pressure; and all
     /// friction, even of one body: it may be near itself, across a periodic side.
-    void share_out(const Layout<3>& layout, const FaceField<3>* open_area) {
+    void share_out(const Layout<3>& layout) {
         FaceColumns& f = columns_;
         if (f.count() == 0) return;
         make_sums(layout);
         const auto sum = [&](std::size_t i) -> Real& { return f.at(sums_, i); };
         by_planes([&](std::size_t i) { sum(i) += f.share[i]; },
                   [&](std::size_t i) {
-                      f.open[i] = open_area ? f.at(*open_area, i) : 1;
+                      f.open[i] = left_open(i);
                       f.water[i] = std::max(f.open[i] - sum(i), 0.0);
                       f.part[i] = sum(i) > 0 ? f.share[i] / sum(i) : 0, f.cover(i);
                   },
@@ -330,12 +366,14 @@ private:
                 visit(i, n, surface[n]);
             };
         };
-        by_planes(dry([&](std::size_t i, std::size_t n, const OpenFace&) { surface_[n] -= f.share[i]; }),
+        by_planes(dry([&](std::size_t i, std::size_t n, const OpenFace&) {
+                      surface_[n] -= f.share[i] / left_open(i);
+                  }),
                   dry([&](std::size_t, std::size_t n, const OpenFace&) {
                       if (surface_[n] < least) surface_[n] = 0;
                   }),
                   dry([&](std::size_t i, std::size_t n, const OpenFace& open) {
-                      f.open[i] = 1, f.water[i] = surface_[n], f.cover(i);
+                      f.open[i] = left_open(i), f.water[i] = surface_[n] * f.open[i], f.cover(i);
                       f.per_gap[i] = std::abs(open.slope), f.surface[i] = static_cast<std::uint32_t>(n);
                       f.high_wet[i] = open.cell == f.face[i], f.low_wet[i] = open.cell == f.low[i];
                       f.leaves[i] = open.plain == 0, f.weight[i] = open.weight;
@@ -343,7 +381,8 @@ private:
         for (const OpenFace& open : surface) sums_[open.axis][open.face] = 0;
     }
 
-    std::vector<SolidCover> covers_;  ///< [body]
+    const FaceField<3>* open_area_ = nullptr;  ///< of the step; none: all is open
+    std::vector<SolidCover> covers_;           ///< [body]
     SpreadCloud cloud_;
     FaceColumns columns_;
     std::vector<SolidPart> parts_;  ///< of bodies, then of the cloud

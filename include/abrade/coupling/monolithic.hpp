@@ -88,6 +88,13 @@ public:
         faces_.of_bodies_by_planes([&](std::size_t i) { f.at(u, i) += share * f.taken[i]; });
     }
 
+    void mix(FaceField<3>& u) {
+        averaged_.see(faces_.cloud(), bodies_, [&](const Vec3& x) -> Vec3 {
+            return detail::flow_change<3, Real>(*grid_, sides_->periodic_axes(), u, nullptr, 0, x)
+                .vorticity();
+        });
+        BodiesInFlow::mix(u);
+    }
     void force(FaceField<3>& u, const Field<Real>& pressure, const FlowStage& stage) {
         look_at(u, pressure, stage);
         FaceColumns& f = faces_.columns();
@@ -99,10 +106,7 @@ public:
             for (const std::size_t i : faces_.of(b))
                 f.target[i] = f.along(i, motion_[b].held), f.solid[i] = f.pushes(i, motion_[b].q);
         });
-        averaged_.force(f, faces_.cloud(), bodies_, pressure, stage_, [&](const Vec3& x) -> Vec3 {
-            return detail::flow_change<3, Real>(*grid_, sides_->periodic_axes(), u, nullptr, 0, x)
-                .vorticity();
-        });
+        averaged_.force(f, faces_.cloud(), bodies_, pressure, stage_);
         find_loss([&](std::size_t i) {
             const Real left = f.held[i] * (1 - 0.5 * f.held[i]);
             return f.mass[i] * f.water[i] * left * square(f.target[i] - f.velocity[i]);

@@ -70,10 +70,9 @@ private:
     /// `acted`: the load that it has had so far; `later`: how long before the end of its way it is looked at.
     void exchange(FlowBody& body, const FlowLoad& acted, Real dt, Real later) {
         const Vec3 x = body.position - later * body.velocity;
-        const FluidSample here = water_.sample(x, time());
         spread(x, body.diameter());
-        const Real below =
-            parts_.empty() ? 0 : submerged_share(here.depth, 0.5 * body.diameter()) * body.volume;
+        const FluidSample here = parts_.empty() ? FluidSample{} : water_.sample(x, time());
+        const Real below = submerged_share(here.depth, 0.5 * body.diameter()) * body.volume;
         const FluidLoad load = fluid_load(drag_, here, {x, body.velocity, body.volume}, params().gravity);
         const Real slip = (here.velocity - body.velocity).norm();
         const Real beta = slip > 0 ? load.drag.norm() / slip : 0, stiff = dt * beta * body.inverse_mass;
@@ -100,10 +99,11 @@ private:
             const auto number = [&](Real at) {
                 return static_cast<Index>(std::floor((at - grid.low(a)) / h));
             };
-            const Index last = std::min(number(x[a] + half), grid.count(a) - 1);
-            for (Index i = std::max(number(x[a] - half), Index{0}); i <= last; ++i)
-                if (const Real share = 1 - std::abs(grid.centre(a, i) - x[a]) / half; share > 0)
-                    layers[static_cast<std::size_t>(a)].push_back({i, share});
+            for (Index i = number(x[a] - half); i <= number(x[a] + half); ++i)
+                if (const Real share =
+                        1 - std::abs(grid.low(a) + (static_cast<Real>(i) + 0.5) * h - x[a]) / half;
+                    share > 0 && has(a, wrapped(a, i)))
+                    layers[static_cast<std::size_t>(a)].push_back({wrapped(a, i), share});
         }
         parts_.clear();
         Real sum = 0;
@@ -111,6 +111,13 @@ private:
             for (const auto& [i, along_x] : layers[0])
                 if (is_wet(i, j)) parts_.push_back({i, j, along_x * along_y}), sum += along_x * along_y;
         for (Part& part : parts_) part.share /= sum;
+    }
+    bool has(int a, Index i) const noexcept { return i >= 0 && i < water_.grid().count(a); }
+    /// Across a periodic side.
+    Index wrapped(int a, Index i) const noexcept {
+        const Index n = water_.grid().count(a);
+        const auto& ends = params().sides[static_cast<std::size_t>(a)];
+        return ends[0].kind == WaterSide::Kind::periodic ? (i % n + n) % n : i;
     }
     bool is_wet(Index i, Index j) const noexcept { return water_.depth(i, j) > params().dry_depth; }
 
@@ -121,9 +128,8 @@ private:
             for (int a = 0; a < 2; ++a) {
                 const std::array<Index, 2> step{a == 0, a == 1}, at{part.i, part.j};
                 const auto to = [&](Index by) {  // or the cell itself, where there is none
-                    const Index i = at[0] + by * step[0], j = at[1] + by * step[1];
-                    const Index n = a == 0 ? i : j;
-                    const bool there = n >= 0 && n < water_.grid().count(a) && is_wet(i, j);
+                    const Index i = wrapped(0, at[0] + by * step[0]), j = wrapped(1, at[1] + by * step[1]);
+                    const bool there = has(a, a == 0 ? i : j) && is_wet(i, j);
                     return there ? water_.surface(i, j) : water_.surface(part.i, part.j);
                 };
                 sum[a] += part.share * (to(1) - to(-1)) / (2 * water_.grid().spacing(a));
