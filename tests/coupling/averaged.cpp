@@ -90,7 +90,7 @@ TEST_CASE("from rest it has the acceleration that its added mass allows, at any 
     }
 }
 
-TEST_CASE("momentum of water and small balls is kept to a hundredth of what they exchange") {
+TEST_CASE("momentum of water and small balls is kept to a hundredth of what the ball came with") {
     for (const Real ratio : {0.1, 2.65}) {
         auto params = box(16, 0.1, Side::periodic, 2);
         params.gravity.setZero(), params.tolerance = 1e-9;

@@ -90,7 +90,7 @@ TEST_CASE("a ball that lags in a shear is lifted to where the water is faster") 
     CHECK((out.inertial - 0.5 * load.inertial).norm() < 1e-12);
 }
 
-TEST_CASE("a blow moves the water along: a ball bounces as the sum of both masses does") {
+TEST_CASE("a blow moves the water along: a ball that bounces makes and loses no energy") {
     // It loses nothing, and comes back to where it was: of energy in the body alone there is less.
     for (const Real ratio : {1.5, 2.65}) {
         const Motion found = let_go(Linear(), ratio, true);

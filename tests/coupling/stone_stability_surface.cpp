@@ -50,8 +50,8 @@ TEST_CASE("a metre of water on a stone that lies on the bed: it weighs as much a
         MESSAGE("let go " << gap << " m above: at most " << high << " m high, then " << late
                           << " m/s; carried " << (carried / seen) << " of rho g V");
         CHECK(high < gap + 1e-6);
-        CHECK(late < 1e-4);
-        CHECK(carried / seen == doctest::Approx(1).epsilon(0.01));
+        CHECK(late < 1e-7);
+        CHECK(std::abs(carried / seen - 1) < 1e-4);
     }
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("a stone that presses into the floor, with a cell below it that it clo
             sim.run({.end_time = 0.2});
             const Real carried = sim.world().state().flow_load[0].force.z() / buoyancy(diameter);
             MESSAGE(cells << " cells, " << off << " of one aside: carried " << carried << " of rho g V");
-            CHECK(carried == doctest::Approx(1).epsilon(1e-3));
+            CHECK(std::abs(carried - 1) < 3e-4);  // measured: 1e-4
         }
 }
 

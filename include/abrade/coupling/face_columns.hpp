@@ -56,17 +56,18 @@ struct FaceColumns {
 
     Reals mass;      ///< of the control volume, as far as walls leave it open and it is wet [kg]
     Reals velocity;  ///< of the water, before a pressure acts [m/s]
-    Reals solid;     ///< velocity of what covers it [m/s]
+    Reals solid;     ///< velocity that what covers it passes through with [m/s]
     Reals held;      ///< share of the way to `target` [m/s] that friction takes the water [-]
     Reals target;
     Reals taken;    ///< by friction in the first stage [m/s]
     Reals given;    ///< to the water beside friction [m/s]
     Reals unmixed;  ///< velocity before `mix` [m/s]
 
-    /// What a body pushes, beyond its own velocity, through a face that it closes.
+    /// Through a face that a body closes passes what it pushes into a pocket behind: as if it were faster by
+    /// `of` times its velocity and spin.
     struct Detour {
         std::size_t row;
-        detail::Six of;  ///< its velocity and spin [-], [m]
+        detail::Six of;  ///< [-], [m]
     };
     std::vector<Detour> detours;
 
@@ -123,7 +124,7 @@ struct FaceColumns {
     Real along(std::size_t i, const detail::Six& q) const noexcept {
         return detail::along(axis[i], arm[i], q);
     }
-    /// What it pushes through the face is that of this velocity.
+    /// Velocity with which it passes through the face, detours included [m/s].
     Real pushes(std::size_t i, const detail::Six& q) const noexcept {
         return along(i, q) + (detour[i] ? detours[detour[i] - 1].of.dot(q) : 0);
     }

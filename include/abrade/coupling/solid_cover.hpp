@@ -27,7 +27,7 @@ struct SolidFace {
 };
 
 /// A cell of which a body covers some. As the body moves by V dt and turns by W dt it gives
-/// dt (way . V + turn . W) to the cells around.
+/// dt (way . V + turn . W) to the cells around; and, beside a pocket, what comes from there.
 struct SolidCell {
     Offset cell = 0;
     Vec3 way = Vec3::Zero();   ///< [m2]
@@ -38,8 +38,8 @@ struct SolidCell {
 /// A body on the grid.
 struct SolidCover {
     std::vector<SolidFace> faces;
-    std::vector<SolidCell> cells;   ///< of which it covers some
-    std::vector<SolidCell> inside;  ///< those among them that are left no pressure, once this is known
+    std::vector<SolidCell> cells;   ///< of which it covers some; later those of them that have a pressure
+    std::vector<SolidCell> inside;  ///< and those that have none (CoveredFaces::keep_wet)
     std::vector<SolidPart> parts;   ///< its volume in cells
     bool cut = false;               ///< some of it lies beyond a side where water flows in or out
     bool averaged = false;          ///< too small for its shape to count: it has its part in a cloud
