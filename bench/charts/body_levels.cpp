@@ -107,8 +107,11 @@ std::vector<Level> settling(const ReferenceRow& row, Real finest) {
     std::cout << "settling\n";
     constexpr Real end = 0.9;
     const auto nothing = [](const auto&) {};
-    std::vector<Level> all = levels(finest, [&](Real cells, Real, const auto& solids) {
-        return settling_sphere::settle(end, nothing, settling_sphere::oil(row, cells, solids)).speed;
+    std::vector<Level> all = levels(finest, [&](Real cells, Real off, const auto& solids) {
+        const Vec3 place =
+            settling_sphere::middle + off * settling_sphere::diameter / cells * Vec3(1, 0.37, -0.71);
+        return settling_sphere::settle_from(place, end, nothing, settling_sphere::oil(row, cells, solids))
+            .speed;
     });
     std::cout << "one way\n";
     const Point one_way = measured(0, [&](Real) {

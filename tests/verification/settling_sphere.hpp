@@ -36,12 +36,13 @@ struct Peak {
     Real speed = 0;     ///< the fastest [m/s]
     Real residual = 0;  ///< the ledger's largest [-]
 };
-/// `fluid`: and a drag law where it needs one; `ended(sim)`.
-Peak settle(Real end, auto&& ended, auto... fluid) {
+inline const Vec3 middle(0.05, 0.05, 0.1275);  // [m]
+/// From a place; `fluid`: and a drag law where it needs one; `ended(sim)`.
+Peak settle_from(const Vec3& place, Real end, auto&& ended, auto... fluid) {
     Scene scene;
     scene.gravity = {0, 0, -9.81};
     scene.add_wall({0, 0, 0}, {0, 0, 1});
-    scene.add_sphere(0.5 * diameter, {.position = {0.05, 0.05, 0.1275}}, 1120);
+    scene.add_sphere(0.5 * diameter, {.position = place}, 1120);
     auto sim = simulate(scene)
                    .contact(LinearSpring{{.stiffness = 1000, .restitution = 0.5}})
                    .fluid(std::move(fluid)...);
@@ -52,6 +53,9 @@ Peak settle(Real end, auto&& ended, auto... fluid) {
     });
     ended(sim);
     return peak;
+}
+Peak settle(Real end, auto&& ended, auto... fluid) {
+    return settle_from(middle, end, ended, std::move(fluid)...);
 }
 
 }  // namespace settling_sphere
