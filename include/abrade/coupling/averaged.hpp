@@ -162,11 +162,8 @@ private:
     static Real kept(Real water) noexcept { return std::min(water / least_water, 1.0); }
 
     void for_each(const SpreadCloud& cloud, auto&& body) const {
-        parallel_blocks(
-            static_cast<Index>(cloud.count()),
-            [&](Index, Index first, Index last) {
-                for (Index n = first; n < last; ++n) body(static_cast<std::size_t>(n));
-            },
+        parallel_for(
+            static_cast<Index>(cloud.count()), [&](Index n) { body(static_cast<std::size_t>(n)); },
             block_of_bodies);
     }
     static void for_each_face(const FaceColumns& f, auto&& visit) {

@@ -148,11 +148,11 @@ protected:
     }
 
     void parallel_for_resolved(auto&& body) const {
-        parallel_blocks(
+        parallel_for(
             static_cast<Index>(bodies_.size()),
-            [&](Index, Index first, Index last) {
-                for (auto b = static_cast<std::size_t>(first); b < static_cast<std::size_t>(last); ++b)
-                    if (!faces_.cover(b).averaged) body(b);
+            [&](Index n) {
+                const auto b = static_cast<std::size_t>(n);
+                if (!faces_.cover(b).averaged) body(b);
             },
             block_of_bodies);
     }
@@ -301,8 +301,9 @@ private:
             const auto p = static_cast<std::size_t>(plane);
             for (std::size_t i = flux_start_[p]; i < flux_start_[p + 1]; ++i) visit(i);
         };
-        CoveredFaces::each_plane(static_cast<Index>(flux_start_.size()) - 1,
-                                 [&](Index plane) { (visit_plane(plane, visits), ...); });
+        parallel_for(
+            static_cast<Index>(flux_start_.size()) - 1,
+            [&](Index plane) { (visit_plane(plane, visits), ...); }, CoveredFaces::planes_at_once);
     }
 
     bool is_new(std::size_t b) const noexcept { return !std::ranges::binary_search(seen_, bodies_[b].id); }

@@ -20,16 +20,7 @@ namespace abrade {
 /// numbers.
 class CoveredFaces {
 public:
-    /// In parallel: of_plane(p) for so many planes.
-    static void each_plane(Index planes, auto&& of_plane) {
-        constexpr Index at_once = 4;  // stones lie in heaps
-        parallel_blocks(
-            planes,
-            [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane) of_plane(plane);
-            },
-            at_once);
-    }
+    static constexpr Index planes_at_once = 4;  ///< stones lie in heaps
 
     /// Bodies as they stand; those below `resolved_from` cells to a diameter make a cloud, which is one more
     /// body behind the others. `open_area`: shares that walls leave open; none: all is. `retracted`: the
@@ -65,13 +56,11 @@ public:
         columns_.resize(rows, cloud_.faces());
         cloud_.number(numbers,
                       [&](std::size_t i, const SolidFace& f) { columns_.place(i, f, bodies.size()); });
-        parallel_blocks(
+        parallel_for(
             static_cast<Index>(covers_.size()),
-            [&](Index, Index first, Index last) {
-                for (std::size_t b = at(first); b < at(last); ++b) {
-                    std::size_t i = first_[b];
-                    for (const SolidFace& f : covers_[b].faces) columns_.place(i++, f, b);
-                }
+            [&](Index b) {
+                std::size_t i = first_[at(b)];
+                for (const SolidFace& f : covers_[at(b)].faces) columns_.place(i++, f, at(b));
             },
             block_of_bodies);
         list_parts();
@@ -120,10 +109,13 @@ public:
     /// Calls visit(row, number) for covered ones in the order of their planes, in parallel; `before`: see
     /// `covered_before`.
     void number_covered(const std::vector<std::size_t>& before, auto&& visit) const {
-        each_plane(planes_, [&](Index plane) {
-            std::size_t number = before[at(plane)];
-            visit_plane(plane, covered, [&](std::size_t i) { visit(i, number++); });
-        });
+        parallel_for(
+            planes_,
+            [&](Index plane) {
+                std::size_t number = before[at(plane)];
+                visit_plane(plane, covered, [&](std::size_t i) { visit(i, number++); });
+            },
+            planes_at_once);
     }
 
     /// Takes from what faces conduct what bodies cover. `surface`: faces at which the pressure is 0.
@@ -182,17 +174,15 @@ public:
     /// pushes into it goes on to cells beside it, or the same pressure all around would press on the body.
     void keep_wet(const Poisson<3>& m) {
         const auto wet = [&](Offset cell) { return m.inverse_diagonal[cell] > 0; };
-        parallel_blocks(
+        parallel_for(
             static_cast<Index>(covers_.size()),
-            [&](Index, Index first, Index last) {
-                for (std::size_t b = at(first); b < at(last); ++b) {
-                    SolidCover& c = covers_[b];
-                    const auto closed = std::ranges::stable_partition(
-                        c.cells, [&](const SolidCell& cell) { return wet(cell.cell); });
-                    c.inside.insert(c.inside.end(), closed.begin(), closed.end());
-                    c.cells.erase(closed.begin(), closed.end());
-                    push_what_passes(b, wet);
-                }
+            [&](Index b) {
+                SolidCover& c = covers_[at(b)];
+                const auto closed = std::ranges::stable_partition(
+                    c.cells, [&](const SolidCell& cell) { return wet(cell.cell); });
+                c.inside.insert(c.inside.end(), closed.begin(), closed.end());
+                c.cells.erase(closed.begin(), closed.end());
+                push_what_passes(at(b), wet);
             },
             block_of_bodies);
         for (std::size_t b = 0; b < covers_.size(); ++b)
@@ -295,7 +285,8 @@ private:
             visit(std::size_t{by_plane_[n]});
     }
     void visit_planes(Which which, auto&... visits) const {
-        each_plane(planes_, [&](Index plane) { (visit_plane(plane, which, visits), ...); });
+        parallel_for(
+            planes_, [&](Index plane) { (visit_plane(plane, which, visits), ...); }, planes_at_once);
     }
 
     /// By walls [-].

@@ -35,11 +35,10 @@ public:
                std::vector<std::size_t> which, Open&& open) {
         which_ = std::move(which);
         spread_.resize(which_.size());
-        parallel_blocks(
+        parallel_for(
             static_cast<Index>(which_.size()),
-            [&](Index, Index first, Index last) {
-                for (auto n = static_cast<std::size_t>(first); n < static_cast<std::size_t>(last); ++n)
-                    spread({grid, sides}, bodies[which_[n]], open, spread_[n]);
+            [&](Index n) {
+                spread({grid, sides}, bodies[which_[index(n)]], open, spread_[index(n)]);
             },
             block_of_bodies);
         gather(grid.layout());
@@ -183,11 +182,10 @@ private:
         std::partial_sum(start_.begin(), start_.end(), start_.begin());
     }
     static void for_planes(const Layout<3>& layout, auto&& body) {
-        parallel_blocks(
+        parallel_for(
             layout.planes(),
-            [&](Index, Index first, Index last) {
-                for (Index plane = first; plane < last; ++plane)
-                    for (int axis = 0; axis < 3; ++axis) body(static_cast<int>(plane), axis);
+            [&](Index plane) {
+                for (int axis = 0; axis < 3; ++axis) body(static_cast<int>(plane), axis);
             },
             block_of_planes);
     }
