@@ -25,9 +25,9 @@ namespace abrade {
 /// is less: twice that share of its value, for what little water there is in a dense bed must not answer for
 /// all of it. These bodies are not turned. While the pressure is sought the cloud moves on with the velocity
 /// that they had before, and yields to the new pressure face by face, by (1 + C_m) / (s + C_m) of what water
-/// would, s their density over the water's: what bodies differ from that by, since their share of the
-/// pressure is a mean, they move a step later. So any ratio of densities is stable, and beds of any density
-/// are.
+/// would, s their density over the water's. The pressure on a body is a mean over its faces, so it moves
+/// otherwise than each of them; that difference comes a step later. So any ratio of densities is stable, and
+/// beds of any density are.
 template <DenseDragLaw Drag>
 class AveragedBodies {
 public:

@@ -16,8 +16,8 @@
 namespace abrade {
 
 /// Rows of FaceColumns: those of the cloud, then body by body along the channel, and all of them in the
-/// order of their planes; what walls and the surface leave of their faces. What visits them gets their
-/// numbers.
+/// order of their planes; what walls and the surface leave of their faces. Visitors are given a row's
+/// number.
 class CoveredFaces {
 public:
     static constexpr Index planes_at_once = 4;  ///< stones lie in heaps

@@ -11,7 +11,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -97,7 +96,7 @@ private:
         in_row_ = static_cast<std::size_t>((length_[0] + pack_lanes - 1) / pack_lanes);
         for (Packs& x : x_) x.assign(in_row_, Pack(far));
         for (int i = 0; i < length_[0]; ++i) {
-            const auto [pack, lane] = std::div(i, pack_lanes);
+            const int pack = i / pack_lanes, lane = i % pack_lanes;
             const Line& line = lines_[0][index(i)];
             x_[0][index(pack)].set(lane, line.face), x_[1][index(pack)].set(lane, line.centre);
         }
