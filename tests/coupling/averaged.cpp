@@ -163,7 +163,7 @@ TEST_CASE("beside resolved ones, which leave them no room: each has its own buoy
     }
 }
 
-TEST_CASE("a dense bed comes to rest in water, whatever the step and its bodies' density") {
+TEST_CASE("a dense bed in water loses energy, in steps of 0.1 to 100 ms, at 0.3 to 8 times its density") {
     // Balls as wide as a cell, 65 % of a box of 6 cells, each with a velocity of its own.
     for (const Real ratio : {0.3, 1.0, 2.65, 8.0})
         for (const Real dt : {1e-4, 1e-3, 1e-2, 1e-1}) {
@@ -196,7 +196,11 @@ TEST_CASE("a dense bed comes to rest in water, whatever the step and its bodies'
             CAPTURE(ratio);
             CAPTURE(dt);
             CHECK(most < 1.01 * begins);
-            CHECK(energy() < (dt < 1e-3 ? 1 : 0.9) * begins);
+            CHECK(energy() < (dt == 1e-4   ? 0.98
+                              : dt == 1e-3 ? 0.86
+                              : dt == 1e-2 ? 0.27
+                                           : 1e-3) *
+                                 begins);  // the heaviest
         }
 }
 
