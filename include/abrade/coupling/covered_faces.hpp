@@ -178,10 +178,10 @@ public:
             static_cast<Index>(covers_.size()),
             [&](Index b) {
                 SolidCover& c = covers_[at(b)];
-                const auto closed = std::ranges::stable_partition(
-                    c.cells, [&](const SolidCell& cell) { return wet(cell.cell); });
-                c.inside.insert(c.inside.end(), closed.begin(), closed.end());
-                c.cells.erase(closed.begin(), closed.end());
+                const auto closed = std::stable_partition(
+                    c.cells.begin(), c.cells.end(), [&](const SolidCell& cell) { return wet(cell.cell); });
+                c.inside.insert(c.inside.end(), closed, c.cells.end());
+                c.cells.erase(closed, c.cells.end());
                 push_what_passes(at(b), wet);
             },
             block_of_bodies);
