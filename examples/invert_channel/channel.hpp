@@ -22,7 +22,7 @@ inline Scene make_scene(const ChannelConfig& c) {
         scene.concrete->material = concrete_material;
     const Real half = 0.5 * c.invert.width;
     scene.add_wall({0, -half, 0}, {0, 1, 0}).add_wall({0, half, 0}, {0, -1, 0});
-    scene.add_wall({0, 0, 0}, {1, 0, 0});  // lets water in and no stone out: without water they pile up there
+    scene.add_wall({0, 0, 0}, {1, 0, 0});  // for stones alone: they pile up there without water
     scene.feed = c.feed;
     scene.outlet = c.invert.length;
     scene.gauge = c.comparison.gauge;

@@ -60,8 +60,9 @@ TEST_CASE("a ball at a periodic side takes from both ends, and beyond the water 
         const Real start = momentum(flow);
         flow.advance(0.01, {&ball.body, 1});
         loads.push_back(ball.body.load.force);
-        // The speed that it meets is told to the edge of the grid.
-        CHECK((loads.back() - loads[0]).norm() < 0.02 * loads[0].norm());  // measured: 0.012
+        const Real differs = (loads.back() - loads[0]).norm() / loads[0].norm();
+        MESSAGE("at " << x << " m: load differs by " << differs);
+        CHECK(differs < 0.02);  // shallow water is sampled at a side as at the edge
         CHECK(start - momentum(flow) == doctest::Approx(0.01 * loads[0].x()).epsilon(1e-3));
     }
     TwoWayShallow<> lake(box(WaterSide::wall(), 0.3, 0));

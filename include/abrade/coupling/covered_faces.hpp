@@ -171,7 +171,8 @@ public:
     /// Once the operator is built: takes cells without a pressure of their own, which bodies and walls close,
     /// to those inside a body, and pushes the others by what passes through their faces. A cell that is
     /// closed without being covered is a pocket, as between a body and a floor that it touches. What a body
-    /// pushes into it goes on to cells beside it, or the same pressure all around would press on the body.
+    /// pushes into it goes on to cells beside it that have a pressure, if it closes a face to one, or the
+    /// same pressure all around would press on the body.
     void keep_wet(const Poisson<3>& m) {
         const auto wet = [&](Offset cell) { return m.inverse_diagonal[cell] > 0; };
         parallel_for(
