@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
                                        .logarithmic = true},
                                  .y = {.label = "error of the drag, rms over places",
                                        .unit = "",
-                                       .min = 0.01,
+                                       .min = 0.002,
                                        .max = 2.0,
                                        .logarithmic = true},
                                  .panels = {{.title = "Re 100"}, {.title = "Re 20"}}};
