@@ -8,8 +8,9 @@
 
 namespace resolved {
 
-/// Within a box of 1 m x 1 m x 1.2 m: sides throw back, and balls that overlap are pushed apart.
-inline void collide(std::vector<Ball>& balls) {
+/// Within a box of 1 m x 1 m x 1.2 m: sides throw back, balls that overlap are pushed apart, and those that
+/// would within `dt` hit each other before: what two bodies cover together is no water's to leave.
+inline void collide(std::vector<Ball>& balls, Real dt) {
     for (Ball& ball : balls) {
         FlowBody& b = ball.body;
         const Real radius = ball.sphere.radius;
@@ -26,12 +27,12 @@ inline void collide(std::vector<Ball>& balls) {
             FlowBody &a = balls[i].body, &b = balls[j].body;
             const Vec3 way = a.position - b.position;
             const Real length = way.norm(), reach = balls[i].sphere.radius + balls[j].sphere.radius;
-            if (!(length < reach && length > 0)) continue;
+            if (!(length > 0)) continue;
             const Vec3 n = way / length;
-            const Vec3 apart = (reach - length) / (a.inverse_mass + b.inverse_mass) * n;
-            a.position += a.inverse_mass * apart, b.position -= b.inverse_mass * apart;
             const Real nearer = (b.velocity - a.velocity).dot(n);
-            if (nearer <= 0) continue;
+            const Vec3 apart = std::max(reach - length, 0.0) / (a.inverse_mass + b.inverse_mass) * n;
+            a.position += a.inverse_mass * apart, b.position -= b.inverse_mass * apart;
+            if (nearer <= 0 || length - nearer * dt >= reach) continue;
             const Vec3 blow = 1.2 * nearer / (a.inverse_mass + b.inverse_mass) * n;
             a.velocity += a.inverse_mass * blow, b.velocity -= b.inverse_mass * blow;
         }
@@ -54,8 +55,9 @@ void check_balls(unsigned seed, Real light, Real heavy, Real end, Solids solids 
     }
     Real volume = 0, most = 0;
     while (water.time() < end) {
-        collide(balls);
-        step(water, balls, std::min(water.stable_step().seconds, 0.01));
+        const Real dt = std::min(water.stable_step().seconds, 0.01);
+        collide(balls, dt);
+        step(water, balls, dt);
         if (volume == 0) volume = water.liquid().volume();
         for (int a = 0; a < 3; ++a)
             water.grid().for_each([&](const auto&, Offset c) {

@@ -53,7 +53,7 @@ TEST_CASE("a stone in the channel's eddies: its drag is that of a sphere, not of
     struct Case {
         Real diameter, above_bed, off;  // [m], [m], [-]
     };
-    for (const Case& c : {Case{0.05, 0.08, 0.3}, Case{0.075, 0.08, 0.15}, Case{0.1, 0.07, 0.15}}) {
+    for (const Case& c : {Case{0.05, 0.08, 0.15}, Case{0.075, 0.08, 0.15}, Case{0.1, 0.07, 0.15}}) {
         const Drag drag = drag_of_stone(channel_water::mixing_length(), c.diameter, c.above_bed);
         const Real cells = c.diameter / channel_water::spacing;
         MESSAGE(cells << " cells: C_d " << drag.mean << " +- " << drag.varies);
@@ -61,5 +61,5 @@ TEST_CASE("a stone in the channel's eddies: its drag is that of a sphere, not of
     }
     const Drag none = drag_of_stone(NoTurbulence{}, 0.075, 0.08);
     MESSAGE("no eddies, 3.75 cells: " << none.mean << " +- " << none.varies);
-    CHECK(none.mean < curve);
+    CHECK(std::abs(none.mean / curve - 1) < 0.1);
 }

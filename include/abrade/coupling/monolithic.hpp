@@ -66,7 +66,7 @@ public:
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                const FaceField<3>* open_area, Real density) {
         grid_ = &grid, sides_ = &sides;
-        stand(grid, sides, bodies, params_.resolved_from, open_area);
+        stand(grid, sides, bodies, params_.resolved_from, open_area, density);
         averaged_.begin(faces_.columns(), faces_.cloud(), bodies_, density);
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) { faces_.close(m, surface); }

@@ -68,7 +68,7 @@ public:
 
     void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                const FaceField<3>* open_area, Real density) {
-        stand(grid, sides, bodies, 0, open_area, params_.retracted);
+        stand(grid, sides, bodies, 0, open_area, density, params_.retracted);
         density_ = density, ratio_.assign(bodies.size(), 1);
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) {

@@ -280,10 +280,10 @@ private:
 
     void refuse_beyond_stable(Real dt) const;
 
-    /// A given force may not know the time beyond the run: where it fails, it fails the step that asks for
-    /// it.
+    /// A given force may not know the time beyond the run: it then fails the step that asks for it.
     FluidStep smooth(FluidStep step) const {
-        if constexpr (Solids::present) step.lower(step_of_body(solids_.fastest()), "solids");
+        const Real falls = std::sqrt(params_.courant * grid_->smallest() * params_.gravity.norm());
+        if constexpr (Solids::present) step.lower(step_of_body(std::max(solids_.fastest(), falls)), "solids");
         if (!params_.body_force || !std::isfinite(step.seconds)) return step;
         try {
             step.lower(detail::smooth_step<Dim>(params_.body_force, time_, step.seconds), "body force");

@@ -2,6 +2,7 @@
 // What a step of GridFluid does, and what it goes back to where it goes wrong. Users include grid_fluid.hpp.
 
 #include <abrade/fluid/grid_fluid_class.hpp>
+#include <abrade/fluid/lost_bodies.hpp>
 
 namespace abrade {
 
@@ -40,6 +41,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::advance(
     Real to_time, std::span<FlowBody> bodies) requires Solids::present {
     require_finite(to_time, "GridFluid.advance: to_time", "s");
     if (!(time_ < to_time)) return;
+    detail::refuse_lost(*grid_, params_.sides, bodies, has_surface);
     std::vector<FlowBody> now(bodies.begin(), bodies.end());
     std::vector<Sphere> spheres;
     Real fastest = 0;  // one that had not been among the water may be faster than all in it
@@ -309,14 +311,14 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::check(Real dt) 
     for (int a = 0; a < Dim; ++a) size = std::max(size, grid_->largest(a));
     // Without a surface and an outflow the pressure is known but for a constant, and takes no volume.
     const bool found = report_.after <= most_left();
-    const bool brimful = !found && enters_ > 0 && projection_.multigrid().floating();
+    const bool brimful = !found && (enters_ > 0 || has_surface) && projection_.multigrid().floating();
     // The bound is cheap, the speed itself is not.
     if (found && (report_.courant / dt * size <= params_.fastest ||
                   detail::FastFace<Dim>(*grid_, velocity_).speed <= params_.fastest))
         return;
     const std::string cause =
-        brimful ? "more flows in than out, and no surface is left to rise; make a "
-                  "side that it reaches an outflow"
+        brimful ? "more flows in than out, or solids take more room, and no surface is left to rise; make a "
+                  "side that it reaches an outflow, or leave air above it"
                 : detail::wrong_flow(*grid_, velocity_, report_.after, most_left(), enters_ > 0);
     restore();
     throw FluidError(detail::place_in_time(steps_, time_, dt) + cause);

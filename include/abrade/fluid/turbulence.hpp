@@ -64,7 +64,8 @@ struct Smagorinsky {
 /// on the grid. For coarse grids, and in two dimensions.
 /// It is no model of wakes: there the strain makes nu_t some twenty times the mean flow's, which would hold
 /// the body fast (drag of stones in a channel: four to nine times too large). So among bodies it asks for u*,
-/// and beside them eddies are those that a cell does not resolve, l <= C_s Delta.
+/// and beside them eddies are those that a cell does not resolve, l <= C_s Delta: none unless told otherwise,
+/// for a wake on a coarse grid is viscous enough without.
 struct MixingLength {
     static constexpr std::string_view name = "MixingLength";
     static constexpr bool has_eddies = true;
@@ -72,7 +73,7 @@ struct MixingLength {
     /// u* = sqrt(g h S) of uniform flow [m/s]. Infinite: nu_t has no bound.
     Real friction_velocity = std::numeric_limits<Real>::infinity();
     Real karman = 0.41;        ///< kappa [-]
-    Real beside_bodies = 0.1;  ///< C_s, as Smagorinsky's in channels [-]
+    Real beside_bodies = 0;    ///< C_s there; Smagorinsky's in channels is 0.1 [-]
 
     void validate() const {
         require_positive(depth, "MixingLength.depth", "m", "give the depth of uniform flow");

@@ -19,8 +19,7 @@ public:
 
     explicit World(State<P> state) : state_(std::move(state)) {}
 
-    /// Before solids step on to `t`: a fluid that changes goes there or beyond; one that resolves bodies
-    /// follows them to where they are, once their next step would lead beyond its own. May throw FluidError.
+    /// Before a step to `t`: a fluid that changes goes there, one among bodies follows them.
     void advance_fluid(Real t) {
         if constexpr (P::fluid_advances) {
             Stopwatch watch{state_.policies.fluid.time() < t};
@@ -151,8 +150,7 @@ private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
     Index body_in(Index slot) const noexcept { return slot < 0 ? slot : state_.body_in(slot); }
 
-    /// How far velocities must be taken ahead to reach the present, as a share of what the kicks since the
-    /// last evaluation changed them by.
+    /// How far velocities must be taken ahead, as a share of the kicks since the last evaluation.
     Real ahead() const noexcept { return kicked_ > 0 ? 0.5 * led_here_ / kicked_ : 0; }
 
     Real ahead_in_fluid() const noexcept {
@@ -212,13 +210,15 @@ private:
         time_step_ = dt;
     }
 
-    /// The fluid comes to where the solids are, if a step to `t` would have it take more than one of its own.
+    /// Where a step to `t` is more than the fluid's, it comes to where solids are; if all stand, to `t`.
     void exchange_before(Real t) {
         auto& fluid = state_.policies.fluid;
-        if (!(fluid.time() < now_) || fluid_due_.of(fluid) >= t) return;
+        if (fluid_due_.of(fluid) >= t) return;
+        const Real to = state_.nobody_moves() ? t : now_;
+        if (!(fluid.time() < to)) return;
         make_whole();
         FlowBodies<P> flow(state_);
-        fluid.advance(now_, flow.bodies());
+        fluid.advance(to, flow.bodies());
         state_.accounts.flow_work += flow.give_back(state_);
         if constexpr (requires { fluid.solids_took(Real{}); }) fluid.solids_took(state_.accounts.flow_work);
     }

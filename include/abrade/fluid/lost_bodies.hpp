@@ -1,0 +1,31 @@
+#pragma once
+// Bodies that have left the water through a side that lets nothing pass.
+
+#include <abrade/fluid/flow_body.hpp>
+#include <abrade/fluid/fluid_model.hpp>
+#include <abrade/fluid/sides.hpp>
+
+#include <string>
+
+namespace abrade::detail {
+
+/// Throws FluidError where a free body's centroid lies beyond a closed side, of which its contacts know
+/// nothing. Above a surface there is air.
+inline void refuse_lost(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
+                        bool has_surface) {
+    for (const FlowBody& body : bodies)
+        for (int a = 0; a < 3 && body.inverse_mass > 0; ++a)
+            for (const bool high : {false, true}) {
+                const Real x = body.position[a], side = high ? grid.high(a) : grid.low(a);
+                if (!is_closed(sides[a][high]) || !(high ? x > side : x < side) ||
+                    (has_surface && high && a == 2))
+                    continue;
+                const std::string axis(1, Grid<3>::axis_name(a));
+                throw FluidError(
+                    "the body with id " + std::to_string(body.id) + " is beyond the closed side at " + axis +
+                    " = " + short_text(side) + " m, at " + axis + " = " + short_text(x) +
+                    " m; sides hold water, not bodies: give them a wall there (Scene::add_wall)");
+            }
+}
+
+}  // namespace abrade::detail
