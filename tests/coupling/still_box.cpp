@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <type_traits>
+
 using namespace stone_tank;
 
 namespace {
@@ -38,6 +40,24 @@ TEST_CASE("a stone at rest on the floor of a full box at rest is carried, one li
             }
         }
     }
+}
+
+TEST_CASE_TEMPLATE("bodies that are let go meet the water at once", Surface, FullBox, HeightSurface) {
+    Tank tank{.cells = {16, 16, 24}};
+    if (!std::is_same_v<Surface, FullBox>) tank.level = 0.18;
+    for (const Real resolved_from : {3.0, 100.0})
+        for (const Real ratio : {0.5, 1.0, 2.65}) {
+            tank.resolved_from = resolved_from;
+            Scene scene = walls_of(tank);
+            scene.add_sphere(0.5 * diameter, {.position = {0.001, 0.002, 0.1}}, ratio * water_density);
+            auto sim = tank_with<Surface>(tank, std::move(scene));
+            constexpr Real end = 0.02;
+            sim.run({.end_time = end});
+            const Real speed = sim.particles().velocity[0].z();
+            const Real allowed = -(ratio - 1) * g / (ratio + 0.5) * end;
+            MESSAGE(ratio << " of the water's density: " << speed << " m/s, by added mass " << allowed);
+            CHECK(std::abs(speed - allowed) < 2e-4 + 0.06 * std::abs(allowed));
+        }
 }
 
 TEST_CASE("where nothing moves the water runs to the end, observed or not") {

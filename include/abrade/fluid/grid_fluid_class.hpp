@@ -282,8 +282,8 @@ private:
 
     /// A given force may not know the time beyond the run: it then fails the step that asks for it.
     FluidStep smooth(FluidStep step) const {
-        const Real falls = std::sqrt(params_.courant * grid_->smallest() * params_.gravity.norm());
-        if constexpr (Solids::present) step.lower(step_of_body(std::max(solids_.fastest(), falls)), "solids");
+        if constexpr (Solids::present)
+            step = detail::step_among_solids(step, *grid_, params_, solids_.fastest());
         if (!params_.body_force || !std::isfinite(step.seconds)) return step;
         try {
             step.lower(detail::smooth_step<Dim>(params_.body_force, time_, step.seconds), "body force");

@@ -185,7 +185,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_full(Real 
                        .viscosity = nu(),
                        .pushed = true,
                        .falls = falls,
-                       .pace = late_.pace(dt)});
+                       .pace = steps_ < 2 ? dt : late_.pace(dt)});
     project({dt, params_.tolerance, false, nullptr, late_.pace(dt)});
     if constexpr (Solids::present) solids_.settle(velocity_, pressure_);
     finish(velocity_);
@@ -266,7 +266,7 @@ void GridFluid<Dim, Surface, Scheme, State, Turbulence, Solids>::step_below_surf
                        .viscosity = nu(),
                        .held = &water.held(),
                        .falls = falls,
-                       .pace = late_.pace(dt)});
+                       .pace = steps_ < 2 ? dt : late_.pace(dt)});
     project({dt, params_.tolerance, true, surplus(), late_.pace(dt)});
     if constexpr (is_height) detail::slow_thin_water(velocity_, water.liquid(), dt, nu());
     if constexpr (Solids::present) solids_.settle(velocity_, pressure_);

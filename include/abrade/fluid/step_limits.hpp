@@ -50,6 +50,15 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
     return step;
 }
 
+/// In which neither the fastest solid nor one that falls from rest goes further than water may.
+template <int Dim>
+FluidStep step_among_solids(FluidStep step, const Grid<Dim>& grid, const GridFluidParams<Dim>& params,
+                            Real fastest) {
+    const Real way = params.courant * grid.smallest(), falls = std::sqrt(way * params.gravity.norm());
+    step.lower(way / std::max(fastest, falls), "solids");
+    return step;
+}
+
 /// The longest step up to `longest` [s] within which a body force goes on as it does: its path is no longer
 /// than its change by more than a tenth of its largest value. A force that is no number shows in the step.
 template <int Dim>

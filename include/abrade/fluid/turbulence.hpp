@@ -72,8 +72,8 @@ struct MixingLength {
     Real depth = 0;  ///< h [m]
     /// u* = sqrt(g h S) of uniform flow [m/s]. Infinite: nu_t has no bound.
     Real friction_velocity = std::numeric_limits<Real>::infinity();
-    Real karman = 0.41;        ///< kappa [-]
-    Real beside_bodies = 0;    ///< C_s there; Smagorinsky's in channels is 0.1 [-]
+    Real karman = 0.41;      ///< kappa [-]
+    Real beside_bodies = 0;  ///< C_s there; Smagorinsky's in channels is 0.1 [-]
 
     void validate() const {
         require_positive(depth, "MixingLength.depth", "m", "give the depth of uniform flow");

@@ -11,22 +11,27 @@
 namespace abrade {
 
 /// Until when a fluid's next step would lead, found once for each of them: solids ask before every step of
-/// theirs. Water whose cells bodies cross (`step_of_body`) is due sooner where a body is fast.
+/// theirs. Water whose cells bodies cross (`step_of_body`) is due sooner where a body is fast, and twice
+/// early as it first meets bodies: what starts at once is no load that lasts, so the second tells that.
 class FluidDue {
 public:
     Real fastest = 0;  ///< of bodies as they moved last [m/s]
+    Index met = 0;     ///< how often fluid and bodies have met
 
     Real of(const auto& fluid) {
-        if (fluid.time() != begins_) begins_ = fluid.time(), ends_ = begins_ + fluid.stable_step().seconds;
+        constexpr Real early = 1.0 / 64;  // of a step
+        if (fluid.time() != begins_) begins_ = fluid.time(), takes_ = fluid.stable_step().seconds;
         if constexpr (requires { fluid.step_of_body(fastest); })
-            return std::min(ends_, begins_ + fluid.step_of_body(fastest));
+            return begins_ + (met < 2 ? early : 1) * std::min(takes_, fluid.step_of_body(fastest));
         else
-            return ends_;
+            return begins_ + takes_;
     }
-    static void fields(auto&& field) { field("fastest", "m/s", &FluidDue::fastest); }
+    static void fields(auto&& field) {
+        field("fastest", "m/s", &FluidDue::fastest), field("met", &FluidDue::met);
+    }
 
 private:
-    Real begins_ = std::numeric_limits<Real>::quiet_NaN(), ends_ = 0;  ///< [s]
+    Real begins_ = std::numeric_limits<Real>::quiet_NaN(), takes_ = 0;  ///< [s]
 };
 
 /// Stones and grains, and fixed stones, as a flow sees them. Velocities are those of the present.

@@ -218,7 +218,7 @@ private:
         if (!(fluid.time() < to)) return;
         make_whole();
         FlowBodies<P> flow(state_);
-        fluid.advance(to, flow.bodies());
+        fluid.advance(to, flow.bodies()), ++fluid_due_.met;
         state_.accounts.flow_work += flow.give_back(state_);
         if constexpr (requires { fluid.solids_took(Real{}); }) fluid.solids_took(state_.accounts.flow_work);
     }
