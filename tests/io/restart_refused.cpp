@@ -105,3 +105,19 @@ TEST_CASE("what is about something else, or made of something else") {
     CHECK_THROWS_WITH_AS(restore_state("water.h5", about, StatePart{"stones", stones}),
                          "cannot read 'water.h5', stones/depth_count: no such dataset", InputError);
 }
+
+TEST_CASE("a checkpoint of which some bytes have changed is refused") {
+    save("changed.h5", water(3000));
+    std::string bytes;
+    {
+        std::ifstream in("changed.h5", std::ios::binary);
+        bytes.assign(std::istreambuf_iterator<char>(in), {});
+    }
+    const Real one = 1;  // eight in the midst of the depths
+    const std::string depths(reinterpret_cast<const char*>(&one), sizeof one);
+    const std::size_t at = bytes.find(depths + depths + depths) + 1000 * sizeof one;
+    REQUIRE(bytes.compare(at, sizeof one, depths) == 0);
+    bytes.replace(at, sizeof one, sizeof one, '\xff');
+    std::ofstream("changed.h5", std::ios::binary) << bytes;
+    CHECK_THROWS_WITH_AS(restored("changed.h5"), doctest::Contains("it is damaged"), InputError);
+}

@@ -145,8 +145,14 @@ public:
         const std::array<hsize_t, 2> shape{values.size() / of.row(), static_cast<hsize_t>(of.numbers)};
         const hdf5::Handle space{H5Screate_simple(2, shape.data(), nullptr)};
         const hid_t type = hdf5::type_of(of);
+        const hdf5::Handle list{H5Pcreate(H5P_DATASET_CREATE)};
+        if (shape[0] > 0) {  // each chunk with its sum: what a disk has changed is not read
+            const std::array<hsize_t, 2> chunk{std::min<hsize_t>(shape[0], 131072), shape[1]};
+            H5Pset_chunk(list.get(), 2, chunk.data());
+            H5Pset_fletcher32(list.get());
+        }
         const hdf5::Handle set{
-            H5Dcreate2(file_.get(), whole.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)};
+            H5Dcreate2(file_.get(), whole.c_str(), type, space.get(), H5P_DEFAULT, list.get(), H5P_DEFAULT)};
         if (!set ||
             (!values.empty() && H5Dwrite(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0))
             throw_write(whole);
