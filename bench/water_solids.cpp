@@ -114,24 +114,26 @@ void by_size(benchmark::State& state) { steps(state, Stones{}, stones_in(static_
 void resolved(benchmark::State& state) {
     steps(state, Stones({.resolved_from = 0}), stones_in(static_cast<int>(state.range(0))));
 }
+void thousand(benchmark::State& state) { steps(state, Stones({.resolved_from = 0}), 1000); }
 void mixture(benchmark::State& state) {
     steps(state, MixtureSolids{}, stones_in(static_cast<int>(state.range(0))));
 }
 void direct(benchmark::State& state) {
     steps(state, DirectForcing{}, stones_in(static_cast<int>(state.range(0))));
 }
-void lengths(benchmark::internal::Benchmark* of) {
+void whole(benchmark::internal::Benchmark* of) {
     of->ArgNames({"cells", "threads"})
-        ->ArgsProduct({{225}, {1, 2}})
-        ->ArgsProduct({{2250}, {1, 2}})  // the whole channel
+        ->ArgsProduct({{2250}, {1, 2}})
         ->Iterations(20)
         ->UseRealTime()
         ->Unit(benchmark::kMillisecond);
 }
+void lengths(benchmark::internal::Benchmark* of) { of->ArgsProduct({{225}, {1, 2}})->Apply(whole); }
 BENCHMARK(alone)->Name("water_solids_none")->Apply(lengths);
 BENCHMARK(unresolved)->Name("water_solids_unresolved")->Apply(lengths);
 BENCHMARK(by_size)->Name("water_solids_by_size")->Apply(lengths);
 BENCHMARK(resolved)->Name("water_solids_resolved")->Apply(lengths);
+BENCHMARK(thousand)->Name("water_solids_thousand")->Apply(whole);
 BENCHMARK(mixture)->Name("water_solids_mixture")->Apply(lengths);
 BENCHMARK(direct)->Name("water_solids_direct")->Apply(lengths);
 
