@@ -8,8 +8,8 @@ using namespace resolved;
 TEST_CASE("light balls rise through a full box, and are not spun up by what their spin was") {
     constexpr Real cell = 0.0125, start = 0.063;
     for (const Real density : {1.0, 10.0, 20.0})
-        for (const auto& [x, y] :
-             {std::pair{0.001, 0.004}, std::pair{0.0055, 0.002}, std::pair{0.003, 0.005}}) {
+        for (const Vec3& place :
+             {Vec3(0.001, 0.004, start), Vec3(0.0055, 0.002, start), Vec3(0.003, 0.005, start)}) {
             Water water({.grid = {.cells = {16, 16, 28},
                                   .low = Vec3(-8 * cell, -8 * cell, 0),
                                   .spacing = Vec3::Constant(cell)},
@@ -17,7 +17,7 @@ TEST_CASE("light balls rise through a full box, and are not spun up by what thei
                          .gravity = {0, 0, -g},
                          .density = 1000,
                          .viscosity = 1e-3});
-            std::vector<Ball> balls{{Vec3(x, y, start), 2 * cell, density}};
+            std::vector<Ball> balls{{place, 2 * cell, density}};
             const FlowBody& body = balls[0].body;
             Real spin = 0;
             while (body.position.z() < 0.25 && water.time() < 0.5) {
@@ -26,7 +26,7 @@ TEST_CASE("light balls rise through a full box, and are not spun up by what thei
                 spin = std::max(spin, body.angular_velocity.norm() * 2 * cell);
             }
             CAPTURE(density);
-            CAPTURE(x);
+            CAPTURE(place.x());
             MESSAGE("rises with " << body.velocity.z() << " m/s, its rim had at most " << spin << " m/s");
             CHECK(body.position.z() > 0.25);
             CHECK(spin <
