@@ -114,6 +114,12 @@ public:
             field("repeated", &ShallowSolver::repeated_), field("raised", "m", &ShallowSolver::raised_);
     }
     void restored() {
+        for (const ShallowState<Dim>& state : states_)
+            require(state.depth.size() == grid_.size(),
+                    {"ShallowWater.cells with their margins",
+                     "as many as the checkpoint has, " + std::to_string(state.depth.size()), "",
+                     "build the water as it was when it was saved"},
+                    static_cast<Real>(grid_.size()));
         if (!raised_.empty()) raise_bed();
     }
 

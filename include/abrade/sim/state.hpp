@@ -9,6 +9,7 @@
 #include <abrade/sim/pace.hpp>
 #include <abrade/sim/policies.hpp>
 #include <abrade/sim/scene.hpp>
+#include <abrade/sim/scene_outline.hpp>
 #include <abrade/sim/site_bodies.hpp>
 
 namespace abrade {
@@ -19,6 +20,7 @@ template <class P>
 struct State {
     State(Scene from, P chosen) : policies(std::move(chosen)), scene(std::move(from)) {
         scene.validate();
+        outline = SceneOutline(scene, policies);
         if (scene.feed) feed.emplace(*scene.feed);
         if (scene.concrete) add_concrete(*scene.concrete);
         for (const Scene::Stone& stone : scene.stones) {
@@ -31,6 +33,7 @@ struct State {
 
     P policies;
     Scene scene;  ///< its lattice has moved into `concrete`
+    SceneOutline outline;
     Particles particles;
     SphereStore store;
     std::vector<Pace> pace;           ///< [slot]; of a clump its first one's counts
@@ -61,8 +64,8 @@ struct State {
     std::vector<char> past_gauge;  ///< [body]
 
     static void fields(auto&& field) {
-        field("policies", &State::policies), field("particles", &State::particles),
-            field("store", &State::store), field("pace", &State::pace),
+        field("scene", &State::outline), field("policies", &State::policies),
+            field("particles", &State::particles), field("store", &State::store), field("pace", &State::pace),
             field("pace_if_alone", &State::pace_if_alone), field("flight", &State::flight),
             field("sleep", &State::sleep), field("contacts", &State::contacts),
             field("network", &State::network), field("concrete", &State::concrete),
