@@ -32,6 +32,11 @@ TwoWayShallow<> shallow_channel(const ChannelConfig& c) {
 
 /// Mean over the compared section of the depth at the centre line, and of the mean speed of its
 /// cross-sections.
+/// 0 where it is dry [m].
+Real depth_in_the_middle(const ShallowWater<2>& flow, Real x) {
+    return std::max(0.0, flow.sample({x, 0, 0}, 0).depth);
+}
+
 void measure(const ChannelConfig& c, const ShallowWater<2>& flow, ChannelWater& water) {
     Real depth = 0, speed = 0, froude = 0, shear = 0;
     Index counted = 0;
@@ -43,7 +48,7 @@ void measure(const ChannelConfig& c, const ShallowWater<2>& flow, ChannelWater& 
             if (flow.depth(i, j) > flow.params().dry_depth)
                 area += flow.depth(i, j) * flow.grid().spacing(1), width += flow.grid().spacing(1);
         if (!(area > 0)) continue;  // the water has not come so far
-        const Real middle = flow.sample({x, 0, 0}, 0).depth, mean = flow.discharge(i) / area;
+        const Real middle = depth_in_the_middle(flow, x), mean = flow.discharge(i) / area;
         depth += middle, speed += mean, ++counted;
         froude += mean / std::sqrt(standard_gravity * area / width);
         shear += c.water.density * standard_gravity * square(c.water.manning * mean) /
@@ -59,7 +64,7 @@ void look_at_the_end(const ShallowWater<2>& flow, ChannelWater& water) {
     water.depth_map = flow.columns().depth;
     for (Index i = 0; i < water.columns; ++i) {
         water.surface_x.push_back(flow.grid().centre(0, i));
-        water.surface_z.push_back(flow.sample({water.surface_x.back(), 0, 0}, 0).depth);
+        water.surface_z.push_back(depth_in_the_middle(flow, water.surface_x.back()));
     }
     water.figures = {{"water_settled_s", std::min(flow.time(), 0.0) - flow.params().start_time},
                      {"water_steps", static_cast<Real>(flow.steps())},

@@ -110,6 +110,32 @@ TEST_CASE("a row of fixed balls takes from a stream what their drag adds up to")
     CHECK(drag > 20);
 }
 
+TEST_CASE("a ball ahead of the wet front feels no water, one in it does, and it goes on as it is") {
+    auto params = box(WaterSide::wall(), 0.3, 0);
+    params.surface = [](Real x, Real) { return x < 1 ? 0.3 : -1; };  // a dam that breaks on a dry bed
+    params.bed = [](Real, Real y) { return 0.2 * y * y; };
+    TwoWayShallow<> flow(params);
+    Ball ahead(Vec3(3, 0.1, 0.03), 0.05, 2650), behind(Vec3(0.8, 0.1, 0.1), 0.05, 2650, 1);
+    ahead.body.velocity = behind.body.velocity = {2, 0, 0};
+    std::vector<FlowBody> bodies{ahead.body, behind.body};
+    for (int k = 0; k < 40; ++k) {  // until the front is at 2 m
+        flow.advance(flow.time() + 0.005, bodies);
+        CHECK(bodies[0].load.force.isZero());
+        CHECK(bodies[0].velocity == Vec3(2, 0, 0));
+        CHECK(bodies[1].load.force.z() > 1);
+    }
+    REQUIRE(flow.water().depth(28, 10) > params.dry_depth);
+    REQUIRE(flow.water().depth(55, 10) == 0);
+    const Real volume = flow.water().volume();
+    for (int k = 0; k < 400; ++k) flow.advance(flow.time() + 0.005, bodies);  // the water has come there
+    CHECK(bodies[0].load.force.z() > 1);
+    CHECK(bodies[0].velocity.allFinite());
+    CHECK(flow.water().volume() == doctest::Approx(volume).epsilon(1e-12));
+    // What reaches below a dry bed is as dry as what lies on it.
+    const FluidSample dry = TwoWayShallow<>(params).sample({3, 0.4, 0.01}, 0);
+    CHECK(submerged_share(dry.depth, 0.1) == 0);
+}
+
 TEST_CASE("bad input is refused") {
     TwoWayShallow<> flow(box(WaterSide::wall(), 0.3, 0));
     CHECK_THROWS_AS(flow.advance(std::nan(""), {}), InputError);

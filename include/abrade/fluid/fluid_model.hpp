@@ -14,12 +14,13 @@
 
 namespace abrade {
 
-/// The fluid at one point.
+/// The fluid at one point; where there is none, nothing of it is submerged.
 struct FluidSample {
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
-    Real depth = 0;                ///< of the point below the free surface [m]; negative above it
-    Real density = 0;              ///< [kg/m3]
-    Real viscosity = 0;            ///< dynamic [Pa s]
+    /// Of the point below the free surface [m]; negative above it, without end where no fluid is.
+    Real depth = -std::numeric_limits<Real>::infinity();
+    Real density = 0;    ///< [kg/m3]
+    Real viscosity = 0;  ///< dynamic [Pa s]
 };
 
 /// How the fluid changes around one point. A fluid that knows it offers `change(x, t)`, const, noexcept.

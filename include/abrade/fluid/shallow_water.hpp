@@ -173,7 +173,7 @@ private:
             for (Real& u : at.speed) u /= wet;
             at.depth = std::max(0.0, at.surface - at.bed);
         } else {
-            at.surface = at.bed;
+            at.surface = FluidSample{}.depth;  // not the bed's: a body that reaches below that is as dry
         }
         return at;
     }
