@@ -126,6 +126,11 @@ TEST_CASE("a ball ahead of the wet front feels no water, one in it does, and it 
     }
     REQUIRE(flow.water().depth(28, 10) > params.dry_depth);
     REQUIRE(flow.water().depth(55, 10) == 0);
+    const Real volume = flow.water().volume();
+    for (int k = 0; k < 400; ++k) flow.advance(flow.time() + 0.005, bodies);  // the water has come there
+    CHECK(bodies[0].load.force.z() > 1);
+    CHECK(bodies[0].velocity.allFinite());
+    CHECK(flow.water().volume() == doctest::Approx(volume).epsilon(1e-12));
     // What reaches below a dry bed is as dry as what lies on it.
     const FluidSample dry = TwoWayShallow<>(params).sample({3, 0.4, 0.01}, 0);
     CHECK(submerged_share(dry.depth, 0.1) == 0);

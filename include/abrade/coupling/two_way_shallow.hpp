@@ -19,7 +19,8 @@ namespace abrade {
 /// surface:
 ///   F = B + beta (u - v) - rho g V grad(surface),
 /// B buoyancy, drag implicit in the body's velocity v. The column loses B and drag, as far as they point
-/// along the plane, over a triangle as wide as a ball of three diameters, or of three cells. There the volume
+/// along the plane, over a triangle as wide as a ball of three diameters, or of three cells, to each cell by
+/// the water in it; a body where no water is has none of it. There the volume
 /// below the surface stands under the water, whose surface lies on top of both: it flows as over a bed that
 /// is so much higher, and so the slope's part is taken from it, too. Bodies are not turned, and have no added
 /// mass.
@@ -90,7 +91,8 @@ private:
         }
     }
 
-    /// Over the wet cells about a place.
+    /// Over the wet cells about a place, to each by its water: a thin one would be flung away by what it was
+    /// given.
     void spread(const Vec3& x, Real diameter) {
         const ShallowGrid<2>& grid = water_.grid();
         std::array<std::vector<std::pair<Index, Real>>, 2> layers;
@@ -109,7 +111,10 @@ private:
         Real sum = 0;
         for (const auto& [j, along_y] : layers[1])
             for (const auto& [i, along_x] : layers[0])
-                if (is_wet(i, j)) parts_.push_back({i, j, along_x * along_y}), sum += along_x * along_y;
+                if (is_wet(i, j)) {
+                    const Real weight = along_x * along_y * water_.depth(i, j);
+                    parts_.push_back({i, j, weight}), sum += weight;
+                }
         for (Part& part : parts_) part.share /= sum;
     }
     bool has(int a, Index i) const noexcept { return i >= 0 && i < water_.grid().count(a); }
