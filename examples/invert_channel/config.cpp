@@ -292,10 +292,10 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
          .help = "uniform: prescribed, shallow: depth-averaged, grid: with a free surface, unresolved and "
                  "resolved: with one that feels the stones, or none"});
     const bool feels_stones = c.fluid.model == "unresolved" || c.fluid.model == "resolved";
-    constexpr std::array<std::string_view, 2> surfaces{"volume",
-                                                       "height"};  // engines with stones: the latter
+    constexpr std::array<std::string_view, 2> surfaces{"volume", "height"};
     c.fluid.surface = in.choice(
-        "fluid.surface", std::span(surfaces).subspan(feels_stones ? 1 : 0),
+        "fluid.surface",
+        std::span(surfaces).subspan(feels_stones ? 1 : 0),  // no engine has stones in volumes
         {.fallback = feels_stones ? "height" : "volume",
          .help = "of the grid's water, volume: of any shape, height: one over each place, which is faster"});
     c.fluid.resolved_from = std::numeric_limits<Real>::infinity();
