@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <set>
 #include <span>
@@ -36,6 +37,9 @@ struct Key {
     std::string_view help{};          ///< what it is, for the report
     std::string_view assumption{};  ///< why this value, where the model leaves it open; marked in the report
     Bound bound = Bound::any;       ///< numbers only
+    Real least = -std::numeric_limits<Real>::infinity();  ///< and most: numbers outside are a slip of a unit
+    Real most = std::numeric_limits<Real>::infinity();
+    std::string_view remedy{};  ///< for what is outside
 };
 
 /// Reads keys like "water.depth" or "stones[0].diameter" from one TOML document. It remembers what was asked
@@ -59,9 +63,7 @@ public:
 
     /// A finite number; TOML may write it as an integer.
     Real number(std::string_view key, const Key<Real>& about = {}) {
-        return get<Real>(key, about, [&](const toml::node& node) {
-            return to_number(node, key, about.unit, about.bound);
-        });
+        return get<Real>(key, about, [&](const toml::node& node) { return to_number(node, key, about); });
     }
 
     /// A whole number.
@@ -69,7 +71,7 @@ public:
         return get<std::int64_t>(key, about, [&](const toml::node& node) {
             if (!node.is_integer()) document_.wrong_type(node, key, "a whole number", about.unit);
             const std::int64_t value = node.as_integer()->get();
-            check(static_cast<Real>(value), node, key, about.unit, about.bound);
+            check(static_cast<Real>(value), node, key, about);
             return value;
         });
     }
@@ -110,8 +112,8 @@ public:
             if (!node.is_array()) document_.wrong_type(node, key, "an array of numbers", about.unit);
             std::vector<Real> values;
             for (const toml::node& item : *node.as_array())
-                values.push_back(to_number(item, std::string{key} + "[" + std::to_string(values.size()) + "]",
-                                           about.unit, about.bound));
+                values.push_back(
+                    to_number(item, std::string{key} + "[" + std::to_string(values.size()) + "]", about));
             return values;
         });
     }
@@ -136,6 +138,9 @@ public:
 
     /// Whether the file or an override gives the key. Does not count as asking for it.
     bool has(std::string_view key) const { return document_.find(key) != nullptr; }
+
+    /// Whether an override gives it.
+    bool overridden(std::string_view key) const { return !document_.override_of(key).empty(); }
 
     /// Takes any key at or below `key` as known: settings of a variant that was not chosen.
     void allow(std::string_view key) { allowed_.emplace_back(key); }
@@ -193,11 +198,11 @@ private:
         return "[" + text + "]";
     }
 
-    Real to_number(const toml::node& node, std::string_view key, std::string_view unit, Bound bound) const {
-        if (!node.is_number()) document_.wrong_type(node, key, "a number", unit);
+    Real to_number(const toml::node& node, std::string_view key, const auto& about) const {
+        if (!node.is_number()) document_.wrong_type(node, key, "a number", about.unit);
         const Real value =
             node.is_integer() ? static_cast<Real>(node.as_integer()->get()) : node.as_floating_point()->get();
-        check(value, node, key, unit, bound);
+        check(value, node, key, about);
         return value;
     }
 
@@ -206,12 +211,15 @@ private:
         return node.as_string()->get();
     }
 
-    void check(Real value, const toml::node& node, std::string_view key, std::string_view unit,
-               Bound bound) const {
+    void check(Real value, const toml::node& node, std::string_view key, const auto& about) const {
         const std::string name = document_.label(node, key);
+        const std::string_view unit = about.unit;
         require(std::isfinite(value), {name, "finite", unit}, value);
-        require(bound != Bound::positive || value > 0, {name, "> 0", unit}, value);
-        require(bound != Bound::not_negative || value >= 0, {name, ">= 0", unit}, value);
+        require(about.bound != Bound::positive || value > 0, {name, "> 0", unit}, value);
+        require(about.bound != Bound::not_negative || value >= 0, {name, ">= 0", unit}, value);
+        require(value >= about.least && value <= about.most,
+                {name, "from " + to_text(about.least) + " to " + to_text(about.most), unit, about.remedy},
+                value);
     }
 
     [[noreturn]] void missing(std::string_view key, std::string_view unit) const {

@@ -1,5 +1,6 @@
 #include "config.hpp"
 #include "fluids.hpp"
+#include "water_start.hpp"
 
 #include "../common/toml_reader.hpp"
 
@@ -15,6 +16,8 @@ constexpr std::array<std::string_view, 3> levels{"static", "rigid", "dynamic"},
     contact_laws{"hysteretic", "linear", "elastic_plastic"}, exchanges{"monolithic", "mixture", "direct"};
 constexpr std::array<std::string_view, 4> worn_outs{"fines", "grain", "recorded", "recedes"},
     overflows{"crater", "patch", "epoch", "drop"}, wear_laws{"sub_particle", "archard", "ishibashi", "none"};
+
+constexpr std::string_view heaviest = "quartz has 2650 kg/m3, gold 19300";
 
 /// Throws InputError where a key is given that the choice made does not use.
 void refuse(const TomlReader& in, std::initializer_list<const char*> keys, const std::string& choice) {
@@ -56,9 +59,12 @@ void read_concrete(TomlReader& in, ChannelConfig& c) {
     require(layers <= 1000, {in.where("concrete.layers") + ": concrete.layers", "at most 1000"},
             static_cast<Real>(layers));
     c.lattice.layers = static_cast<Index>(layers);
-    c.concrete.density =
-        in.number("concrete.density",
-                  {.unit = "kg/m3", .fallback = 2400, .help = "of the spheres", .bound = Bound::positive});
+    c.concrete.density = in.number("concrete.density", {.unit = "kg/m3",
+                                                        .fallback = 2400,
+                                                        .help = "of the spheres",
+                                                        .least = 1,
+                                                        .most = 3e4,
+                                                        .remedy = heaviest});
     const auto level =
         in.choice("concrete.level", levels,
                   {.fallback = "static",
@@ -270,16 +276,104 @@ void read_water(TomlReader& in, ChannelConfig& c) {
                                                   .help = "roughness",
                                                   .assumption = "usual for worn concrete",
                                                   .bound = Bound::positive});
-    c.water.density =
-        in.number("water.density", {.unit = "kg/m3", .fallback = 1000, .help = "", .bound = Bound::positive});
-    c.water.viscosity =
-        in.number("water.viscosity",
-                  {.unit = "Pa s", .fallback = 1.31e-3, .help = "at 10 degrees C", .bound = Bound::positive});
+    c.water.density = in.number("water.density", {.unit = "kg/m3",
+                                                  .fallback = 1000,
+                                                  .help = "",
+                                                  .least = 500,
+                                                  .most = 2000,
+                                                  .remedy = "water has 1000 kg/m3"});
+    c.water.viscosity = in.number("water.viscosity", {.unit = "Pa s",
+                                                      .fallback = 1.31e-3,
+                                                      .help = "at 10 degrees C",
+                                                      .least = 1e-4,
+                                                      .most = 1,
+                                                      .remedy = "water has 1.31e-3 Pa s at 10 degrees C"});
     c.drag.shape_factor =
         in.number("water.drag_shape_factor", {.fallback = 1.0,
                                               .help = "on a sphere's drag coefficient",
                                               .assumption = "stones of this level of model drag like spheres",
                                               .bound = Bound::positive});
+}
+
+/// Notes what --set gives to a fluid that has no use for it; a file may keep it for another --fluid.
+void note_unused(TomlReader& in, ChannelConfig& c, std::initializer_list<const char*> keys) {
+    for (const char* key : keys) {
+        in.allow(key);
+        if (in.overridden(key))
+            c.notes.push_back(in.where(key) + ": fluid.model = \"" + c.fluid.model + "\" has no use for it");
+    }
+}
+
+/// Of the choice of fluid, what the momentum exchanged with stones takes.
+void read_exchange(TomlReader& in, ChannelConfig& c) {
+    c.fluid.resolved_from = std::numeric_limits<Real>::infinity();
+    if (c.fluid.model != "resolved") {
+        refuse(in, {"fluid.exchange", "fluid.resolved_from"}, "fluid.model = \"" + c.fluid.model + "\"");
+        if (c.fluid.model == "unresolved") c.fluid.exchange = exchanges.front();
+        return;
+    }
+    c.fluid.exchange = in.choice(
+        "fluid.exchange", exchanges,
+        {.fallback = std::string(exchanges.front()),
+         .help = "of momentum with the stones, monolithic: their velocities are found with the pressure; "
+                 "one fluid whose velocity is made rigid in their place, mixture: the source's, whose "
+                 "pressure knows their density, direct: whose pressure knows the water's alone"});
+    if (c.fluid.exchange != exchanges.front()) {
+        refuse(in, {"fluid.resolved_from"},
+               "fluid.exchange = \"" + c.fluid.exchange + "\", which resolves all stones,");
+        return;
+    }
+    c.fluid.resolved_from = in.number(
+        "fluid.resolved_from", {.unit = "cells",
+                                .fallback = 3,
+                                .help = "diameter from which on the water flows around a stone; smaller "
+                                        "ones are spread over the flow, as all are where it is unresolved",
+                                .bound = Bound::not_negative,
+                                .most = 1000,
+                                .remedy = "fluid.model = \"unresolved\" spreads all stones"});
+}
+
+/// What water that runs down the channel takes.
+void read_running_water(TomlReader& in, ChannelConfig& c) {
+    c.fluid.spacing = in.number(
+        "fluid.spacing",
+        {.unit = "m", .fallback = 0.02, .help = "of the grid of water that flows", .bound = Bound::positive});
+    c.fluid.inflow_depth =
+        in.number("fluid.inflow_depth", {.unit = "m",
+                                         .fallback = 0,
+                                         .help = "of water that flows in upstream, 0: of uniform flow",
+                                         .assumption = "not in the text",
+                                         .bound = Bound::not_negative});
+    c.fluid.settle =
+        in.number("fluid.settle", {.unit = "s",
+                                   .fallback = 0,
+                                   .help = "that water runs before the stones begin, 0: three "
+                                           "times what uniform flow takes down the channel, and 1 s; 3 s at "
+                                           "most where it begins as uniform flow",
+                                   .bound = Bound::not_negative});
+    require(c.fluid.spacing <= 0.25 * c.invert.width,
+            {in.where("fluid.spacing") + ": fluid.spacing",
+             "at most a quarter of the channel's width of " + to_text(c.invert.width) + " m", "m"},
+            c.fluid.spacing);
+}
+
+/// What the water on a grid takes.
+void read_grid(TomlReader& in, ChannelConfig& c, bool feels_stones) {
+    constexpr std::array<std::string_view, 2> surfaces{"volume", "height"}, begins{"dry", "uniform"};
+    c.fluid.surface = in.choice(
+        "fluid.surface",
+        std::span(surfaces).subspan(feels_stones ? 1 : 0),  // no engine has stones in volumes
+        {.fallback = feels_stones ? "height" : "volume",
+         .help = "of the grid's water, volume: of any shape, height: one over each place, which is faster"});
+    c.fluid.energy = in.flag("fluid.energy", {.fallback = true,
+                                              .help = "whether the grid's water keeps its energy account, "
+                                                      "which costs a quarter of a step"});
+    c.fluid.begins_uniform =
+        in.choice(
+            "fluid.begins", begins,
+            {.fallback = feels_stones ? "uniform" : "dry",
+             .help = "what a grid's water begins as, dry: it runs down the channel, uniform: as uniform "
+                     "flow all along it"}) == "uniform";
 }
 
 void read_fluid(TomlReader& in, ChannelConfig& c) {
@@ -292,69 +386,16 @@ void read_fluid(TomlReader& in, ChannelConfig& c) {
          .help = "uniform: prescribed, shallow: depth-averaged, grid: with a free surface, unresolved and "
                  "resolved: with one that feels the stones, or none"});
     const bool feels_stones = c.fluid.model == "unresolved" || c.fluid.model == "resolved";
-    constexpr std::array<std::string_view, 2> surfaces{"volume", "height"};
-    c.fluid.surface = in.choice(
-        "fluid.surface",
-        std::span(surfaces).subspan(feels_stones ? 1 : 0),  // no engine has stones in volumes
-        {.fallback = feels_stones ? "height" : "volume",
-         .help = "of the grid's water, volume: of any shape, height: one over each place, which is faster"});
-    c.fluid.resolved_from = std::numeric_limits<Real>::infinity();
-    const bool resolves = c.fluid.model == "resolved";
-    const std::string model = "fluid.model = \"" + c.fluid.model + "\"";
-    if (!resolves) refuse(in, {"fluid.exchange", "fluid.resolved_from"}, model);
-    if (feels_stones) c.fluid.exchange = exchanges.front();
-    if (resolves)
-        c.fluid.exchange = in.choice(
-            "fluid.exchange", exchanges,
-            {.fallback = std::string(exchanges.front()),
-             .help = "of momentum with the stones, monolithic: their velocities are found with the pressure; "
-                     "one fluid whose velocity is made rigid in their place, mixture: the source's, whose "
-                     "pressure knows their density, direct: whose pressure knows the water's alone"});
-    const bool one_fluid = resolves && c.fluid.exchange != exchanges.front();
-    if (one_fluid)
-        refuse(in, {"fluid.resolved_from"},
-               "fluid.exchange = \"" + c.fluid.exchange + "\", which resolves all stones,");
-    if (resolves && !one_fluid)
-        c.fluid.resolved_from =
-            in.number("fluid.resolved_from",
-                      {.unit = "cells",
-                       .fallback = 3,
-                       .help = "diameter from which on the water flows around a stone; smaller "
-                               "ones are spread over the flow, as all are where it is unresolved",
-                       .bound = Bound::not_negative});
-    c.fluid.energy = in.flag("fluid.energy", {.fallback = true,
-                                              .help = "whether the grid's water keeps its energy account, "
-                                                      "which costs a quarter of a step"});
-    c.fluid.spacing = in.number(
-        "fluid.spacing",
-        {.unit = "m", .fallback = 0.02, .help = "of the grid of water that flows", .bound = Bound::positive});
-    c.fluid.inflow_depth =
-        in.number("fluid.inflow_depth", {.unit = "m",
-                                         .fallback = 0,
-                                         .help = "of water that flows in upstream, 0: of uniform flow",
-                                         .assumption = "not in the text",
-                                         .bound = Bound::not_negative});
-    if (c.fluid.model == "grid" || feels_stones) {
-        constexpr std::array<std::string_view, 2> begins{"dry", "uniform"};
-        c.fluid.begins_uniform =
-            in.choice(
-                "fluid.begins", begins,
-                {.fallback = feels_stones ? "uniform" : "dry",
-                 .help = "what a grid's water begins as, dry: it runs down the channel, uniform: as uniform "
-                         "flow all along it"}) == "uniform";
-    }
-    c.fluid.settle =
-        in.number("fluid.settle", {.unit = "s",
-                                   .fallback = 0,
-                                   .help = "that water runs before the stones begin, 0: three "
-                                           "times what uniform flow takes down the channel, and 1 s; 3 s at "
-                                           "most where it begins as uniform flow",
-                                   .bound = Bound::not_negative});
-    const bool on_a_grid = c.fluid.model == "shallow" || c.fluid.model == "grid" || feels_stones;
-    require(!on_a_grid || c.fluid.spacing <= 0.25 * c.invert.width,
-            {in.where("fluid.spacing") + ": fluid.spacing",
-             "at most a quarter of the channel's width of " + to_text(c.invert.width) + " m", "m"},
-            c.fluid.spacing);
+    const bool on_a_grid = c.fluid.model == "grid" || feels_stones;
+    read_exchange(in, c);
+    if (on_a_grid || c.fluid.model == "shallow")
+        read_running_water(in, c);
+    else
+        note_unused(in, c, {"fluid.spacing", "fluid.inflow_depth", "fluid.settle"});
+    if (on_a_grid)
+        read_grid(in, c, feels_stones);
+    else
+        note_unused(in, c, {"fluid.surface", "fluid.energy", "fluid.begins"});
 }
 
 void read_sediment(TomlReader& in, ChannelConfig& c) {
@@ -362,9 +403,12 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
     feed.volume_rate = in.number(
         "sediment.rate",
         {.unit = "m3/s", .fallback = 0.0083, .help = "solid volume supplied", .bound = Bound::positive});
-    feed.density =
-        in.number("sediment.density",
-                  {.unit = "kg/m3", .fallback = 2650, .help = "of the stones", .bound = Bound::positive});
+    feed.density = in.number("sediment.density", {.unit = "kg/m3",
+                                                  .fallback = 2650,
+                                                  .help = "of the stones",
+                                                  .least = 1,
+                                                  .most = 3e4,
+                                                  .remedy = heaviest});
     const auto sizes =
         in.numbers("sediment.sizes", {.unit = "m",
                                       .fallback = std::vector<Real>{0.04, 0.05, 0.075, 0.10, 0.15},
@@ -407,11 +451,14 @@ void read_sediment(TomlReader& in, ChannelConfig& c) {
                                                              .help = "to each side of the centre line",
                                                              .assumption = "not in the text",
                                                              .bound = Bound::positive});
-    const Real speed = in.number("sediment.feed_speed", {.unit = "m/s",
-                                                         .fallback = 2.0,
-                                                         .help = "of the stones as they enter",
-                                                         .assumption = "not in the text",
-                                                         .bound = Bound::not_negative});
+    const Real speed =
+        in.number("sediment.feed_speed", {.unit = "m/s",
+                                          .fallback = 2.0,
+                                          .help = "of the stones as they enter",
+                                          .assumption = "not in the text",
+                                          .least = 0,
+                                          .most = 100,
+                                          .remedy = "stones enter with some share of the water's speed"});
     require(half <= 0.5 * c.invert.width,
             {in.where("sediment.feed_half_width") + ": sediment.feed_half_width",
              "at most half the channel's width (" + to_text(0.5 * c.invert.width) + " m)", "m"},
@@ -576,6 +623,7 @@ ChannelConfig read_channel_config(const std::filesystem::path& file,
                  "take a smaller discharge or a steeper channel"},
                 depth);
     });
+    if (c.fluid.spacing > 0) check("fluid", [&] { check_cells(c); });
     check("sediment", [&] { c.feed.validate(); });
     return c;
 }

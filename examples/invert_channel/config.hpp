@@ -35,7 +35,7 @@ struct WaterChoice {
     std::string model;            ///< a name of `channel_fluids`
     std::string surface;          ///< of a grid's water: volume or height
     bool energy = true;           ///< whether a grid's water keeps its energy account
-    Real spacing = 0;             ///< of a grid [m]
+    Real spacing = 0;             ///< of a grid [m]; 0: none
     std::string exchange;         ///< of momentum with stones, on a grid; a name of `exchanges`
     Real resolved_from = 0;       ///< stones that it flows around: of so many cells to a diameter
     Real inflow_depth = 0;        ///< at the centre line [m]; 0: of uniform flow
@@ -62,6 +62,7 @@ struct ChannelConfig {
     Real end_time = 0, output_every = 0, time_step = 0, safety = 0, skin = 0;
     Real checkpoint_every = 0;          ///< of wall time [min]
     std::vector<Parameter> parameters;  ///< all that was read, for the report
+    std::vector<std::string> notes;     ///< on what was given and has no use
 };
 
 /// The name of a level, of what becomes of worn-out spheres, of a way that excess goes; as in the file.

@@ -5,7 +5,6 @@
 #include "run_channel.hpp"
 
 #include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
 
 namespace abrade::examples {
 
@@ -16,10 +15,9 @@ using ChannelFlow = GridFluid<3, Surface, Limited, Real, MixingLength, Solids>;
 template <class Flow>
 Flow grid_channel(const ChannelConfig& c, auto solids) {
     const WaterStart start(c);
-    const Real depth = start.depth;
-    const Real half = 0.5 * c.invert.width, roughness = std::pow(26 * c.water.manning, 6);
-    const CellNumber<3> count{cells_along(c, c.invert.length), cells_along(c, c.invert.width),
-                              cells_along(c, std::max(2 * depth, depth + c.invert.bed_height(half)))};
+    const Real half = 0.5 * c.invert.width;
+    const auto [length, width, height] = start.box(c.invert);
+    const CellNumber<3> count{cells_along(c, length), cells_along(c, width), cells_along(c, height)};
     const Point<3> size(c.invert.length / count[0], c.invert.width / count[1], c.fluid.spacing);
     Sides<3> sides;
     sides[0][1] = Side::outflow;
@@ -28,19 +26,14 @@ Flow grid_channel(const ChannelConfig& c, auto solids) {
         GridFluidParams<3> params{.grid = {.cells = count, .low = {0, -half, 0}, .spacing = size},
                                   .sides = sides,
                                   .wall = InvertWall(c.invert),
-                                  .wall_law = {WallLaw::Kind::logarithmic, roughness},
+                                  .wall_law = {WallLaw::Kind::logarithmic, roughness_of(c)},
                                   .gravity = c.invert.gravity(),
                                   .density = c.water.density,
                                   .viscosity = c.water.viscosity,
                                   .courant = 0.9,
                                   .tolerance = 1e-5,
                                   .start_time = -start.settle};
-        // The profile of uniform flow, at the depth that is given: what enters is the discharge.
-        const Inflow<3> stream({.discharge = c.water.discharge,
-                                .depth = depth,
-                                .section = c.invert,
-                                .profile = InflowProfile::logarithmic,
-                                .roughness = roughness});
+        const Inflow<3> stream = stream_of(c);
         stream.give_to(params);
         if (c.fluid.begins_uniform) {
             params.water = [stream](const Vec3& x) { return stream.depth_at(x); };

@@ -9,6 +9,7 @@
 // channel      from the configuration to a simulation, and from a simulation to results
 // bed          what has passed along the channel, and the bed when enough had
 // travel       how stones of each size travel
+// water_start  how water that flows begins, and the cells of its grid
 // recorder     what is written while it runs
 // interruption checkpoints, and how a run goes on from one
 // pictures     what is drawn when it is done
@@ -33,7 +34,9 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <new>
 #include <numeric>
+#include <optional>
 
 using namespace abrade;
 using namespace abrade::examples;
@@ -43,7 +46,7 @@ namespace {
 struct Options {
     std::filesystem::path file = std::filesystem::path(ABRADE_EXAMPLE_DIR) / "quick.toml";
     std::vector<std::string> overrides;
-    std::string fluid;
+    std::optional<std::string> fluid;
     std::filesystem::path out = "out/invert_channel";
     int threads = 0;
     bool check = false, resume = false;
@@ -178,6 +181,7 @@ void keep_failed_run(const ChannelRun& run, OutputFolder& folder) {
 int run(const Options& options) {
     if (options.threads > 0) set_thread_count(options.threads);
     const ChannelConfig config = read_channel_config(options.file, options.overrides);
+    for (const std::string& note : config.notes) std::cerr << "note: " << note << "\n";
     require_gnuplot();
     if (!config.comparison.measured.empty()) read_measured_points(config.comparison.measured);
     if (options.check) return 0;
@@ -283,11 +287,14 @@ int main(int argc, char** argv) {
         if (const auto beside = std::filesystem::path(ABRADE_EXAMPLE_DIR) / options.file;
             !std::filesystem::exists(options.file) && std::filesystem::exists(beside))
             options.file = beside;
-        if (!options.fluid.empty()) options.overrides.push_back("fluid.model=\"" + options.fluid + "\"");
+        if (options.fluid) options.overrides.push_back("fluid.model=\"" + *options.fluid + "\"");
         return run(options);
     } catch (const InputError& error) {
         std::cerr << "error: " << error.what() << "\n";
         return 2;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "error: not enough memory; take fewer spheres of concrete or a coarser grid\n";
+        return 1;
     } catch (const std::exception& error) {
         std::cerr << "error: " << error.what() << "\n";
         return 1;

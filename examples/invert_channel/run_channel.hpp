@@ -4,6 +4,7 @@
 #include "channel.hpp"
 #include "fluids.hpp"
 #include "recorder.hpp"
+#include "water_start.hpp"
 
 #include "../common/interrupt.hpp"
 #include "../common/progress.hpp"
@@ -11,25 +12,6 @@
 #include <sstream>
 
 namespace abrade::examples {
-
-/// What flowing water begins with, where the configuration leaves it open.
-struct WaterStart {
-    explicit WaterStart(const ChannelConfig& c)
-        : uniform(c.water), depth(c.fluid.inflow_depth > 0 ? c.fluid.inflow_depth : uniform.depth()),
-          settle(c.fluid.settle) {
-        if (settle > 0) return;
-        settle = 1 + 3 * c.invert.length / uniform.mean_velocity();
-        if (c.fluid.begins_uniform) settle = std::min(settle, Real(3));
-    }
-    UniformFlow uniform;
-    Real depth;   ///< at the centre line, upstream [m]
-    Real settle;  ///< before the stones begin [s]
-};
-
-/// Cells of a grid along a length [m].
-inline Index cells_along(const ChannelConfig& c, Real length) {
-    return static_cast<Index>(std::ceil(length / c.fluid.spacing - 1e-9));
-}
 
 /// Between two looks at what has passed and at what contacts take up, at most [s].
 constexpr Real look_every = 0.02;

@@ -290,6 +290,20 @@ refused "a gauge outside" 'compare.gauges.*inside the channel.*3 m' --set 'compa
 refused "a step beyond the stable one" 'run.safety.*\(0, 1\].*got 5' --check --set run.safety=5
 refused "stones without number" 'sediment.sizes.*at most 1e8 stones' --check --set 'sediment.sizes=[1e-6,0.05,0.075,0.1,0.15]'
 refused "water over everything" 'water.discharge of 1e.?09 m3/s.*below 5 m' --check --set water.discharge=1e9
+refused "an empty fluid" 'fluid.model.*one of.*got ""' --fluid ""
+refused "a misspelt key of water that does not flow" 'unknown key fluid.spacng' --set fluid.spacng=0.1
+refused "cells above the water" 'fluid.spacing.*at most the water.s depth.*0.24 m.*shallow' --check --fluid grid --set fluid.spacing=0.24 --set water.discharge=0.05
+refused "cells without number" 'fluid.spacing of 0.0005 m: cells.*at most 5e.?07.*larger cells' --check --fluid resolved --set fluid.spacing=0.0005
+refused "a roughness of rocks" 'Inflow.roughness.*below 30 depths.*Strickler' --check --fluid grid --set water.manning=0.2
+refused "stones of nothing" 'sediment.density.*from 1 to 30000.*got 1e.?30 kg/m3; quartz' --check --set sediment.density=1e30
+refused "concrete of nothing" 'concrete.density.*from 1 to 30000.*got 0.1 kg/m3; quartz' --check --set concrete.density=0.1
+refused "stones that are shot" 'sediment.feed_speed.*from 0 to 100.*got 1e.?06 m/s; stones' --check --set sediment.feed_speed=1e6
+refused "water in g/cm3" 'water.density.*from 500 to 2000.*got 1 kg/m3; water has 1000' --check --set water.density=1
+refused "viscosity of what is no water" 'water.viscosity.*from 0.0001 to 1.*got 1000 Pa s' --check --set water.viscosity=1000
+refused "stones of a million cells" 'fluid.resolved_from.*from 0 to 1000.*unresolved' --check --fluid resolved --set fluid.resolved_from=1e6
+"$program" --check --set fluid.spacing=0.04 > unused.log 2>&1 || fail "a key that has no use here: $(cat unused.log)"
+grep -q 'note: --set fluid.spacing=0.04: .*uniform.*no use' unused.log || fail "a key without use is taken silently: $(cat unused.log)"
+"$program" paper.toml --check > unused.log 2>&1 && [ ! -s unused.log ] || fail "a file's keys for another fluid: $(cat unused.log)"
 refused "unknown option" 'help' --frobnicate
 mkdir -p readonly_is_a_file && touch readonly_is_a_file/inside
 code=0; "$program" --out readonly_is_a_file/inside > refused.log 2>&1 || code=$?
