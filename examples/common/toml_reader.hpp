@@ -244,11 +244,13 @@ private:
     }
 
     std::string hint(const std::string& key) const {
-        const std::string nearest = nearest_name(key, asked_);
+        std::set<std::string> known_keys(asked_.begin(), asked_.end());
+        known_keys.insert(allowed_.begin(), allowed_.end());
+        const std::string nearest = nearest_name(key, known_keys);
         if (!nearest.empty()) return "; did you mean " + nearest + "?";
         const std::string section = key.substr(0, key.rfind('.') + 1);
         std::set<std::string> names;
-        for (const std::string& name : asked_)
+        for (const std::string& name : known_keys)
             if (name.starts_with(section))
                 names.insert(name.substr(0, name.find_first_of(".[", section.size())));
         std::string known;

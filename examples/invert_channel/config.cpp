@@ -328,7 +328,7 @@ void read_exchange(TomlReader& in, ChannelConfig& c) {
                                 .fallback = 3,
                                 .help = "diameter from which on the water flows around a stone; smaller "
                                         "ones are spread over the flow, as all are where it is unresolved",
-                                .bound = Bound::not_negative,
+                                .least = 0,
                                 .most = 1000,
                                 .remedy = "fluid.model = \"unresolved\" spreads all stones"});
 }

@@ -59,12 +59,13 @@ inline constexpr std::array<ChannelEngine, 9> channel_engines{
 /// Throws InputError where none was compiled for these; the surface counts where a fluid has one.
 inline const ChannelEngine& find_engine(std::string_view fluid, std::string_view contact,
                                         std::string_view surface) {
-    std::string all;
+    std::string all, last;
     for (const ChannelEngine& one : channel_engines) {
         if (one.fluid == fluid && one.contact == contact && (one.surface.empty() || one.surface == surface))
             return one;
-        if (!one.surface.empty() && one.surface != surface) continue;
-        all += (all.empty() ? "" : ", ") + std::string(one.fluid) + " with " + std::string(one.contact);
+        const std::string pair = std::string(one.fluid) + " with " + std::string(one.contact);
+        if (pair != last) all += (all.empty() ? "" : ", ") + pair;  // surfaces of one stand together
+        last = pair;
     }
     fail({"fluid.model with contact.law", "a pair that an engine was compiled for: " + all, "",
           "take one of these, or add a line to channel_engines"},

@@ -291,9 +291,9 @@ refused "a step beyond the stable one" 'run.safety.*\(0, 1\].*got 5' --check --s
 refused "stones without number" 'sediment.sizes.*at most 1e8 stones' --check --set 'sediment.sizes=[1e-6,0.05,0.075,0.1,0.15]'
 refused "water over everything" 'water.discharge of 1e.?09 m3/s.*below 5 m' --check --set water.discharge=1e9
 refused "an empty fluid" 'fluid.model.*one of.*got ""' --fluid ""
-refused "a misspelt key of water that does not flow" 'unknown key fluid.spacng' --set fluid.spacng=0.1
+refused "a misspelt key of water that does not flow" 'unknown key fluid.spacng; did you mean fluid.spacing' --set fluid.spacng=0.1
 refused "cells above the water" 'fluid.spacing.*at most the water.s depth.*0.24 m.*shallow' --check --fluid grid --set fluid.spacing=0.24 --set water.discharge=0.05
-refused "cells without number" 'fluid.spacing of 0.0005 m: cells.*at most 5e.?07.*larger cells' --check --fluid resolved --set fluid.spacing=0.0005
+refused "cells without number" 'fluid.spacing of 0.0005 m: cells.*at most 1e.?08.*larger cells' --check --fluid resolved --set fluid.spacing=0.0005
 refused "a roughness of rocks" 'Inflow.roughness.*below 30 depths.*Strickler' --check --fluid grid --set water.manning=0.2
 refused "stones of nothing" 'sediment.density.*from 1 to 30000.*got 1e.?30 kg/m3; quartz' --check --set sediment.density=1e30
 refused "concrete of nothing" 'concrete.density.*from 1 to 30000.*got 0.1 kg/m3; quartz' --check --set concrete.density=0.1
