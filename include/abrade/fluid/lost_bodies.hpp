@@ -1,5 +1,5 @@
 #pragma once
-// Bodies that have left the water through a side that lets nothing pass.
+// Bodies that the water's box cannot hold: too large for it, or gone through a side that lets nothing pass.
 
 #include <abrade/fluid/flow_body.hpp>
 #include <abrade/fluid/fluid_model.hpp>
@@ -9,11 +9,17 @@
 
 namespace abrade::detail {
 
-/// Throws FluidError where a free body's centroid lies beyond a closed side, of which its contacts know
-/// nothing. Above a surface there is air.
+/// Throws FluidError where a body is as large as the box, and where a free body's centroid lies beyond a
+/// closed side, of which its contacts know nothing. Above a surface there is air.
 inline void refuse_lost(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
                         bool has_surface) {
-    for (const FlowBody& body : bodies)
+    Real box = 1;
+    for (int a = 0; a < 3; ++a) box *= grid.high(a) - grid.low(a);
+    for (const FlowBody& body : bodies) {
+        if (!(body.volume < box))
+            throw FluidError("the body with id " + std::to_string(body.id) + " has " +
+                             short_text(body.volume) + " m3, no less than the " + short_text(box) +
+                             " m3 of the water's box; make the box larger or the body smaller");
         for (int a = 0; a < 3 && body.inverse_mass > 0; ++a)
             for (const bool high : {false, true}) {
                 const Real x = body.position[a], side = high ? grid.high(a) : grid.low(a);
@@ -26,6 +32,7 @@ inline void refuse_lost(const Grid<3>& grid, const Sides<3>& sides, std::span<co
                     " = " + short_text(side) + " m, at " + axis + " = " + short_text(x) +
                     " m; sides hold water, not bodies: give them a wall there (Scene::add_wall)");
             }
+    }
 }
 
 }  // namespace abrade::detail
