@@ -76,18 +76,22 @@ TEST_CASE("drag in a stream is that of its law, from creeping to fast, and takes
 }
 
 TEST_CASE("from rest it has the acceleration that its added mass allows, at any ratio of densities") {
-    for (const Real ratio : {0.01, 0.5, 1.0, 2.65, 8.0}) {
-        auto params = box(20, 0.1, Side::slip, 0);
-        Water water(params);
-        std::vector<Ball> balls{{Vec3(1.01, 0.99, 1.03), 0.1, 1000 * ratio}};
-        const Real expected = -g * (ratio - 1) / (ratio + 0.5), dt = 1e-3;
-        for (int k = 1; k <= 5; ++k) {
-            step(water, balls, dt);
-            const Real a = balls[0].body.velocity.z() / (k * dt);
-            CAPTURE(ratio);
-            CHECK(std::abs(a - expected) < (0.02 + 0.04 / (1 + 4 * ratio)) * std::abs(expected) + 2e-3 * g);
+    for (const Real dt : {1e-4, 1e-3, 1e-2})
+        for (const Real ratio : {0.01, 0.5, 1.0, 2.65, 8.0}) {
+            auto params = box(20, 0.1, Side::slip, 0);
+            Water water(params);
+            std::vector<Ball> balls{{Vec3(1.01, 0.99, 1.03), 0.1, 1000 * ratio}};
+            const Real expected = -g * (ratio - 1) / (ratio + 0.5);
+            // In long steps the lightest has 0.9 m/s at the end, and drag.
+            const Real within = ratio < 0.5 && dt > 1e-3 ? 0.12 : 0.02 + 0.04 / (1 + 4 * ratio);
+            for (int k = 1; k <= 5; ++k) {
+                step(water, balls, dt);
+                const Real a = balls[0].body.velocity.z() / (k * dt);
+                CAPTURE(ratio);
+                CAPTURE(dt);
+                CHECK(std::abs(a - expected) < within * std::abs(expected) + 2e-3 * g);
+            }
         }
-    }
 }
 
 TEST_CASE("momentum of water and small balls is kept to a hundredth of what the ball came with") {

@@ -12,24 +12,30 @@ TEST_CASE("buoyancy is rho g V wherever a fixed ball is, and does not turn it") 
 
 TEST_CASE(
     "from rest: the acceleration that added mass allows, at any ratio of densities, and no other later") {
-    for (const Real ratio : {0.01, 0.5, 1.0, 2.65, 8.0}) {
-        auto params = box(32, 1.0 / 32, Side::slip);
-        params.viscosity = 0;
-        Water water(params);
-        std::vector<Ball> balls{{Vec3(0.51, 0.495, 0.507), 2.0 / 32, 1000 * ratio}};
-        const Real expected = -g * (ratio - 1) / (ratio + 0.5), dt = 1e-3;
-        Real first = 0;
-        CAPTURE(ratio);
-        for (int k = 1; k <= 5; ++k) {
-            step(water, balls, dt);
-            const Real a = balls[0].body.velocity.z() / (k * dt);
-            if (k == 1) first = a;
-            // 4 cells to a diameter have 9/10 of the added mass: 15 % at a ratio of 0.01, 2 % at 2.65.
+    for (const Real dt : {1e-4, 1e-3, 1e-2})
+        for (const Real ratio : {0.01, 0.5, 1.0, 2.65, 8.0}) {
+            auto params = box(32, 1.0 / 32, Side::slip);
+            params.viscosity = 0;
+            Water water(params);
+            std::vector<Ball> balls{{Vec3(0.51, 0.495, 0.507), 2.0 / 32, 1000 * ratio}};
+            const Real expected = -g * (ratio - 1) / (ratio + 0.5);
+            // 4 cells to a diameter have 9/10 of the added mass: 2 % at 2.65, but 15 % at a ratio of 0.01.
             // Slivers of water stick: 0.3 % of g as it starts, and some more mass.
-            CHECK(std::abs(a - expected) < (0.05 + 0.13 / (1 + 4 * ratio)) * std::abs(expected) + 4e-3 * g);
-            CHECK(std::abs(a - first) < 0.03 * std::abs(first) + 4e-3 * g);
+            const Real within =
+                (ratio < 1 ? 0.05 + 0.13 / (1 + 4 * ratio) : 0.05) * std::abs(expected) + 4e-3 * g;
+            Real first = 0;
+            CAPTURE(ratio);
+            CAPTURE(dt);
+            for (int k = 1; k <= 5; ++k) {
+                step(water, balls, dt);
+                const Real a = balls[0].body.velocity.z() / (k * dt);
+                if (k == 1) first = a;
+                CHECK(std::abs(a - expected) < within);
+                // The lightest crosses most of a cell in long steps.
+                const Real drift = ratio < 0.5 && dt > 1e-3 ? 0.12 : 0.03;
+                CHECK(std::abs(a - first) < drift * std::abs(first) + 4e-3 * g);
+            }
         }
-    }
 }
 
 TEST_CASE("a box that falls with its ball has no weight: nothing moves against anything") {

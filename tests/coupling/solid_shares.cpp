@@ -88,17 +88,21 @@ TEST_CASE("a clump, across a periodic side and on a stretched grid") {
     }
 }
 
-TEST_CASE("on a floor: what the floor takes of the shares, the rest has") {
+TEST_CASE("on a floor, by a side and in a corner: what they take of the shares, the rest has") {
     const Grid<3> grid({.cells = {16, 16, 16}, .spacing = Vec3::Constant(0.1)});
     const auto sides = Sides<3>::all(Side::wall);
     for (const Real cells : {2.0, 2.5, 4.0, 7.0}) {
         const Real radius = 0.05 * cells;
-        const Vec3 centre(0.81, 0.77, radius);
-        const std::vector<Sphere> spheres{{centre, radius}};
-        const Real volume = 4.0 / 3 * pi * cube(radius);
-        const Held sum = held(cover_of(grid, sides, body_of(spheres, centre, volume), nothing_closed));
-        CAPTURE(cells);
-        CHECK((sum.volume - Vec3::Constant(volume)).norm() < 1e-10 * volume);
+        for (const Vec3& centre :
+             {Vec3(0.81, 0.77, radius), Vec3(0.81, radius, radius), Vec3(radius, radius, radius)}) {
+            const std::vector<Sphere> spheres{{centre, radius}};
+            const Real volume = 4.0 / 3 * pi * cube(radius);
+            const Held sum = held(cover_of(grid, sides, body_of(spheres, centre, volume), nothing_closed));
+            CAPTURE(cells);
+            CAPTURE(centre.transpose());
+            CHECK((sum.volume - Vec3::Constant(volume)).norm() < 1e-10 * volume);
+            CHECK(sum.moment.norm() < 1e-10 * volume * radius);
+        }
     }
 }
 

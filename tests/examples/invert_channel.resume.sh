@@ -26,23 +26,34 @@ base=(--set channel.length=6 --set run.end_time=2.5 --set contact.stiffness=2e7 
 every=0.003  # min: 0.18 s
 "$program" "${base[@]}" --threads 1 --out whole > whole.log || fail "the run that is left alone: $(cat whole.log)"
 
-# --- kill -9 at random moments
+# --- kill -9 at random moments; a run that comes to its end before all of them is compared, and begun anew
+go_on() { # to the end
+    "$program" "${base[@]}" --threads 2 --set run.checkpoint_every=$every --out killed "${resume[@]}" > killed.log 2>&1 || fail "the run that goes on fails: $(cat killed.log)"
+}
+ended() { # ended: what the killed run has come to is that of the whole one
+    same_results "after $kill kills" whole killed
+    [ ! -e killed.checkpoint.h5 ] || fail "a run that came to its end leaves its checkpoint"
+    rm -rf killed killed.checkpoint.h5
+    resume=()
+}
 resume=()
-for ((kill = 0; kill < kills; ++kill)); do
+resumed=0
+for ((kill = 0; kill < kills;)); do
     "$program" "${base[@]}" --threads $((1 + kill % 2)) --set run.checkpoint_every=$every --out killed "${resume[@]}" > killed.log 2>&1 &
     pid=$!
     sleep "0.$((RANDOM % 4 + 1))$((RANDOM % 10))"
-    kill -9 $pid 2> /dev/null || break  # it has come to its end
-    wait $pid 2> /dev/null || true
-    if [ -e killed.checkpoint.h5 ]; then resume=(--resume); fi
+    if kill -9 $pid 2> /dev/null; then
+        kill=$((kill + 1))
+        wait $pid 2> /dev/null || true
+        if [ -e killed.checkpoint.h5 ]; then resume=(--resume) resumed=$((resumed + 1)); fi
+    else
+        wait $pid || fail "the run that goes on fails: $(cat killed.log)"
+        ended
+    fi
 done
-[ ${#resume[@]} -gt 0 ] || fail "no checkpoint after $kill kills"
-echo "$kill kills"
-if [ -e killed.checkpoint.h5 ]; then
-    "$program" "${base[@]}" --threads 2 --set run.checkpoint_every=$every --out killed --resume > killed.log 2>&1 || fail "the run that goes on fails: $(cat killed.log)"
-fi
-same_results "after $kill kills" whole killed
-[ ! -e killed.checkpoint.h5 ] || fail "a run that came to its end leaves its checkpoint"
+[ $resumed -gt 20 ] || fail "only $resumed of $kills kills found a checkpoint"
+go_on
+ended
 
 # --- what is lost is what came after the last checkpoint: no more than that time, and what a save takes
 "$program" "${base[@]}" --threads 1 --set run.checkpoint_every=$every --out young > young.log 2>&1 &
@@ -53,17 +64,28 @@ wait $pid 2> /dev/null || true
 age=$(($(date +%s%N) / 1000000 - $(date -r young.checkpoint.h5 +%s%N) / 1000000))
 [ $age -lt 1000 ] || fail "the last checkpoint is $age ms old, $every min are allowed"
 
-# --- SIGTERM: results so far, a checkpoint, and on from there
-"$program" "${base[@]}" --threads 1 --out ended > ended.log 2>&1 &
-pid=$!
-sleep 1
-kill -TERM $pid
-wait $pid || fail "SIGTERM: exit code $?"
-grep -q -- '--resume goes on' ended.log || fail "SIGTERM: no word of how to go on: $(cat ended.log)"
-grep -q '"stopped_early": true' ended/summary.json || fail "SIGTERM: the results do not say so"
-cp ended.checkpoint.h5 kept.h5
-"$program" "${base[@]}" --threads 1 --out ended --resume > ended.log 2>&1 || fail "after SIGTERM it does not go on: $(cat ended.log)"
-same_results "after SIGTERM" whole ended
+# --- signals: results so far, a checkpoint, and on from there
+stopped_by() { # stopped_by SIGNAL OPTION...
+    local signal="$1" pid
+    shift
+    "$program" "$@" --threads 1 --out ended > ended.log 2>&1 &
+    pid=$!
+    sleep 1
+    kill "-$signal" $pid
+    wait $pid || fail "$signal: exit code $?: $(cat ended.log)"
+    grep -q -- '--resume goes on' ended.log || fail "$signal: no word of how to go on: $(cat ended.log)"
+    grep -q '"stopped_early": true' ended/summary.json || fail "$signal: the results do not say so"
+    cp ended.checkpoint.h5 kept.h5
+    "$program" "$@" --threads 1 --out ended --resume > ended.log 2>&1 || fail "after $signal it does not go on: $(cat ended.log)"
+}
+wet=(--fluid shallow --set run.end_time=8)  # water that feels the stones
+"$program" "${wet[@]}" --threads 1 --out wet > wet.log || fail "shallow water that is left alone: $(cat wet.log)"
+stopped_by TERM "${wet[@]}"
+same_results "in shallow water" wet ended
+for signal in HUP INT TERM; do
+    stopped_by $signal "${base[@]}"
+    same_results "after $signal" whole ended
+done
 
 # --- what is refused: exit 2, one message, nothing written, the checkpoint left alone
 refused() { # refused WHAT REGEX OPTION...

@@ -109,6 +109,7 @@ holds "Manning's depth" "($(value shallow/summary.json water_depth_m) / $(value 
 holds "Manning's speed" "($(value shallow/summary.json water_speed_m_per_s) / $(value shallow/summary.json manning_speed_m_per_s) - 1)^2 < 0.01"
 holds "the water's volume" "$(value shallow/summary.json water_volume_residual_relative) < 1e-12"
 holds "the ledger closes in shallow water" "$(value shallow/summary.json ledger_residual_relative) < 1e-6"
+level_stands shallow shallow
 holds "stones are moved" "$(value shallow/summary.json mean_stone_speed_m_per_s) > 1"
 "$program" "${short[@]}" --fluid shallow --set fluid.settle=0.02 --set run.end_time=0.001 --out early > early.log 2>&1 || fail "water that has not settled"
 grep -q "off Manning's depth" early.log || fail "water that has not settled is not mentioned"
@@ -119,6 +120,7 @@ holds "Manning's depth on a grid" "($(value grid/summary.json water_depth_m) / $
 holds "Manning's speed on a grid" "($(value grid/summary.json water_speed_m_per_s) / $(value grid/summary.json manning_speed_m_per_s) - 1)^2 < 0.01"
 holds "the ledger closes on a grid" "$(value grid/summary.json ledger_residual_relative) < 1e-6"
 holds "the water's energy account closes" "$(value grid/summary.json water_energy_residual_relative) < 1e-9"
+level_stands grid grid
 holds "water comes in with energy" "$(value grid/summary.json water_energy_inflow_joule) > 0"
 "$program" "${short[@]}" --fluid grid --set 'fluid.surface="height"' --set fluid.energy=false --set fluid.spacing=0.04 --set run.end_time=0.03 --out height > height.log || fail "water below a height: $(cat height.log)"
 holds "a height's depth is near that of volume of fluid" "$(value height/summary.json water_depth_m) < 1.05 * $(value grid/summary.json water_depth_m) && $(value height/summary.json water_depth_m) > 0.95 * $(value grid/summary.json water_depth_m)"
@@ -127,6 +129,7 @@ for model in unresolved resolved; do
     "$program" "${short[@]}" --fluid $model --set fluid.spacing=0.04 --set run.end_time=0.05 --out $model > $model.log || fail "$model stones: $(cat $model.log)"
     holds "the ledger closes with $model stones" "$(value $model/summary.json ledger_residual_relative) < 1e-12"
     holds "Manning's depth about $model stones" "($(value $model/summary.json water_depth_m) / $(value $model/summary.json manning_depth_m) - 1)^2 < 0.01"
+    holds "the water's account closes about $model stones" "$(value $model/summary.json water_energy_residual_relative) < 1e-9"
     holds "small stones are averaged" "$(value $model/summary.json stones_averaged) > 0"
     level_stands $model $model monolithic
 done
@@ -147,6 +150,7 @@ grep -q '"source"' paper/summary.json && fail "a gauge at 0.2 m stands beside th
 grep -q '"source"' at_10_m/summary.json && grep -q 'source.*0.2075.*0.019.*0.092' at_10_m/report.html || fail "the source's run does not stand beside this one"
 "$program" "${short[@]}" --fluid none --set run.end_time=0.01 --out none > none.log || fail "a dry channel: $(cat none.log)"
 grep -q '"water_depth_m"' none/summary.json && fail "a dry channel has water"
+level_stands none none
 
 # --- levels and laws that the file names
 chosen() { # chosen KEY NAME OPTION...: the summary has it as KEY

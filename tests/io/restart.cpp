@@ -48,7 +48,7 @@ void check_restarts(const std::string& name, const Make& make, RunOptions option
     REQUIRE(looks > 3);
 
     const std::string path = name + ".h5";
-    for (const int threads : {1, 2}) {
+    for (const int threads : {1, 2, 3}) {
         const int before = thread_count();
         std::vector<Real> parts;
         bool done = false;

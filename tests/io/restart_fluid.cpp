@@ -46,7 +46,7 @@ void check_restarts(const std::string& name, const Make& make, const std::vector
     std::vector<std::vector<Real>> seen;
     for (const Real time : times) whole.advance(time), seen.push_back(state(whole));
     const int before = thread_count();
-    for (const int threads : {1, 2}) {
+    for (const int threads : {1, 2, 3}) {
         CAPTURE(threads);
         for (std::size_t n = 0; n < times.size(); ++n) {
             set_thread_count(n % 2 ? threads : 1);

@@ -2,6 +2,7 @@
 // threads.
 #include <abrade/abrade.hpp>
 #include <abrade/coupling/monolithic.hpp>
+#include <abrade/coupling/one_fluid.hpp>
 #include <abrade/fluid/grid_fluid.hpp>
 #include <abrade/io/restart.hpp>
 
@@ -13,9 +14,9 @@ using namespace abrade;
 
 namespace {
 
-template <class Surface>
+template <class Surface, class Solids>
 auto stones_in_water() {
-    using Water = GridFluid<3, Surface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+    using Water = GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>;
     GridFluidParams<3> params{.grid = {.cells = {14, 12, 14}, .spacing = Vec3::Constant(0.05)},
                               .sides = Sides<3>::all(Side::slip),
                               .gravity = {0, 0, -9.81}};
@@ -43,20 +44,20 @@ bool same_bits(const std::vector<Real>& a, const std::vector<Real>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Real)) == 0;
 }
 
-template <class Surface>
+template <class Surface, class Solids = MonolithicSolids<>>
 void check(const std::string& name) {
     CAPTURE(name);
     constexpr Real end = 0.12;
-    auto whole = stones_in_water<Surface>();
+    auto whole = stones_in_water<Surface, Solids>();
     int looks = 0;
     whole.run({.end_time = end, .time_step = 2e-4, .stop = [&] { return ++looks, false; }});
     CHECK(whole.ledger().residual_relative() < 1e-12);
     REQUIRE(looks > 4);
     const std::string path = name + ".h5";
     const int before = thread_count();
-    for (const int threads : {1, 2}) {
+    for (const int threads : {1, 2, 3}) {
         CAPTURE(threads);
-        auto first = stones_in_water<Surface>();
+        auto first = stones_in_water<Surface, Solids>();
         int seen = 0;
         first.run({.end_time = end, .time_step = 2e-4, .stop = [&] {
                        if (++seen < looks / 2) return false;
@@ -64,7 +65,7 @@ void check(const std::string& name) {
                        return true;
                    }});
         set_thread_count(threads);
-        auto second = stones_in_water<Surface>();
+        auto second = stones_in_water<Surface, Solids>();
         second.build();
         restore_state(path, name, StatePart{"simulation", second});
         second.run({.end_time = end, .time_step = 2e-4});
@@ -78,3 +79,4 @@ void check(const std::string& name) {
 TEST_CASE("in a full box") { check<FullBox>("resolved_box"); }
 TEST_CASE("below a height") { check<HeightSurface>("resolved_height"); }
 TEST_CASE("in a volume of fluid") { check<FreeSurface>("resolved_volume"); }
+TEST_CASE("in one fluid") { check<HeightSurface, MixtureSolids>("resolved_mixture"); }

@@ -25,8 +25,8 @@ void check(const Drop& d) {
     CHECK(f.depth > (d.below ? 1 : 0.87) * f.slowed.depth / diameter);
     CHECK(f.depth < f.free.depth / diameter);
     if (d.below) return;
-    CHECK(f.closes < 2.5);  // no void is left above it
-    CHECK(f.dent > -0.25);
+    CHECK(f.closes < 1.6);  // no void is left above it
+    CHECK(f.dent > -0.1);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ TEST_CASE("Mordant & Pinton, case 1, over cells to the diameter") {
         const Real speed = settled.speed / row.at("Vs_mps") - 1, tau = settled.tau95 / row.at("tau95_s") - 1;
         MESSAGE(cells << " cells: speed " << 100 * speed << " %, tau95 " << 100 * tau << " % off; 95 % at "
                       << settled.at_95 << " s");
-        CHECK(std::abs(speed) < 0.03);
-        CHECK(std::abs(tau) < (cells < 4 ? 0.22 : 0.14));
+        CHECK(std::abs(speed) < 0.022);
+        CHECK(std::abs(tau) < (cells < 4 ? 0.22 : cells < 6 ? 0.14 : 0.1));
     }
 }

@@ -21,6 +21,7 @@ TEST_CASE("a doublet turns its axis level and settles slower than the sphere of 
     CHECK(tilted.speed < bound);
     CHECK(tilted.speed > half);
     CHECK(tilted.levels > 0);
+    CHECK(tilted.tilt < 10);
     CHECK(level.tilt < 5);
     for (const Settled* s : {&sphere, &level, &tilted}) CHECK(s->residual < 1e-12);
 }

@@ -23,7 +23,8 @@ inline Settled settle(const ReferenceRow& row, Real cells) {
                  .sides = Sides<3>::all(Side::slip),
                  .gravity = {0, 0, -9.81},
                  .density = 1000,
-                 .viscosity = 1000 * row.at("nu_m2s")});
+                 .viscosity = 1000 * row.at("nu_m2s")},
+                {}, MonolithicSolids<>({.resolved_from = 0}));
     std::vector<Ball> balls{
         {Vec3(4, 4, 17.5) * diameter + h * Vec3(0.3, 0.1, 0), 0.5 * diameter, row.at("rho_p")}};
     std::vector<std::pair<Real, Real>> speeds;

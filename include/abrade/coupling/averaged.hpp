@@ -26,8 +26,8 @@ namespace abrade {
 /// all of it. These bodies are not turned. While the pressure is sought the cloud moves on with the velocity
 /// that they had before, and yields to the new pressure face by face, by (1 + C_m) / (s + C_m) of what water
 /// would, s their density over the water's. The pressure on a body is a mean over its faces, so it moves
-/// otherwise than each of them; that difference comes a step later. So any ratio of densities is stable, and
-/// beds of any density are.
+/// otherwise than each of them; that difference comes a step later. So ratios of densities from 0.01 to 8 are
+/// stable, and beds at 65 % of a box from 0.3 to 8 (tried).
 template <DenseDragLaw Drag>
 class AveragedBodies {
 public:

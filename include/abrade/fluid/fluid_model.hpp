@@ -60,8 +60,7 @@ struct FluidError : std::runtime_error {
 
 /// A fluid that can be sampled: `sample(x, t)`, const, noexcept, callable from many threads.
 ///
-/// What stays as it is stops here. `AdvancingFluid` refines it. Fluids that feel the solids will refine that:
-/// solids in before `advance`, loads out after it.
+/// What stays as it is stops here. `AdvancingFluid` refines it, `ResolvedFluid` that: bodies in, loads out.
 // clang-format off
 template <class F>
 concept FluidModel = Law<F> && requires(const F& fluid, const Vec3& x) {
