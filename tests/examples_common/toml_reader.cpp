@@ -102,6 +102,19 @@ TEST_CASE("a wrong type names line, key, what is wanted and what was found") {
     CHECK(message_of([&] { nan.number("a", {.unit = "m"}); }) == "nan.toml:1:5: a must be finite, got nan m");
 }
 
+TEST_CASE("a number outside its bounds names them, the unit and the remedy") {
+    TomlReader in = reader({"water.slope=2"});
+    const Key<Real> about{.unit = "m", .least = 0.2, .most = 5, .remedy = "give metres"};
+    CHECK(message_of([&] { in.number("water.depth", about); }) ==
+          "quick.toml:2:9: water.depth must be from 0.2 to 5, got 0.16 m; give metres");
+    CHECK(in.number("water.slope", about) == 2);
+    CHECK(message_of([&] { in.numbers("water.levels", {.unit = "m", .least = 0, .most = 2}); }) ==
+          "quick.toml:6:14: water.levels[1] must be from 0 to 2, got 2.5 m");
+    CHECK(in.overridden("water.slope"));
+    CHECK(!in.overridden("water.depth"));
+    CHECK(!in.overridden("air.depth"));
+}
+
 TEST_CASE("a key that nobody asked for is an error, with the nearest known key") {
     const std::string typos =
         "[water]\ndepht = 0.16\nslope = 1\n[wear]\n[extra]\nz = 1\n[[stones]]\nsize = 1\ndiametre = 2\n";
@@ -118,7 +131,11 @@ TEST_CASE("a key that nobody asked for is an error, with the nearest known key")
           "quick.toml:6:1: unknown key extra.z\n"
           "quick.toml:9:1: unknown key stones[0].diametre; did you mean stones[0].diameter?");
     in.allow("extra");
-    CHECK(!has(message_of([&] { in.reject_unknown(); }), "extra"));
+    CHECK(!has(message_of([&] { in.reject_unknown(); }), "unknown key extra"));
+    TomlReader near = reader({"water.lvels=1"});  // a key that is allowed is known, too
+    for (const char* key : {"water.levels", "stones"}) near.allow(key);
+    CHECK(has(message_of([&] { near.reject_unknown(); }),
+              "unknown key water.lvels; did you mean water.levels?"));
 
     TomlReader good = reader();
     for (const char* key : {"water", "stones", "stones[0]", "stones[1]"}) good.allow(key);
