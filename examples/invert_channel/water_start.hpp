@@ -61,7 +61,7 @@ inline void check_cells(const ChannelConfig& c) {
     const auto [length, width, height] = start.box(c.invert);
     const Real columns = length * width / square(c.fluid.spacing);
     const Real cells = shallow ? columns : columns * height / c.fluid.spacing;
-    constexpr Real most = 1e8;  // some 180 GB
+    constexpr Real most = 1e8;  // some 300 GB
     require(cells <= most,
             {"fluid.spacing of " + to_text(c.fluid.spacing) + " m: cells", "at most " + to_text(most), "",
              "take larger cells or a shorter channel"},
