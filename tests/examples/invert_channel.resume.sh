@@ -24,9 +24,12 @@ same_results() { # same_results WHAT FOLDER FOLDER
 # Some 5 s of wall time of one core.
 base=(--set channel.length=6 --set run.end_time=2.5 --set contact.stiffness=2e7 --set compare.gauge=3 --set compare.from=1 --set compare.to=5)
 every=0.003  # min: 0.18 s
+now_ms() { echo $(($(date +%s%N) / 1000000)); }
+began=$(now_ms)
 "$program" "${base[@]}" --threads 1 --out whole > whole.log || fail "the run that is left alone: $(cat whole.log)"
+took=$(($(now_ms) - began))
 
-# --- kill -9 at random moments; a run that comes to its end before all of them is compared, and begun anew
+# --- kill -9 at random moments, after a twentieth to a fifth of the whole run's time; a run that comes to its end before all of them is compared, and begun anew
 go_on() { # to the end
     "$program" "${base[@]}" --threads 2 --set run.checkpoint_every=$every --out killed "${resume[@]}" > killed.log 2>&1 || fail "the run that goes on fails: $(cat killed.log)"
 }
@@ -41,7 +44,8 @@ resumed=0
 for ((kill = 0; kill < kills;)); do
     "$program" "${base[@]}" --threads $((1 + kill % 2)) --set run.checkpoint_every=$every --out killed "${resume[@]}" > killed.log 2>&1 &
     pid=$!
-    sleep "0.$((RANDOM % 4 + 1))$((RANDOM % 10))"
+    ms=$((took * (5 + RANDOM % 16) / 100))
+    sleep "$((ms / 1000)).$(printf '%03d' $((ms % 1000)))"
     if kill -9 $pid 2> /dev/null; then
         kill=$((kill + 1))
         wait $pid 2> /dev/null || true
@@ -61,7 +65,7 @@ pid=$!
 sleep 2.5
 kill -9 $pid || fail "the run is too short for this test"
 wait $pid 2> /dev/null || true
-age=$(($(date +%s%N) / 1000000 - $(date -r young.checkpoint.h5 +%s%N) / 1000000))
+age=$(($(now_ms) - $(date -r young.checkpoint.h5 +%s%N) / 1000000))
 [ $age -lt 1000 ] || fail "the last checkpoint is $age ms old, $every min are allowed"
 
 # --- signals: results so far, a checkpoint, and on from there
