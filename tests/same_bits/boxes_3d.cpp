@@ -18,7 +18,7 @@ Numbers cavity(const Turbulence& turbulence, int along = 14) {
     };
     GridFluid<3, FullBox, Scheme, State, Turbulence> flow(params, turbulence);
     flow.open_energy_account();
-    flow.advance(0.6);
+    flow.advance(1.5);
     return state_of_water(flow).with({"fastest water", "water viscous", "water numerical"});
 }
 

@@ -19,7 +19,7 @@ Numbers in_box() {
     const Clump gravel =
         make_gravel({.size = 0.035, .elongation = 0.7, .flatness = 0.6, .max_spheres = 16, .seed = 4});
     for (std::size_t n = 0; n < scene.stones.size(); n += 4) scene.stones[n].clump = gravel;
-    scene.add_fixed(make_stone(StoneShape::angular, 0.04), {0.1, 0.09, -0.003});
+    scene.add_fixed(make_stone(StoneShape::angular, 0.04), {0.064, 0.066, -0.01});
     auto sim = simulate(scene).contact(law);
     sim.run({.end_time = 0.12});
     return state_of(sim).with({"lost_normal", "lost_sliding"});

@@ -10,7 +10,7 @@ namespace {
 template <class Surface, class Solids>
 Numbers run() {
     return fall_in(GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>(stone_tank<Surface>()),
-                   stones_above_floor(0), 0.1)
+                   stones_above_floor(0), 0.2)
         .with({"flow_work"});
 }
 

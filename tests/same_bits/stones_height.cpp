@@ -16,19 +16,19 @@ Flow tank(MonolithicSolids<>::Params solids, int along = 14) {
 
 const Register resolved{
     "stones.height_resolved",
-    [] { return fall_in(tank({.resolved_from = 0}), stones_above_floor(0), 0.12).with({"flow_work"}); }};
+    [] { return fall_in(tank({.resolved_from = 0}), stones_above_floor(0), 0.25).with({"flow_work"}); }};
 const Register by_size{"stones.height_by_size", [] {
-                           return fall_in(tank({.resolved_from = 3}), stones_above_floor(8), 0.12)
+                           return fall_in(tank({.resolved_from = 3}), stones_above_floor(8), 0.25)
                                .with({"flow_work", "averaged"});
                        }};
 const Register averaged{"stones.height_averaged", [] {
                             return fall_in(tank({.resolved_from = 100, .lift = 0.5}), stones_above_floor(8),
-                                           0.12)
+                                           0.25)
                                 .with({"flow_work", "averaged"});
                         }};
 const Register many{
     "stones.height_many", [] {
-        return fall_in(tank({.resolved_from = 3}, 70), many_stones(), 0.06).with({"flow_work", "averaged"});
+        return fall_in(tank({.resolved_from = 3}, 70), many_stones(), 0.12).with({"flow_work", "averaged"});
     }};
 
 }  // namespace

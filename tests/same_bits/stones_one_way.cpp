@@ -9,7 +9,7 @@ namespace {
 
 template <class Drag>
 Numbers run(const Drag& drag) {
-    return fall_in(GridFluid<3>(stone_tank<FreeSurface>()), stones_above_floor(8), 0.12, drag)
+    return fall_in(GridFluid<3>(stone_tank<FreeSurface>()), stones_above_floor(8), 0.3, drag)
         .with({"drag_input", "buoyancy_work"});
 }
 

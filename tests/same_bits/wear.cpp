@@ -16,8 +16,11 @@ namespace {
 const LinearSpring law{{.stiffness = 1e6, .restitution = 0.5, .friction = 0.4}};
 constexpr Real d = 0.02;
 
+/// In space that repeats itself: stones come back to what they have worn.
 abrade::Scene under_stones(ConcreteBlock concrete) {
     abrade::Scene scene;
+    scene.periodic_along = {true, true, false};
+    scene.bounds.low.head<2>().setConstant(-0.1), scene.bounds.high.head<2>().setConstant(0.1);
     scene.concrete = std::move(concrete);
     scene.add_stone(make_stone(StoneShape::angular, 0.05),
                     {.position = {-0.05, 0.01, 0.04}, .velocity = {1, 0, -2}});
@@ -25,12 +28,13 @@ abrade::Scene under_stones(ConcreteBlock concrete) {
     scene.add_sphere(0.02, {.position = {0.05, 0.04, 0.05}, .velocity = {-2, 0.4, -2}});
     return scene;
 }
-Numbers wear_down(ConcreteBlock concrete, Real acceleration, std::initializer_list<std::string_view> shown) {
+Numbers wear_down(ConcreteBlock concrete, Real acceleration, std::initializer_list<std::string_view> shown,
+                  Real end = 0.4) {
     auto sim = simulate(under_stones(std::move(concrete)))
                    .contact(law)
                    .bond(MohrCoulomb{{.tensile = 2.7e6, .stiffness = 4e6}})
                    .wear(SubParticleAbrasion{{.acceleration = acceleration}});
-    sim.run({.end_time = 0.15});
+    sim.run({.end_time = end});
     return state_of(sim).with({"worn", "lost_sliding"}).with(shown);
 }
 Lattice slab() { return flat_lattice(0.2, 0.2, {.sphere_diameter = d, .layers = 4}); }
@@ -63,8 +67,8 @@ const Register rigid{
     }};
 const Register dynamic{"wear.dynamic", [] {
                            return wear_down(
-                               {.lattice = flat_lattice(0.1, 0.1, {.sphere_diameter = d, .layers = 3})}, 2e3,
-                               {"bonds broken"});
+                               {.lattice = flat_lattice(0.2, 0.2, {.sphere_diameter = d, .layers = 3})}, 2e3,
+                               {"bonds broken"}, 0.1);
                        }};
 
 /// A row that sticks out of a wall: equilibrium lets spheres go, together with their neighbours.
