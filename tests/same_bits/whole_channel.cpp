@@ -53,10 +53,10 @@ Numbers run() {
     scene.add_wall({0, -0.5, 0}, {0, 1, 0}).add_wall({0, 0.5, 0}, {0, -1, 0});
     scene.feed = FeedParams{.volume_rate = 0.02,
                             .classes = {{0.06, 0.6, StoneShape::angular}, {0.14, 0.4, StoneShape::ellipsoid}},
-                            .region = {{0.1, -0.3, 0.01}, {0.4, 0.3, 0.2}},
+                            .region = {{0.1, -0.3, 0.01}, {0.35, 0.3, 0.2}},
                             .bed = [](Real, Real y) { return invert.bed_height(y); },
                             .velocity = {2, 0, -1}};
-    scene.gauge = 0.5, scene.outlet = 0.8;
+    scene.gauge = 0.45, scene.outlet = 0.65;
     Flow flow = water();
     flow.open_energy_account();
     auto sim = simulate(scene)
@@ -64,7 +64,7 @@ Numbers run() {
                    .bond(MohrCoulomb{{.tensile = 2.7e6, .stiffness = 4e6}})
                    .wear(SubParticleAbrasion{{.acceleration = 1e4}})
                    .fluid(std::move(flow));
-    sim.run({.end_time = 0.3});
+    sim.run({.end_time = 0.5});
     return state_of(sim).with({"fed", "passed", "left_kinetic", "worn", "flow_work", "eddies", "averaged"});
 }
 
