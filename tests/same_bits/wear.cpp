@@ -67,8 +67,8 @@ const Register rigid{
     }};
 const Register dynamic{"wear.dynamic", [] {
                            return wear_down(
-                               {.lattice = flat_lattice(0.2, 0.2, {.sphere_diameter = d, .layers = 3})}, 2e3,
-                               {"bonds broken"}, 0.1);
+                               {.lattice = flat_lattice(0.2, 0.2, {.sphere_diameter = d, .layers = 3})}, 6e3,
+                               {"gone"}, 0.1);
                        }};
 
 /// A row that sticks out of a wall: equilibrium lets spheres go, together with their neighbours.

@@ -65,7 +65,7 @@ Numbers run() {
                    .wear(SubParticleAbrasion{{.acceleration = 1e4}})
                    .fluid(std::move(flow));
     sim.run({.end_time = 0.5});
-    return state_of(sim).with({"fed", "passed", "left_kinetic", "worn", "flow_work", "eddies", "averaged"});
+    return state_of(sim).with({"fed", "worn", "flow_work", "eddies"});
 }
 
 const Register channel{"whole.channel", run};
