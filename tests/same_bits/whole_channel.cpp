@@ -62,10 +62,10 @@ Numbers run() {
     auto sim = simulate(scene)
                    .contact(LinearHysteretic{{.stiffness = 3e5, .restitution = 0.6, .friction = 0.5}})
                    .bond(MohrCoulomb{{.tensile = 2.7e6, .stiffness = 4e6}})
-                   .wear(SubParticleAbrasion{{.acceleration = 1e4}})
+                   .wear(SubParticleAbrasion{{.acceleration = 1e3}})
                    .fluid(std::move(flow));
     sim.run({.end_time = 0.5});
-    return state_of(sim).with({"fed", "worn", "flow_work", "eddies"});
+    return state_of(sim).with({"fed", "passed", "left_kinetic", "worn", "flow_work", "eddies", "averaged"});
 }
 
 const Register channel{"whole.channel", run};
