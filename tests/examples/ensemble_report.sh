@@ -65,6 +65,7 @@ grep -q 'the same command goes on' broken_off.log || fail "interrupted: no word 
 before="$(done_runs broken_off)"
 [ "$before" -lt 3 ] || fail "nothing was left to be interrupted"
 first="$(sed -n 2p broken_off/jobs.log)"
+flock -w 20 broken_off/.lock true || fail "a run goes on after the ensemble was interrupted"  # one may still draw
 run broken_off --seeds 3 --jobs 1
 [ $code -eq 0 ] && [ "$(done_runs broken_off)" -eq 3 ] || fail "gone on: exit code $code: $(cat broken_off.log)"
 grep -qxF "$first" broken_off/jobs.log || fail "a run that was done is run again"
