@@ -12,7 +12,7 @@ namespace {
 template <ContactLaw Law>
 struct Pairs {
     static constexpr std::size_t count = 64 * pack_lanes;
-    SphereLines lines;
+    HotArrays lines;
     std::vector<ContactPack<Law>> packs{count / pack_lanes};
 
     Pairs() {

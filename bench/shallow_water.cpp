@@ -2,7 +2,7 @@
 // friction and without, from what fits a cache to what does not, and where most of the plane is dry. And what
 // a stone's sample costs.
 
-#include <abrade/fluid/shallow_water.hpp>
+#include <abrade/fluid/shallow_water/shallow_water.hpp>
 
 #include <benchmark/benchmark.h>
 

@@ -1,8 +1,8 @@
 // What a step of volume of fluid costs, per wet cell: a dam breaking, a sloshing tank, a drop in a large dry
 // box; and its parts: the plane in a cell, forth and back.
 
-#include <abrade/fluid/fill_below.hpp>
-#include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/vof/fill_below.hpp>
+#include <abrade/fluid/vof/volume_of_fluid.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -20,7 +20,7 @@ struct Tank {
     Tank(int times, const auto& distance)
         : grid({.cells = {80 * times, 40 * times, 80 * times},
                 .spacing = Point<3>::Constant(1.0 / (80 * times))}),
-          water(grid, Sides<3>::all(Side::wall)), forth(face_field<3>(grid.layout())) {
+          water(grid, BoundaryConditions<3>::all(Boundary::wall)), forth(face_field<3>(grid.layout())) {
         fill_below<3>(water.fraction(), grid, distance, 2);
         water.prepare();
         const Real h = 1.0 / (80 * times);
@@ -94,7 +94,7 @@ void planes_in_cells(benchmark::State& state) {
         if constexpr (back)
             benchmark::DoNotOptimize(plane_distance<3>(normal, fraction));
         else
-            benchmark::DoNotOptimize(liquid_fraction<3>(normal, distance));
+            benchmark::DoNotOptimize(fraction_below<3>(normal, distance));
     }
     state.counters["s/plane"] = benchmark::Counter(static_cast<double>(state.iterations()) * pack_lanes,
                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);

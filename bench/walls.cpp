@@ -1,6 +1,6 @@
 // What walls on a grid cost: built, and renewed about one sphere; by cell and by cell that a wall cuts.
 
-#include <abrade/fluid/walls.hpp>
+#include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -23,19 +23,19 @@ auto bed_of_spheres(Real length) {
     return SpherePacking(lattice);
 }
 
-void count(benchmark::State& state, const Walls<3>& walls) {
+void count(benchmark::State& state, const EmbeddedBoundary<3>& walls) {
     const auto per = [&](std::size_t things) {
         return benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(things),
                                   benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
     };
     state.counters["s/cell"] = per(static_cast<std::size_t>(walls.grid().layout().cell_count()));
-    state.counters["s/wall_cell"] = per(walls.wall_cells().size());
-    state.counters["wall_cells"] = static_cast<double>(walls.wall_cells().size());
+    state.counters["s/wall_cell"] = per(walls.cut_cells().size());
+    state.counters["wall_cells"] = static_cast<double>(walls.cut_cells().size());
 }
 
 void build(benchmark::State& state, const Grid<3>& grid, const auto& shape) {
-    const Walls<3> walls(grid, shape);
-    for (auto _ : state) benchmark::DoNotOptimize(Walls<3>(grid, shape).open_cells());
+    const EmbeddedBoundary<3> walls(grid, shape);
+    for (auto _ : state) benchmark::DoNotOptimize(EmbeddedBoundary<3>(grid, shape).open_cells());
     count(state, walls);
 }
 
@@ -59,14 +59,14 @@ BENCHMARK(walls_spheres)->Unit(benchmark::kMillisecond);
 void walls_update_one_sphere(benchmark::State& state) {
     SpherePacking bed = bed_of_spheres(2);
     const Grid<3> grid = channel_grid(2, 0.01);
-    Walls<3> walls(grid, bed);
+    EmbeddedBoundary<3> walls(grid, bed);
     const std::size_t worn = bed.size() / 2;
     const auto [centre, radius] = bed.sphere(worn);
     for (auto _ : state) {
         bed.set_radius(worn, bed.sphere(worn).radius == radius ? 0.9 * radius : radius);
         walls.update(bed, centre - Vec3::Constant(radius), centre + Vec3::Constant(radius));
     }
-    state.counters["wall_cells"] = static_cast<double>(walls.wall_cells().size());
+    state.counters["wall_cells"] = static_cast<double>(walls.cut_cells().size());
 }
 BENCHMARK(walls_update_one_sphere)->Unit(benchmark::kMillisecond);
 

@@ -20,7 +20,7 @@ struct Cavity {
 
     explicit Cavity(int n)
         : fluid({.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(1.0 / n)},
-                 .side_velocity = [](const Vec3& x, Real) { return Vec3(x.z() >= 1 ? 1 : 0, 0, 0); },
+                 .boundary_velocity = [](const Vec3& x, Real) { return Vec3(x.z() >= 1 ? 1 : 0, 0, 0); },
                  .density = 1,
                  .viscosity = 1e-3}),
           dt(0.32 / n) {}
@@ -33,7 +33,7 @@ struct Channel {
 
     explicit Channel(int n)
         : fluid({.grid = {.cells = {4 * n, n, n}, .spacing = Vec3::Constant(1.0 / n)},
-                 .sides = Sides<3>::all(Side::slip),
+                 .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                  .water =
                      [](const Vec3& x) {
                          return 0.5 + 0.1 * std::cos(pi * x.x() / 4) + 0.02 * std::cos(pi * x.y()) - x.z();
@@ -49,7 +49,7 @@ struct Reach {
 
     explicit Reach(int n)
         : fluid({.grid = {.cells = {n, 50, 26}, .spacing = Vec3::Constant(0.02)},
-                 .sides = Sides<3>::all(Side::slip),
+                 .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                  .water =
                      [](const Vec3& x) {
                          return 0.25 + 0.03 * std::cos(pi * x.x()) + 0.01 * std::cos(pi * x.y()) - x.z();

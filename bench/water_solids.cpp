@@ -3,8 +3,8 @@
 
 #include "../tests/verification/channel_water.hpp"
 
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
 
 #include <benchmark/benchmark.h>
@@ -19,7 +19,7 @@ using namespace abrade;
 namespace {
 
 template <class Solids>
-using Water = GridFluid<3, HeightSurface, Limited, Real, MixingLength, Solids>;
+using Water = GridFluid<3, HeightSurface, Koren, Real, MixingLength, Solids>;
 using Stones = MonolithicSolids<>;
 
 /// The five classes by equal volumes, in the validation's shapes, on the bed and up to a few diameters above

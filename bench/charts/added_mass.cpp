@@ -4,7 +4,7 @@
 #include "../../tests/coupling/resolved_bodies.hpp"
 #include "panels.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <algorithm>
 #include <array>
@@ -28,7 +28,7 @@ template <class Solids>
 Real released(Real ratio, Real step, const typename Solids::Params& params) {
     const Real dt = step * std::sqrt(diameter / g);
     WaterAmong<Solids> water({.grid = {.cells = {24, 24, 24}, .spacing = Vec3::Constant(h)},
-                              .sides = Sides<3>::all(Side::slip),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .gravity = {0, 0, -g},
                               .density = 1000,
                               .viscosity = 1e-6,

@@ -3,7 +3,7 @@
 // and what it costs to compute. With closed forms for the first bond to break.
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 

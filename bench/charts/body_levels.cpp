@@ -9,7 +9,7 @@
 #include "../../tests/verification/settling_sphere.hpp"
 #include "panels.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <cstdlib>
 #include <ctime>

@@ -2,10 +2,10 @@
 // A collision as continuous-time equations, piecewise smooth, integrated from event to event: what the laws
 // mean in the limit of small steps, written down a second time and without their code.
 
-#include <abrade/dem/collision.hpp>
-#include <abrade/dem/hertz_mindlin.hpp>
-#include <abrade/dem/linear_spring.hpp>
-#include <abrade/dem/odeint_steppers.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
+#include <abrade/dem/time/collision.hpp>
+#include <abrade/dem/time/odeint_steppers.hpp>
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 // rolling after the container is taken away.
 
 #include "../../tests/verification/column_collapse.hpp"
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 #include "../../examples/common/charts.hpp"
 
 #include <fstream>

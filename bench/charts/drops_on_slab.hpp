@@ -3,7 +3,7 @@
 // each level of concrete. The results are kept in a table, so that an interrupted chart goes on where it was.
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "../../examples/common/charts.hpp"
 #include "../../tests/verification/reference_table.hpp"
 
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <iostream>

@@ -3,7 +3,7 @@
 
 #include "stable_limit.hpp"
 
-#include <abrade/dem/odeint_steppers.hpp>
+#include <abrade/dem/time/odeint_steppers.hpp>
 
 namespace abrade::charts {
 

@@ -1,7 +1,7 @@
 #pragma once
 // The largest stable step, measured: small disturbances of bodies that press each other just grow or do not.
 
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
 #include <abrade/sim/simulation.hpp>
 

@@ -3,7 +3,7 @@
 // the answer depends on.
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 

@@ -114,7 +114,7 @@ void draw_vortices(const fs::path& folder, int most_cells) {
            "square), share that friction takes, steps\n";
     for (int cells = 64; cells <= most_cells; cells *= 2) {
         add_decay<Central>(chart, cells);
-        add_decay<Limited>(chart, cells);
+        add_decay<Koren>(chart, cells);
     }
     Curve exact{.title = "Dairay et al.", .x = {}, .y = {}, .style = CurveStyle::dashed};
     for (const ReferenceRow& row : reference_table("flu05_taylor_green_3D_Re1600_DNS.csv"))

@@ -6,7 +6,7 @@
 #include "results.hpp"
 #include "travel.hpp"
 
-#include <abrade/dem/particles.hpp>
+#include <abrade/dem/store/particles.hpp>
 #include <abrade/wear/concrete.hpp>
 
 #include <algorithm>

@@ -25,7 +25,7 @@ inline Scene make_scene(const ChannelConfig& c) {
     scene.add_wall({0, 0, 0}, {1, 0, 0});  // for stones alone: they pile up there without water
     scene.feed = c.feed;
     scene.outlet = c.invert.length;
-    scene.gauge = c.comparison.gauge;
+    scene.flow_counter = c.comparison.gauge;
     // Stones may bounce high above the water, but not through the concrete.
     const Real floor = -c.lattice.layers * c.lattice.sphere_diameter;
     scene.bounds = {{-1, -1.2 * half, floor}, {c.invert.length + 1, 1.2 * half, ChannelConfig::ceiling}};

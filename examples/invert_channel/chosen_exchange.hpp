@@ -1,8 +1,8 @@
 #pragma once
 // How water and stones exchange momentum, chosen when the program runs: one engine is compiled for all ways.
 
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <span>
 #include <string_view>
@@ -61,9 +61,9 @@ public:
     void keep_wet(const Poisson<3>& m) {
         visit(*this, [&](auto& one) { one.keep_wet(m); });
     }
-    void place(const Grid<3>& grid, const Sides<3>& sides, std::span<const FlowBody> bodies,
-               const FaceField<3>* open_area, Real density) {
-        visit(*this, [&](auto& one) { one.place(grid, sides, bodies, open_area, density); });
+    void place(const Grid<3>& grid, const BoundaryConditions<3>& boundaries, std::span<const FlowBody> bodies,
+               const FaceField<3>* aperture, Real density) {
+        visit(*this, [&](auto& one) { one.place(grid, boundaries, bodies, aperture, density); });
     }
     void close(Poisson<3>& m, std::span<const OpenFace> surface) {
         visit(*this, [&](auto& one) { one.close(m, surface); });

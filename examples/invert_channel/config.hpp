@@ -5,12 +5,12 @@
 #include "../common/parameter.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/coupling/drag.hpp>
-#include <abrade/dem/elastic_plastic_hertz.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/coupling/drag/drag.hpp>
+#include <abrade/dem/laws/elastic_plastic_hertz.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
-#include <abrade/sim/scene.hpp>
+#include <abrade/sim/scene/scene.hpp>
 
 #include <filesystem>
 #include <string>

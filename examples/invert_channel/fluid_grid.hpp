@@ -4,13 +4,13 @@
 
 #include "run_channel.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 namespace abrade::examples {
 
 /// Below a FreeSurface or a HeightSurface, among stones that it resolves or not.
 template <class Surface, class Solids = NoSolids>
-using ChannelFlow = GridFluid<3, Surface, Limited, Real, MixingLength, Solids>;
+using ChannelFlow = GridFluid<3, Surface, Koren, Real, MixingLength, Solids>;
 
 template <class Flow>
 Flow grid_channel(const ChannelConfig& c, auto solids) {
@@ -19,12 +19,12 @@ Flow grid_channel(const ChannelConfig& c, auto solids) {
     const auto [length, width, height] = start.box(c.invert);
     const CellNumber<3> count{cells_along(c, length), cells_along(c, width), cells_along(c, height)};
     const Point<3> size(c.invert.length / count[0], c.invert.width / count[1], c.fluid.spacing);
-    Sides<3> sides;
-    sides[0][1] = Side::outflow;
-    sides[2] = {Side::slip, Side::slip};
+    BoundaryConditions<3> boundaries;
+    boundaries[0][1] = Boundary::outflow;
+    boundaries[2] = {Boundary::free_slip, Boundary::free_slip};
     try {
         GridFluidParams<3> params{.grid = {.cells = count, .low = {0, -half, 0}, .spacing = size},
-                                  .sides = sides,
+                                  .boundaries = boundaries,
                                   .wall = InvertWall(c.invert),
                                   .wall_law = {WallLaw::Kind::logarithmic, roughness_of(c)},
                                   .gravity = c.invert.gravity(),
@@ -62,8 +62,8 @@ inline SectionOfCells section_of_cells(const auto& flow, int i) {
         bool wet = false;
         for (int k = 0; k < grid.cells(2); ++k) {
             const Offset c = grid.layout().at({i, j, k});
-            const Real part = flow.liquid().fraction()[c] * flow.walls()->open_volume()[c] * grid.size(1, j) *
-                              grid.size(2, k);
+            const Real part = flow.liquid().fraction()[c] * flow.walls()->open_fraction()[c] *
+                              grid.size(1, j) * grid.size(2, k);
             wet = wet || flow.liquid().fraction()[c] > 0.5;
             s.area += part;
             s.discharge += part * 0.5 * (flow.velocity()[0][c] + flow.velocity()[0][c + along]);
@@ -102,7 +102,7 @@ inline void look_at_the_end(const auto& flow, ChannelWater& water) {
             Real depth = 0;
             for (int k = 0; k < grid.cells(2); ++k) {
                 const Offset c = grid.layout().at({i, j, k});
-                depth += flow.liquid().fraction()[c] * flow.walls()->open_volume()[c] * grid.size(2, k);
+                depth += flow.liquid().fraction()[c] * flow.walls()->open_fraction()[c] * grid.size(2, k);
             }
             water.depth_map.push_back(depth);
         }

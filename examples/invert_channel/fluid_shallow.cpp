@@ -2,7 +2,7 @@
 
 #include "run_channel.hpp"
 
-#include <abrade/coupling/two_way_shallow.hpp>
+#include <abrade/coupling/averaging/two_way_shallow.hpp>
 
 namespace abrade::examples {
 
@@ -12,19 +12,19 @@ TwoWayShallow<> shallow_channel(const ChannelConfig& c) {
     const WaterStart start(c);
     const Real half = 0.5 * c.invert.width;
     try {
-        return TwoWayShallow<>{
-            {.low = {0, -half},
-             .high = {c.invert.length, half},
-             .cells = {cells_along(c, c.invert.length), cells_along(c, c.invert.width)},
-             .sides = {{{WaterSide::inflow(c.water.discharge, start.depth), WaterSide::outflow()},
-                        {WaterSide::wall(), WaterSide::wall()}}},
-             .bed = [invert = c.invert](Real, Real y) { return invert.bed_height(y); },
-             .gravity = c.invert.gravity(),
-             .manning = c.water.manning,
-             .density = c.water.density,
-             .viscosity = c.water.viscosity,
-             .start_time = -start.settle},
-            CliftGauvin{c.drag}};
+        return TwoWayShallow<>{{.low = {0, -half},
+                                .high = {c.invert.length, half},
+                                .cells = {cells_along(c, c.invert.length), cells_along(c, c.invert.width)},
+                                .boundaries = {{{ShallowBoundary::inflow(c.water.discharge, start.depth),
+                                                 ShallowBoundary::outflow()},
+                                                {ShallowBoundary::wall(), ShallowBoundary::wall()}}},
+                                .bed = [invert = c.invert](Real, Real y) { return invert.bed_height(y); },
+                                .gravity = c.invert.gravity(),
+                                .manning = c.water.manning,
+                                .density = c.water.density,
+                                .viscosity = c.water.viscosity,
+                                .start_time = -start.settle},
+                               CliftGauvin{c.drag}};
     } catch (const InputError& error) {
         throw InputError(c.source + ", [fluid]: " + error.what());
     }

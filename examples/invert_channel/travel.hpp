@@ -6,7 +6,7 @@
 
 #include "../common/saltation.hpp"
 
-#include <abrade/dem/particles.hpp>
+#include <abrade/dem/store/particles.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "config.hpp"
 
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/parallel_bond.hpp>
 #include <abrade/bond/twist_resistance.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 
 #include <doctest/doctest.h>
 
@@ -97,16 +97,16 @@ struct History {
                 .length = length,
                 .effective_mass = mass,
                 .time_step = dt,
-                .travel = dt * velocity(t - 0.5 * dt),
+                .displacement = dt * velocity(t - 0.5 * dt),
                 .spin = bent.rate(t),
-                .turn = dt * bent.rate(t - 0.5 * dt),
+                .rotation = dt * bent.rate(t - 0.5 * dt),
                 .effective_inertia = inertia};
     }
 };
 
 /// What came of one history.
 struct Outcome {
-    Fate fate = Fate::intact;
+    FailureMode failure = FailureMode::intact;
     Real put_in = 0;    ///< by the work of both spheres, and at the start [J]
     Real moved = 0;     ///< all works, whatever their sign [J]
     Real stored = 0;    ///< in the end [J]
@@ -125,12 +125,12 @@ Outcome go_through(const Law& law, const History& history, int steps) {
         const Real t = n * dt;
         const BondKinematics now = history.at(t, n == 0 ? 0 : dt);
         const bool was_broken = memory.broken > 0;
-        const auto [load, next, fate] = law.respond(now, 1 - t / duration, memory);
+        const auto [load, next, failure] = law.respond(now, 1 - t / duration, memory);
         const bool is_broken = next.broken > 0;
         all.least =
             std::min({all.least, load.stored, load.lost_bond, load.lost_normal, load.lost_tangential});
-        all.sound &= is_broken == (was_broken || fate != Fate::intact);
-        all.sound &= !was_broken || (fate == Fate::intact && load.lost_bond == 0);
+        all.sound &= is_broken == (was_broken || failure != FailureMode::intact);
+        all.sound &= !was_broken || (failure == FailureMode::intact && load.lost_bond == 0);
         if (is_broken) {
             const Real push = load.force.dot(now.normal), across = (load.force - push * now.normal).norm();
             all.sound &= load.couple == Vec3::Zero() && push >= 0;
@@ -146,7 +146,7 @@ Outcome go_through(const Law& law, const History& history, int steps) {
         all.lost += lost;
         all.slid += load.lost_tangential;
         all.stored = load.stored;
-        if (fate != Fate::intact) all.fate = fate;
+        if (failure != FailureMode::intact) all.failure = failure;
         memory = next;
     }
     return all;
@@ -166,7 +166,8 @@ TEST_CASE_TEMPLATE(
         const Law law = bond_law<Law>(n % 2 ? 0.5 * u(random) : 0);
         const History history(random, std::pow(10, 1.5 * u(random) - 1));
         const Outcome seen = go_through(law, history, 4000), finer = go_through(law, history, 16'000);
-        tension += seen.fate == Fate::tension, shear += seen.fate == Fate::shear, slid += seen.slid > 0;
+        tension += seen.failure == FailureMode::tension, shear += seen.failure == FailureMode::shear,
+            slid += seen.slid > 0;
         const auto missing = [](const Outcome& o) { return (o.put_in - o.stored - o.lost) / o.moved; };
         coarse += std::abs(missing(seen)) / histories, fine += std::abs(missing(finer)) / histories;
         for (const Outcome* each : {&seen, &finer}) {
@@ -210,9 +211,9 @@ TEST_CASE_TEMPLATE("random jumps, as no engine makes them: no loss is negative",
                                              .length = length,
                                              .effective_mass = mass,
                                              .time_step = dt,
-                                             .travel = any(size),
+                                             .displacement = any(size),
                                              .spin = any(size / dt / radius),
-                                             .turn = any(size / radius),
+                                             .rotation = any(size / radius),
                                              .effective_inertia = inertia},
                                             1 - step / 2000., memory);
             const BondLoad& load = answer.load;
@@ -252,7 +253,7 @@ TEST_CASE_TEMPLATE("a broken bond of no strength is a contact with Coulomb's fri
                                      .length = length,
                                      .effective_mass = mass,
                                      .time_step = 1e-6,
-                                     .travel = any(1e-8)};
+                                     .displacement = any(1e-8)};
             typename Law::Memory memory{};
             memory.broken = 1, memory.spring = any(2e-6);
             const auto answer = law.respond(now, 0, memory);
@@ -269,7 +270,7 @@ TEST_CASE_TEMPLATE("a broken bond of no strength is a contact with Coulomb's fri
                                                                       .inverse_mass = 1 / mass,
                                                                       .curvature = 2 / radius,
                                                                       .time_step = now.time_step,
-                                                                      .travel = now.travel},
+                                                                      .displacement = now.displacement},
                                               {memory.spring});
             const Real size = twin.load.force.norm() + 1e-6;
             REQUIRE((answer.load.force - twin.load.force).norm() < 1e-9 * size);
@@ -290,7 +291,7 @@ TEST_CASE_TEMPLATE("where no strength is left, the first pull breaks a bond; pre
                    Law, MohrCoulomb, ParallelBond) {
     const Law law = bond_law<Law>(0);
     const BondRigidity k = law.rigidity(radius, length);
-    const auto fate = [&](Real compression, Real shear) {
+    const auto failure = [&](Real compression, Real shear) {
         typename Law::Memory memory{};
         memory.spring = Vec3(shear, 0, 0);
         return law
@@ -301,10 +302,10 @@ TEST_CASE_TEMPLATE("where no strength is left, the first pull breaks a bond; pre
                       .time_step = 1e-6,
                       .effective_inertia = inertia},
                      0, memory)
-            .fate;
+            .failure;
     };
     const Real pressed = 1e-7, line = k.normal * pressed * std::tan(radians(friction_angle)) / k.tangential;
-    CHECK(fate(-1e-15, 0) == Fate::tension);
-    CHECK(fate(pressed, 0.999 * line) == Fate::intact);
-    CHECK(fate(pressed, 1.001 * line) == Fate::shear);
+    CHECK(failure(-1e-15, 0) == FailureMode::tension);
+    CHECK(failure(pressed, 0.999 * line) == FailureMode::intact);
+    CHECK(failure(pressed, 1.001 * line) == FailureMode::shear);
 }

@@ -32,7 +32,7 @@ BondKinematics at(Real compression, const Vec3& velocity = Vec3::Zero()) {
             .radius = radius,
             .effective_mass = 0.005,
             .time_step = dt,
-            .travel = dt * velocity};
+            .displacement = dt * velocity};
 }
 
 /// Pulls in small steps; the force in the last step before it breaks.
@@ -41,8 +41,8 @@ Real tension_at_break(const MohrCoulomb& bond, Real left) {
     Real last = 0;
     for (Real stretch = 0;; stretch += 1e-9) {
         const auto answer = bond.respond(at(-stretch), left, memory);
-        if (answer.fate != Fate::intact) {
-            CHECK(answer.fate == Fate::tension);
+        if (answer.failure != FailureMode::intact) {
+            CHECK(answer.failure == FailureMode::tension);
             CHECK(answer.load.force == Vec3::Zero());
             CHECK(answer.memory.broken);
             return last;
@@ -58,8 +58,8 @@ Real shear_at_break(const MohrCoulomb& bond, Real left, Real compression) {
     const Real speed = 1e-3;  // 1e-9 m a step
     for (Real last = 0;;) {
         const auto answer = bond.respond(at(compression, {speed, 0, 0}), left, memory);
-        if (answer.fate != Fate::intact) {
-            CHECK(answer.fate == Fate::shear);
+        if (answer.failure != FailureMode::intact) {
+            CHECK(answer.failure == FailureMode::shear);
             return last;
         }
         last = answer.load.force.head<2>().norm();
@@ -79,7 +79,7 @@ TEST_CASE("an intact bond is a spring in both directions, in tension too") {
     const auto sheared = law().respond(at(0), 1, {Vec3(1e-6, 0, 0), false});
     CHECK((sheared.load.force + Vec3(80, 0, 0)).norm() < 1e-10);
     for (const auto& answer : {push, pull, sheared}) {
-        CHECK(answer.fate == Fate::intact);
+        CHECK(answer.failure == FailureMode::intact);
         CHECK(answer.load.lost_bond + answer.load.lost_normal + answer.load.lost_tangential == 0);
     }
 }
@@ -127,9 +127,9 @@ TEST_CASE("breaking under compression changes no normal force and makes no energ
                           false};
         const auto intact = bond.respond(now, 1e9, held);  // strong enough for anything
         const auto broken = bond.respond(now, u(random), held);
-        if (broken.fate == Fate::intact) continue;
+        if (broken.failure == FailureMode::intact) continue;
         ++broke;
-        REQUIRE(broken.fate == Fate::shear);
+        REQUIRE(broken.failure == FailureMode::shear);
         if (intact.load.force.z() > 0)
             REQUIRE(broken.load.force.z() == doctest::Approx(intact.load.force.z()).epsilon(1e-12));
         else
@@ -152,12 +152,12 @@ TEST_CASE("breaking in tension gives up all it stored, in the step it breaks") {
     const Memory held{Vec3(1e-6, 0, 0), false};
     const Real stretch = 3e-6;
     const auto broken = law().respond(at(-stretch), 1, held);
-    CHECK(broken.fate == Fate::tension);
+    CHECK(broken.failure == FailureMode::tension);
     CHECK(broken.load.stored == 0);
     CHECK(broken.load.lost_bond == doctest::Approx(0.5 * kn * stretch * stretch + 0.5 * ks * 1e-12).scale(0));
     // After that it is gone for good: no force, no loss, no second fate.
     const auto after = law().respond(at(-stretch), 1, broken.memory);
-    CHECK(after.fate == Fate::intact);
+    CHECK(after.failure == FailureMode::intact);
     CHECK(after.memory.broken);
     CHECK(after.load.force == Vec3::Zero());
     CHECK(after.load.lost_bond + after.load.lost_normal + after.load.lost_tangential == 0);
@@ -175,7 +175,7 @@ TEST_CASE("a broken bond slides at f_n tan(phi), and pushes only") {
     CHECK(answer.load.force.x() == doctest::Approx(-fn * tan_phi).epsilon(1e-12));
     CHECK(answer.load.lost_tangential == doctest::Approx(fn * tan_phi * speed * dt).epsilon(1e-9).scale(0));
     CHECK(answer.load.lost_bond == 0);
-    CHECK(answer.fate == Fate::intact);  // a fate is told once
+    CHECK(answer.failure == FailureMode::intact);  // a fate is told once
 
     // Opening: no tension, the spring's energy is lost to sliding, once.
     const auto open = law().respond(at(-1e-7), 1, memory);
@@ -200,14 +200,14 @@ TEST_CASE("random histories: no loss is negative, intact or broken") {
             normal = (normal + 0.01 * Vec3(u(random), u(random), u(random))).normalized();
             BondKinematics now = at(depth * u(random), speed * Vec3(u(random), u(random), u(random)));
             now.normal = normal;
-            const auto [load, next, fate] = bond.respond(now, std::abs(u(random)), memory);
+            const auto [load, next, failure] = bond.respond(now, std::abs(u(random)), memory);
             REQUIRE(load.lost_bond >= 0);
             REQUIRE(load.lost_normal >= 0);
             REQUIRE(load.lost_tangential >= 0);
             REQUIRE(load.stored >= 0);
             REQUIRE(std::isfinite(load.force.norm() + load.lost_bond));
             REQUIRE((next.broken >= memory.broken));  // never heals
-            REQUIRE((fate == Fate::intact) == (next.broken == memory.broken));
+            REQUIRE((failure == FailureMode::intact) == (next.broken == memory.broken));
             memory = next;
         }
         broken += memory.broken > 0;

@@ -101,7 +101,7 @@ TEST_CASE("a broken link cuts off what hangs on it, and only that") {
     CHECK(sums.broken_shear == 0);
     CHECK(sums.lost_bond == doctest::Approx(0.5 * 4e8 * 1e-8));
     CHECK(rig.broken({2, 3}));
-    CHECK(rig.network.take_loose() == std::vector<Ties::Piece>{{3, 4}});
+    CHECK(rig.network.take_loose() == std::vector<BondGraph::Component>{{3, 4}});
     CHECK(rig.network.take_loose().empty());  // told once
 }
 
@@ -111,7 +111,7 @@ TEST_CASE("a way around keeps a body tied") {
     rig.respond();
     CHECK(rig.broken({1, 2}));
     CHECK(rig.broken({2, 3}));
-    CHECK(rig.network.take_loose() == std::vector<Ties::Piece>{{2}});
+    CHECK(rig.network.take_loose() == std::vector<BondGraph::Component>{{2}});
 }
 
 TEST_CASE(

@@ -57,9 +57,9 @@ TEST_CASE_TEMPLATE("a pack of bonds answers as its bonds do one by one", Law, Mo
                  .length = 0.02,
                  .effective_mass = 0.005,
                  .time_step = 1e-6,
-                 .travel = any_vector(1e-2 * size),
+                 .displacement = any_vector(1e-2 * size),
                  .spin = any_vector(1e5 * size),
-                 .turn = any_vector(0.1 * size),
+                 .rotation = any_vector(0.1 * size),
                  .effective_inertia = 2e-7};
             m = {};
             m.spring = any_vector(size), m.broken = u(random) > 0.7;
@@ -70,8 +70,8 @@ TEST_CASE_TEMPLATE("a pack of bonds answers as its bonds do one by one", Law, Mo
             left.set(k, 0.5 + 0.5 * u(random));
             for (int a = 0; a < 3; ++a) {
                 bonds.normal[a].set(k, b.normal[a]), bonds.velocity[a].set(k, b.velocity[a]);
-                bonds.travel[a].set(k, b.travel[a]), bonds.spin[a].set(k, b.spin[a]);
-                bonds.turn[a].set(k, b.turn[a]);
+                bonds.displacement[a].set(k, b.displacement[a]), bonds.spin[a].set(k, b.spin[a]);
+                bonds.rotation[a].set(k, b.rotation[a]);
             }
             bonds.compression.set(k, b.compression), bonds.radius.set(k, b.radius);
             bonds.length.set(k, b.length), bonds.effective_mass.set(k, b.effective_mass);
@@ -82,11 +82,11 @@ TEST_CASE_TEMPLATE("a pack of bonds answers as its bonds do one by one", Law, Mo
         for (int k = 0; k < pack_lanes; ++k) {
             const auto one =
                 law.respond(single[static_cast<std::size_t>(k)], left[k], held[static_cast<std::size_t>(k)]);
-            const auto fate = all.fate.tension[k] ? Fate::tension
-                              : all.fate.shear[k] ? Fate::shear
-                                                  : Fate::intact;
-            CHECK(fate == one.fate);
-            ++fates[static_cast<int>(fate)];
+            const auto failure = all.failure.tension[k] ? FailureMode::tension
+                                 : all.failure.shear[k] ? FailureMode::shear
+                                                        : FailureMode::intact;
+            CHECK(failure == one.failure);
+            ++fates[static_cast<int>(failure)];
             contacts += one.memory.broken > 0;
             const Real scale = 1e-11 * (one.load.force.norm() + 1e-3);
             CHECK((detail::lane_of(all.load.force, k) - one.load.force).norm() <= scale);

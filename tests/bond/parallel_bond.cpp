@@ -34,19 +34,19 @@ BondKinematics at(Real compression, const Vec3& velocity = Vec3::Zero(), const V
             .length = length,
             .effective_mass = 0.005,
             .time_step = dt,
-            .travel = dt * velocity,
+            .displacement = dt * velocity,
             .spin = spin,
-            .turn = dt * spin,
+            .rotation = dt * spin,
             .effective_inertia = 1e-7};
 }
 
 /// Turns in steps until the bond breaks; the couple of the last step before.
-Real couple_at_break(const ParallelBond& law, const Vec3& axis, Fate expected, Real left = 1) {
+Real couple_at_break(const ParallelBond& law, const Vec3& axis, FailureMode expected, Real left = 1) {
     Memory memory{};
     for (Real last = 0;;) {
         const auto answer = law.respond(at(0, Vec3::Zero(), axis), left, memory);
-        if (answer.fate != Fate::intact) {
-            CHECK(answer.fate == expected);
+        if (answer.failure != FailureMode::intact) {
+            CHECK(answer.failure == expected);
             CHECK(answer.load.couple == Vec3::Zero());
             return last;
         }
@@ -80,7 +80,7 @@ TEST_CASE("bpm02: a pulled bond breaks at sigma_t A, at a strain of sigma_t / E,
     Real force = 0, energy = 0, strain = 0;
     for (Real stretch = 0;; stretch += 1e-10) {
         const auto answer = beam().respond(at(-stretch), 1, memory);
-        if (answer.fate == Fate::tension) {
+        if (answer.failure == FailureMode::tension) {
             CHECK(answer.load.lost_bond == doctest::Approx(1.5e-4).epsilon(1e-3).scale(0));
             CHECK(answer.load.force == Vec3::Zero());
             break;
@@ -95,9 +95,9 @@ TEST_CASE("bpm02: a pulled bond breaks at sigma_t A, at a strain of sigma_t / E,
 
 TEST_CASE("bent, it breaks at sigma_t I/R; twisted, at the cohesion times J/R; wear takes its share") {
     for (const Real left : {1.0, 0.3}) {
-        CHECK(couple_at_break(beam(), {0.1, 0, 0}, Fate::tension, left) ==
+        CHECK(couple_at_break(beam(), {0.1, 0, 0}, FailureMode::tension, left) ==
               doctest::Approx(left * tensile * second_moment / radius).epsilon(1e-3).scale(0));
-        CHECK(couple_at_break(beam(0, 1e6), {0, 0, 0.1}, Fate::shear, left) ==
+        CHECK(couple_at_break(beam(0, 1e6), {0, 0, 0.1}, FailureMode::shear, left) ==
               doctest::Approx(left * 1e6 * 2 * second_moment / radius).epsilon(1e-3).scale(0));
     }
 }
@@ -135,7 +135,7 @@ TEST_CASE_TEMPLATE("breaking under compression changes no normal force and makes
             held.bend = any(std::pow(10, -6 + 3 * u(random))), held.bend.z() = 0,
             held.twist = 1e-5 * u(random);
         const auto sound = bond.respond(now, 1e9, held), answer = bond.respond(now, u(random), held);
-        if (answer.fate == Fate::intact) continue;
+        if (answer.failure == FailureMode::intact) continue;
         ++broke;
         CHECK(answer.memory.broken);
         // Damping may have pulled before; the contact that is left does not.
@@ -155,18 +155,18 @@ TEST_CASE("elastic-brittle: tension and shear alone at their strengths, together
     const Real k = 1e8, ks = 2e7;
     for (const Real angle : {0.0, 0.3, 0.8, 1.2, 1.5}) {
         const Real pull = 2e6 * area * std::cos(angle), shear = 5e6 * area * std::sin(angle);
-        const auto fate = [&](Real share) {
-            return law.respond(at(-share * pull / k), 1, {Vec3(share * shear / ks, 0, 0), false}).fate;
+        const auto failure = [&](Real share) {
+            return law.respond(at(-share * pull / k), 1, {Vec3(share * shear / ks, 0, 0), false}).failure;
         };
-        CHECK(fate(0.999) == Fate::intact);
-        CHECK(fate(1.001) == (angle < pi / 4 ? Fate::tension : Fate::shear));
+        CHECK(failure(0.999) == FailureMode::intact);
+        CHECK(failure(1.001) == (angle < pi / 4 ? FailureMode::tension : FailureMode::shear));
     }
     // Pressed, its shear strength is what it is.
     const auto pressed = [&](Real share) {
-        return law.respond(at(1e-6), 1, {Vec3(share * 5e6 * area / ks, 0, 0), false}).fate;
+        return law.respond(at(1e-6), 1, {Vec3(share * 5e6 * area / ks, 0, 0), false}).failure;
     };
-    CHECK(pressed(0.999) == Fate::intact);
-    CHECK(pressed(1.001) == Fate::shear);
+    CHECK(pressed(0.999) == FailureMode::intact);
+    CHECK(pressed(1.001) == FailureMode::shear);
 }
 
 TEST_CASE("parameters that make no sense are refused") {

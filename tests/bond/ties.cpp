@@ -1,5 +1,5 @@
 // Who is still tied to the ground, against a search through everything.
-#include <abrade/bond/ties.hpp>
+#include <abrade/bond/bond_graph.hpp>
 
 #include <doctest/doctest.h>
 
@@ -45,7 +45,7 @@ TEST_CASE(
                 if (i + 1 < side) pairs.push_back({here, here + side});
                 if (j + 1 < side) pairs.push_back({here, here + 1});
             }
-        Ties ties;
+        BondGraph ties;
         ties.build(pairs, held);
         CHECK(ties.take_loose().empty());
         std::vector<char> cut(pairs.size(), 0);
@@ -58,9 +58,9 @@ TEST_CASE(
             ties.cut(order[n], pairs[t]);
             cut[t] = 1;
             if (n % 3 != 0 && n + 1 < order.size()) continue;  // several cuts at once
-            for (const Ties::Piece& piece : ties.take_loose()) {
+            for (const BondGraph::Component& piece : ties.take_loose()) {
                 CHECK(std::is_sorted(piece.begin(), piece.end()));
-                CHECK(ties.parts(piece) == std::vector<Ties::Piece>{piece});
+                CHECK(ties.parts(piece) == std::vector<BondGraph::Component>{piece});
                 for (const Index member : piece) CHECK(loose.insert(member).second);
             }
             REQUIRE(loose == loose_by_search(members, pairs, held, cut));
@@ -72,10 +72,10 @@ TEST_CASE(
 
 TEST_CASE("what nothing ties is loose from the start, and a piece that breaks on has parts") {
     const std::vector<BondedPair> pairs{{0, 1}, {2, 3}, {3, 4}};
-    Ties ties;
+    BondGraph ties;
     ties.build(pairs, {1, 0, 0, 0, 0, 0});
-    CHECK(ties.take_loose() == std::vector<Ties::Piece>{{2, 3, 4}, {5}});
+    CHECK(ties.take_loose() == std::vector<BondGraph::Component>{{2, 3, 4}, {5}});
     ties.cut(1, pairs[1]);
     CHECK(ties.take_loose().empty());
-    CHECK(ties.parts({2, 3, 4}) == std::vector<Ties::Piece>{{2}, {3, 4}});
+    CHECK(ties.parts({2, 3, 4}) == std::vector<BondGraph::Component>{{2}, {3, 4}});
 }

@@ -30,9 +30,9 @@ BondKinematics at(Real compression, const Vec3& spin) {
             .length = 2 * radius,
             .effective_mass = 0.005,
             .time_step = dt,
-            .travel = dt * Vec3(1e-3, 0, 2e-3),
+            .displacement = dt * Vec3(1e-3, 0, 2e-3),
             .spin = spin,
-            .turn = dt * spin,
+            .rotation = dt * spin,
             .effective_inertia = 2e-7};
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("as the bond breaks the spring's energy is lost in it; a broken bond h
     twisted.twist = 0.01;
     const auto alone = law().law().respond(at(-1, Vec3::Zero()), 1, {});
     const auto breaks = law().respond(at(-1, Vec3::Zero()), 1, twisted);
-    CHECK(breaks.fate == Fate::tension);
+    CHECK(breaks.failure == FailureMode::tension);
     CHECK(breaks.load.couple == Vec3::Zero());
     CHECK(breaks.load.stored == 0);
     // Beside it stands the energy of a stretch of 1 m.
@@ -93,8 +93,8 @@ TEST_CASE("a sphere on a held one swings at sqrt(k_t / I), and dies away by its 
         Real spin = start, before = start, lost = 0, worst = 0;  // half a step ago
         for (int n = 1; n * dt * omega < 40; ++n) {
             BondKinematics bond = at(0, Vec3(0, 0, spin + 0.5 * (spin - before)));
-            bond.velocity.setZero(), bond.travel.setZero();
-            bond.turn = dt * Vec3(0, 0, spin);
+            bond.velocity.setZero(), bond.displacement.setZero();
+            bond.rotation = dt * Vec3(0, 0, spin);
             const auto answer = twisting.respond(bond, 1, memory);
             memory = answer.memory, lost += answer.load.lost_bond;
             const Real t = n * dt,

@@ -1,6 +1,6 @@
 // expect: validate
 // A contact law whose parameters do not check themselves; asked by its author, as our own headers do.
-#include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/laws/contact_law.hpp>
 
 struct Trusting {
     static constexpr std::string_view name = "Trusting";

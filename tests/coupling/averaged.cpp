@@ -9,9 +9,9 @@ using namespace resolved;
 
 namespace {
 
-Water::Params box(int n, Real h, Side side, Real viscosity) {
+Water::Params box(int n, Real h, Boundary side, Real viscosity) {
     return {.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(h)},
-            .sides = Sides<3>::all(side),
+            .boundaries = BoundaryConditions<3>::all(side),
             .gravity = {0, 0, -g},
             .density = 1000,
             .viscosity = viscosity,
@@ -35,7 +35,7 @@ Real momentum(const Water& water, int axis) {
 TEST_CASE("buoyancy is rho g V and does not turn it, wherever it is and beside walls") {
     for (const Real cells : {0.2, 1.0, 2.5})
         for (const Real height : {0.5, 0.8}) {
-            auto params = box(16, 0.1, Side::slip, 1e-3);
+            auto params = box(16, 0.1, Boundary::free_slip, 1e-3);
             params.tolerance = 1e-12;
             Water water(params);
             std::vector<Ball> balls{
@@ -55,12 +55,12 @@ TEST_CASE("drag in a stream is that of its law, from creeping to fast, and takes
             const Real h = 1 / cells, across = std::max(8.0, 20 / cells);
             const int n = static_cast<int>(across * cells);
             Water::Params params{.grid = {.cells = {n * 3 / 2, n, n}, .spacing = Vec3::Constant(h)},
-                                 .sides = Sides<3>::all(Side::slip),
+                                 .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                                  .density = 1,
                                  .viscosity = 1 / reynolds,
                                  .tolerance = 1e-5};
-            params.sides[0] = {Side::inflow, Side::outflow};
-            params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
+            params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
+            params.boundary_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
             params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
             Water water(params);
             const Vec3 place = Vec3::Constant(0.5 * across) + h * Vec3(0.2, 0.3, 0.1);
@@ -78,7 +78,7 @@ TEST_CASE("drag in a stream is that of its law, from creeping to fast, and takes
 TEST_CASE("from rest it has the acceleration that its added mass allows, at any ratio of densities") {
     for (const Real dt : {1e-4, 1e-3, 1e-2})
         for (const Real ratio : {0.01, 0.5, 1.0, 2.65, 8.0}) {
-            auto params = box(20, 0.1, Side::slip, 0);
+            auto params = box(20, 0.1, Boundary::free_slip, 0);
             Water water(params);
             std::vector<Ball> balls{{Vec3(1.01, 0.99, 1.03), 0.1, 1000 * ratio}};
             const Real expected = -g * (ratio - 1) / (ratio + 0.5);
@@ -96,7 +96,7 @@ TEST_CASE("from rest it has the acceleration that its added mass allows, at any 
 
 TEST_CASE("momentum of water and small balls is kept to a hundredth of what the ball came with") {
     for (const Real ratio : {0.1, 2.65}) {
-        auto params = box(16, 0.1, Side::periodic, 2);
+        auto params = box(16, 0.1, Boundary::periodic, 2);
         params.gravity.setZero(), params.tolerance = 1e-9;
         Water water(params);
         std::vector<Ball> balls{{Vec3(0.63, 0.8, 0.78), 0.1, 1000 * ratio}};
@@ -117,8 +117,8 @@ TEST_CASE("beyond a periodic side it is where it would be inside, resolved or av
         for (const Real x : {-0.02, 1.63}) {
             std::array<Vec3, 2> velocity;
             for (const bool inside : {false, true}) {
-                auto params = box(16, 0.1, Side::slip, 1e-3);
-                params.sides[0] = {Side::periodic, Side::periodic};
+                auto params = box(16, 0.1, Boundary::free_slip, 1e-3);
+                params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
                 Water water(params);
                 const Real there = inside ? (x < 0 ? x + 1.6 : x - 1.6) : x;
                 std::vector<Ball> balls{{Vec3(there, 0.79, 0.8), radius, 2650}};
@@ -134,7 +134,7 @@ TEST_CASE(
     "in a shear it is lifted to where it lags more, by what the water loses; unless asked, not at all") {
     for (const Real lift : {0.0, 0.5})
         for (const Real goes : {-1.0, 1.0}) {
-            auto params = box(16, 0.1, Side::periodic, 1e-6);
+            auto params = box(16, 0.1, Boundary::periodic, 1e-6);
             params.gravity.setZero(), params.tolerance = 1e-10;
             params.velocity = [](const Vec3& x) { return Vec3(std::sin(2 * pi / 1.6 * x.z()), 0, 0); };
             Water water(params, {}, MonolithicSolids<>({.lift = lift}));
@@ -150,7 +150,7 @@ TEST_CASE(
 }
 
 TEST_CASE("beside resolved ones, which leave them no room: each has its own buoyancy, and nothing moves") {
-    auto params = box(16, 0.1, Side::slip, 1e-3);
+    auto params = box(16, 0.1, Boundary::free_slip, 1e-3);
     params.tolerance = 1e-12;
     Water water(params);
     std::vector<Ball> balls{{Vec3(0.81, 0.78, 0.83), 0.21, 0, 0}};
@@ -172,7 +172,7 @@ TEST_CASE("a dense bed in water loses energy, in steps of 0.1 to 100 ms, at 0.3 
     for (const Real ratio : {0.3, 1.0, 2.65, 8.0})
         for (const Real dt : {1e-4, 1e-3, 1e-2, 1e-1}) {
             constexpr Real h = 0.01;
-            auto params = box(6, h, Side::slip, 1e-3);
+            auto params = box(6, h, Boundary::free_slip, 1e-3);
             params.gravity.setZero();
             Water water(params);
             std::vector<Ball> balls;
@@ -209,7 +209,7 @@ TEST_CASE("a dense bed in water loses energy, in steps of 0.1 to 100 ms, at 0.3 
 }
 
 TEST_CASE("bodies that come one by one hold no memory of the cloud that they are in") {
-    const auto params = box(16, 0.1, Side::slip, 1e-3);
+    const auto params = box(16, 0.1, Boundary::free_slip, 1e-3);
     const Grid<3> grid(params.grid);
     MonolithicSolids<> solids;
     std::vector<Ball> balls;
@@ -218,7 +218,7 @@ TEST_CASE("bodies that come one by one hold no memory of the cloud that they are
         balls.emplace_back(Vec3(0.3 + 0.1 * n, 0.8, 0.8), 0.05, 0, n);
         bodies.clear();
         for (const Ball& ball : balls) bodies.push_back(ball.body), bodies.back().spheres = {&ball.sphere, 1};
-        solids.place(grid, params.sides, bodies, nullptr, params.density);
+        solids.place(grid, params.boundaries, bodies, nullptr, params.density);
     }
     REQUIRE(solids.averaged() == 10);
     CHECK(solids.faces().cloud > 0);
@@ -227,7 +227,7 @@ TEST_CASE("bodies that come one by one hold no memory of the cloud that they are
 }
 
 TEST_CASE("a clump is spread as one body, not sphere by sphere") {
-    const auto params = box(16, 0.1, Side::slip, 1e-3);
+    const auto params = box(16, 0.1, Boundary::free_slip, 1e-3);
     const Grid<3> grid(params.grid);
     const Vec3 place(0.81, 0.79, 0.83);
     std::vector<Sphere> clump = make_stone(StoneShape::angular, 0.1).members, ball{{place, 0.05}};
@@ -236,7 +236,7 @@ TEST_CASE("a clump is spread as one body, not sphere by sphere") {
         MonolithicSolids<> solids;
         FlowBody body{.position = place, .volume = pi / 6 * cube(0.1)};
         body.spheres = spheres;
-        solids.place(grid, params.sides, {&body, 1}, nullptr, params.density);
+        solids.place(grid, params.boundaries, {&body, 1}, nullptr, params.density);
         REQUIRE(solids.averaged() == 1);
         return solids.faces().share;
     };

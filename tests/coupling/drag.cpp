@@ -1,7 +1,7 @@
 // Drag and buoyancy of one body, as pure functions.
 #include "../verification/reference_table.hpp"
 
-#include <abrade/coupling/drag.hpp>
+#include <abrade/coupling/drag/drag.hpp>
 
 #include <doctest/doctest.h>
 

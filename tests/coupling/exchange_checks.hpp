@@ -6,9 +6,9 @@
 
 namespace resolved {
 
-inline Water::Params box(int n, Real width, Side side) {
+inline Water::Params box(int n, Real width, Boundary side) {
     return {.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(width)},
-            .sides = Sides<3>::all(side),
+            .boundaries = BoundaryConditions<3>::all(side),
             .gravity = {0, 0, -g},
             .density = 1000,
             .viscosity = 1e-3,
@@ -20,7 +20,7 @@ template <class Solids>
 void check_buoyancy() {
     for (const Real cells : {0.6, 2.0, 4.0})
         for (const Real off : {0.0, 0.3, 0.5}) {
-            auto params = box(16, 0.1, Side::slip);
+            auto params = box(16, 0.1, Boundary::free_slip);
             params.tolerance = 1e-12;
             WaterAmong<Solids> water(params);
             std::vector<Ball> balls{
@@ -38,7 +38,7 @@ void check_buoyancy() {
 /// Kept to the pressure's tolerance while balls cross the grid.
 template <class Solids>
 void check_momentum() {
-    auto params = box(16, 0.1, Side::periodic);
+    auto params = box(16, 0.1, Boundary::periodic);
     params.gravity.setZero(), params.viscosity = 2, params.tolerance = 1e-9;
     WaterAmong<Solids> water(params);
     std::vector<Ball> balls{{Vec3(0.63, 0.8, 0.78), 0.2, 2650, 0}, {Vec3(1.1, 0.81, 1.15), 0.16, 500, 1}};

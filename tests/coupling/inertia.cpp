@@ -3,7 +3,7 @@
 #include "../message_of.hpp"
 
 #include <abrade/abrade.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -104,7 +104,7 @@ TEST_CASE("a blow moves the water along: a ball that bounces makes and loses no 
 TEST_CASE("water on a grid knows its gradient and how it is accelerated") {
     // Four vortices.
     GridFluidParams<2> params{.grid = {.cells = {16, 16}, .low = {-1, -1}, .spacing = {0.125, 0.125}},
-                              .sides = Sides<2>::all(Side::slip),
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                               .velocity =
                                   [](const Point<2>& x) {
                                       return Point<2>(std::sin(pi * x[0]) * std::cos(pi * x[1]),

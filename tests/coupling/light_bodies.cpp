@@ -13,7 +13,7 @@ TEST_CASE("light balls rise through a full box, and are not spun up by what thei
             Water water({.grid = {.cells = {16, 16, 28},
                                   .low = Vec3(-8 * cell, -8 * cell, 0),
                                   .spacing = Vec3::Constant(cell)},
-                         .sides = Sides<3>::all(Side::slip),
+                         .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                          .gravity = {0, 0, -g},
                          .density = 1000,
                          .viscosity = 1e-3});

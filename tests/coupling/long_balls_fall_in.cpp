@@ -1,7 +1,7 @@
 // Balls thrown into a pool, by exchange, on eight seeds.
 #include "balls_fall_in.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 using namespace resolved;
 

@@ -2,7 +2,7 @@
 // docs/verification/resolved_bodies.md. Bounds are what was measured and some more, not what is wanted.
 #include "resolved_bodies.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -74,7 +74,7 @@ TEST_CASE("a sphere that is led along the stream: its drag varies little as it c
 
 TEST_CASE("added mass on 8 cells, of a ball of a hundredth of the water's density") {
     Water water({.grid = {.cells = {32, 32, 32}, .spacing = Vec3::Constant(1.0 / 32)},
-                 .sides = Sides<3>::all(Side::slip),
+                 .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                  .gravity = {0, 0, -9.81},
                  .density = 1000,
                  .viscosity = 0,

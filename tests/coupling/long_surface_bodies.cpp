@@ -2,7 +2,7 @@
 // fixed ones leave it at rest, others fall in, come up and float without throwing water about.
 #include "pool.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <doctest/doctest.h>
 

@@ -14,7 +14,7 @@ TEST_CASE(
     "from rest: the acceleration that added mass allows, at any ratio of densities, and no other later") {
     for (const Real dt : {1e-4, 1e-3, 1e-2})
         for (const Real ratio : {0.01, 0.5, 1.0, 2.65, 8.0}) {
-            auto params = box(32, 1.0 / 32, Side::slip);
+            auto params = box(32, 1.0 / 32, Boundary::free_slip);
             params.viscosity = 0;
             Water water(params);
             std::vector<Ball> balls{{Vec3(0.51, 0.495, 0.507), 2.0 / 32, 1000 * ratio}};
@@ -39,7 +39,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a box that falls with its ball has no weight: nothing moves against anything") {
-    auto params = box(12, 0.1, Side::periodic);
+    auto params = box(12, 0.1, Boundary::periodic);
     params.gravity.setZero();
     params.velocity = [](const Vec3&) { return Vec3(0.3, -0.2, 0.1); };
     Water water(params);
@@ -58,7 +58,7 @@ TEST_CASE("momentum of water and balls: kept to the pressure's tolerance while t
 
 TEST_CASE("a ball that contacts hold on the floor feels no kick at the exchange") {
     for (const Real cells : {2.0, 2.5, 4.0}) {
-        auto params = box(16, 0.1, Side::slip);
+        auto params = box(16, 0.1, Boundary::free_slip);
         params.viscosity = 20;
         Water water(params);
         std::vector<Ball> balls{{Vec3(0.81, 0.77, 0.05 * cells), 0.05 * cells, 2650}};
@@ -79,7 +79,7 @@ TEST_CASE("a ball that contacts hold on the floor feels no kick at the exchange"
 
 TEST_CASE("added mass takes its part of a blow once: the load does not go on with it") {
     for (const Real radius : {0.12, 0.2}) {  // averaged, resolved
-        auto params = box(16, 0.1, Side::slip);
+        auto params = box(16, 0.1, Boundary::free_slip);
         params.gravity.setZero();
         Water water(params);
         std::vector<Ball> balls{{Vec3(0.81, 0.77, 0.8), radius, 2650}};
@@ -102,10 +102,10 @@ TEST_CASE("added mass takes its part of a blow once: the load does not go on wit
 
 TEST_CASE("a ball that goes with the stream leaves the box as if there were no side") {
     for (const Real radius : {0.06, 0.21}) {  // averaged, resolved
-        auto params = box(12, 0.1, Side::slip);
+        auto params = box(12, 0.1, Boundary::free_slip);
         params.gravity.setZero();
-        params.sides[0] = {Side::inflow, Side::outflow};
-        params.side_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
+        params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
+        params.boundary_velocity = [](const Vec3&, Real) { return Vec3(1, 0, 0); };
         params.velocity = [](const Vec3&) { return Vec3(1, 0, 0); };
         Water water(params);
         std::vector<Ball> balls{{Vec3(0.8, 0.61, 0.57), radius, 1000}};
@@ -134,7 +134,7 @@ TEST_CASE("drag of a fixed sphere at Re 100, 3 and 4 cells to a diameter, in a s
 TEST_CASE("slow flow past two spheres that touch does not depend on the step: they share the water between") {
     Real speeds[2], forces[2];
     for (const bool fine : {false, true}) {
-        auto params = box(8, 0.25, Side::periodic);
+        auto params = box(8, 0.25, Boundary::periodic);
         params.gravity.setZero(), params.density = 1, params.viscosity = 1, params.courant = 1;
         params.body_force = [](Real) { return Vec3(1, 0, 0); };
         Water water(params, {}, MonolithicSolids<>({.resolved_from = 0}));

@@ -2,7 +2,7 @@
 // forcing; where the latter fails.
 #include "exchange_checks.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 using namespace resolved;
 
@@ -16,7 +16,7 @@ namespace {
 /// Velocity of a ball that is released in still water, over that which added mass allows, after each step.
 template <class Solids>
 std::vector<Real> released(Real ratio, Real dt, int steps) {
-    auto params = box(24, 1.0 / 32, Side::slip);
+    auto params = box(24, 1.0 / 32, Boundary::free_slip);
     params.viscosity = 1e-6;
     WaterAmong<Solids> water(params);
     std::vector<Ball> balls{{Vec3(0.381, 0.37, 0.377), 2.0 / 32, 1000 * ratio}};

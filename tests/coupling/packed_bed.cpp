@@ -2,7 +2,7 @@
 // cell knows, and pockets that stones cut off.
 #include "exchange_checks.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -30,7 +30,7 @@ template <class Solids>
 Effort vortices_among(int n, Real diameter, Real density) {
     constexpr int cells = 24;
     constexpr Real size = 1, h = size / cells, k = 2 * pi / size;
-    auto params = box(cells, h, Side::slip);
+    auto params = box(cells, h, Boundary::free_slip);
     params.gravity.setZero(), params.tolerance = 1e-6;
     params.velocity = [](const Vec3& x) {
         const Real up = std::cos(k * x.z());
@@ -105,7 +105,7 @@ TEST_CASE("beds of 30 and 52 % of solids: the pressure converges") {
 
 TEST_CASE("water that a body shuts in goes with it: a null space of its own does no harm") {
     for (const Real density : {0.0, 2650.0}) {
-        auto params = box(20, 0.05, Side::slip);
+        auto params = box(20, 0.05, Boundary::free_slip);
         Water water(params);
         Ball hull(Vec3(0.51, 0.49, 0.52), 0.3, density);
         const auto spheres = shell(hull.body.position, 0.22, 0.08);
@@ -138,7 +138,7 @@ TEST_CASE("water that a body shuts in goes with it: a null space of its own does
 
 TEST_CASE("water driven through a bed of touching balls: the bed takes all that drives it") {
     for (const Real diameter : {0.15, 0.2, 0.25}) {
-        auto params = box(16, 1.0 / 16, Side::periodic);
+        auto params = box(16, 1.0 / 16, Boundary::periodic);
         params.gravity.setZero(), params.viscosity = 100, params.tolerance = 1e-7;
         params.body_force = [](Real) { return Vec3(1, 0, 0); };
         Water water(params);

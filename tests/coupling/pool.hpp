@@ -5,7 +5,7 @@
 namespace resolved {
 
 template <class Solids, class Surface = HeightSurface>
-using PoolAmong = GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>;
+using PoolAmong = GridFluid<3, Surface, Koren, Real, NoTurbulence, Solids>;
 
 constexpr Real h = 0.05, level = 0.613;
 
@@ -13,7 +13,7 @@ constexpr Real h = 0.05, level = 0.613;
 template <class Solids = MonolithicSolids<>, class Surface = HeightSurface>
 PoolAmong<Solids, Surface> pool() {
     return PoolAmong<Solids, Surface>({.grid = {.cells = {20, 20, 24}, .spacing = Vec3::Constant(h)},
-                                       .sides = Sides<3>::all(Side::slip),
+                                       .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                                        .water = [](const Vec3& x) { return level - x.z(); },
                                        .gravity = {0, 0, -g},
                                        .density = 1000,

@@ -1,8 +1,8 @@
 #pragma once
 // Bodies alone with water that resolves them: moved by their weight and the water's loads, no contacts.
 
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace abrade;
 constexpr Real g = 9.81;  // [m/s2]
 
 template <class Solids>
-using WaterAmong = GridFluid<3, FullBox, Limited, Real, NoTurbulence, Solids>;
+using WaterAmong = GridFluid<3, FullBox, Koren, Real, NoTurbulence, Solids>;
 using Water = WaterAmong<MonolithicSolids<>>;
 
 /// A sphere that is free, or fixed where its density is 0 [kg/m3].
@@ -95,22 +95,22 @@ struct Drag {
 template <class Solids = MonolithicSolids<>, class Eddies = NoTurbulence>
 Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_from = 0}),
              const Eddies& eddies = {}) {
-    using Flow = GridFluid<3, FullBox, Limited, Real, Eddies, Solids>;
+    using Flow = GridFluid<3, FullBox, Koren, Real, Eddies, Solids>;
     const Real h = 1 / stream.cells;
     const int across = static_cast<int>(8 * stream.cells), along = static_cast<int>(12 * stream.cells);
     typename Flow::Params params{.grid = {.cells = {along, across, across}, .spacing = Vec3::Constant(h)},
-                                 .sides = Sides<3>::all(Side::slip),
+                                 .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                                  .density = 1,
                                  .viscosity = 1 / stream.reynolds,
                                  .courant = stream.courant,
                                  .largest_step = stream.step,
                                  .tolerance = stream.tolerance};
-    params.sides[0] = {Side::inflow, Side::outflow};
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
     const Vec3 place = Vec3(4, 4, 4) + stream.off * h * Vec3(1, 0.37, 0.71);
     params.velocity = [shear = stream.shear, place](const Vec3& x) {
         return Vec3(1 + shear * (x.z() - place.z()), 0, 0);
     };
-    params.side_velocity = [flow = params.velocity](const Vec3& x, Real) { return flow(x); };
+    params.boundary_velocity = [flow = params.velocity](const Vec3& x, Real) { return flow(x); };
     Flow water(params, eddies, std::move(solids));
     std::vector<Ball> balls{{place, 0.5, 0}};
     Real sum = 0, squares = 0, lift = 0, count = 0;

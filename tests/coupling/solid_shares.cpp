@@ -1,5 +1,5 @@
 // Shares of a grid's faces that bodies cover: their volume, their centroid, what flows in and out.
-#include <abrade/coupling/solid_shares.hpp>
+#include <abrade/coupling/mapping/solid_shares.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
 
 #include <doctest/doctest.h>
@@ -43,7 +43,7 @@ FlowBody body_of(const std::vector<Sphere>& spheres, const Vec3& centre, Real vo
 TEST_CASE(
     "a sphere anywhere, of half a cell to ten: its volume and centroid to round-off, each axis by itself") {
     const Grid<3> grid({.cells = {24, 20, 22}, .low = Vec3(-1, -1, -1), .spacing = Vec3(0.1, 0.12, 0.09)});
-    const auto sides = Sides<3>::all(Side::slip);
+    const auto boundaries = BoundaryConditions<3>::all(Boundary::free_slip);
     std::mt19937 random(3);
     std::uniform_real_distribution<Real> anywhere(-0.05, 0.05);
     for (const Real cells : {0.5, 0.9, 1.3, 2.0, 2.5, 4.0, 6.0, 10.0})
@@ -52,7 +52,8 @@ TEST_CASE(
                 Vec3(0.2, 0.2, 0) + Vec3(anywhere(random), anywhere(random), anywhere(random));
             const std::vector<Sphere> spheres{{centre, 0.05 * cells}};
             const Real volume = 4.0 / 3 * pi * cube(spheres[0].radius);
-            const Held sum = held(cover_of(grid, sides, body_of(spheres, centre, volume), nothing_closed));
+            const Held sum =
+                held(cover_of(grid, boundaries, body_of(spheres, centre, volume), nothing_closed));
             CAPTURE(cells);
             CHECK((sum.volume - Vec3::Constant(volume)).norm() < 1e-11 * volume);
             CHECK(sum.moment.norm() < 1e-11 * volume * spheres[0].radius);
@@ -68,15 +69,15 @@ TEST_CASE("a clump, across a periodic side and on a stretched grid") {
     Grid<3>::Params params{.cells = {16, 16, 16}, .spacing = Vec3::Constant(0.1)};
     for (int k = 0; k <= 16; ++k) params.levels.push_back(0.1 * k + 0.002 * k * k);
     const Grid<3> grid(params);
-    auto sides = Sides<3>::all(Side::wall);
-    sides[0] = {Side::periodic, Side::periodic};
+    auto boundaries = BoundaryConditions<3>::all(Boundary::wall);
+    boundaries[0] = {Boundary::periodic, Boundary::periodic};
     const Clump clump = make_stone(StoneShape::angular, 0.5);
     for (const Real x : {0.8, 0.03, 1.58}) {
         const Vec3 centre(x, 0.77, 1.0);
         std::vector<Sphere> spheres;
         for (const Sphere& member : clump.members) spheres.push_back({centre + member.centre, member.radius});
         const SolidCover cover =
-            cover_of(grid, sides, body_of(spheres, centre, clump.volume), nothing_closed);
+            cover_of(grid, boundaries, body_of(spheres, centre, clump.volume), nothing_closed);
         const Held sum = held(cover);
         CHECK((sum.volume - Vec3::Constant(clump.volume)).norm() < 1e-10 * clump.volume);
         CHECK(sum.moment.norm() < 1e-10 * clump.volume * 0.25);
@@ -90,14 +91,15 @@ TEST_CASE("a clump, across a periodic side and on a stretched grid") {
 
 TEST_CASE("on a floor, by a side and in a corner: what they take of the shares, the rest has") {
     const Grid<3> grid({.cells = {16, 16, 16}, .spacing = Vec3::Constant(0.1)});
-    const auto sides = Sides<3>::all(Side::wall);
+    const auto boundaries = BoundaryConditions<3>::all(Boundary::wall);
     for (const Real cells : {2.0, 2.5, 4.0, 7.0}) {
         const Real radius = 0.05 * cells;
         for (const Vec3& centre :
              {Vec3(0.81, 0.77, radius), Vec3(0.81, radius, radius), Vec3(radius, radius, radius)}) {
             const std::vector<Sphere> spheres{{centre, radius}};
             const Real volume = 4.0 / 3 * pi * cube(radius);
-            const Held sum = held(cover_of(grid, sides, body_of(spheres, centre, volume), nothing_closed));
+            const Held sum =
+                held(cover_of(grid, boundaries, body_of(spheres, centre, volume), nothing_closed));
             CAPTURE(cells);
             CAPTURE(centre.transpose());
             CHECK((sum.volume - Vec3::Constant(volume)).norm() < 1e-10 * volume);
@@ -112,8 +114,8 @@ TEST_CASE("shares are those of the sphere: near the truth by counting points, 1 
     const Vec3 centre(0.81, 0.775, 0.79);
     const std::vector<Sphere> spheres{{centre, radius}};
     const Real volume = 4.0 / 3 * pi * cube(radius);
-    const SolidCover cover =
-        cover_of(grid, Sides<3>::all(Side::wall), body_of(spheres, centre, volume), nothing_closed);
+    const SolidCover cover = cover_of(grid, BoundaryConditions<3>::all(Boundary::wall),
+                                      body_of(spheres, centre, volume), nothing_closed);
     Real squares = 0, worst = 0, count = 0;
     for (const SolidFace& f : cover.faces) {
         if (f.share == 0) continue;
@@ -138,7 +140,7 @@ TEST_CASE(
     const Vec3 size(0.1, 0.12, 0.09), centre(0.83, 0.97, 0.71);
     const Grid<3> grid({.cells = {16, 16, 16}, .spacing = size});
     const std::vector<Sphere> spheres{{centre, 0.24}};
-    const SolidCover cover = cover_of(grid, Sides<3>::all(Side::wall),
+    const SolidCover cover = cover_of(grid, BoundaryConditions<3>::all(Boundary::wall),
                                       body_of(spheres, centre, 4.0 / 3 * pi * cube(0.24)), nothing_closed);
     const auto across = [&](const Vec3& arm) { return arm.cwiseProduct(size).norm() / arm.norm(); };
     for (const SolidFace& f : cover.faces) {

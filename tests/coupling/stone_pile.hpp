@@ -2,7 +2,7 @@
 // Stones fall as a heap onto a floor of concrete in still water, and come to rest.
 #include "stone_tank.hpp"
 
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 #include <abrade/wear/archard.hpp>
 
 #include <doctest/doctest.h>

@@ -1,9 +1,9 @@
 #pragma once
 // Stones in a tank of water through the whole engine: the scenes in which methods fail.
 
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/dem/linear_spring.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <algorithm>
@@ -30,11 +30,11 @@ struct Tank {
 
 template <class Surface, class Solids>
 auto water_in(const Tank& tank, Solids solids) {
-    using Flow = GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>;
+    using Flow = GridFluid<3, Surface, Koren, Real, NoTurbulence, Solids>;
     typename Flow::Params params{.grid = {.cells = tank.cells,
                                           .low = Vec3(-0.5 * tank.size(0), -0.5 * tank.size(1), 0),
                                           .spacing = Vec3::Constant(tank.h)},
-                                 .sides = Sides<3>::all(Side::slip),
+                                 .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                                  .gravity = {0, 0, -g},
                                  .density = water_density,
                                  .viscosity = 1e-3,

@@ -2,7 +2,7 @@
 // goes.
 #include "fixed_ball.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Bodies in one fluid with the water, at its surface: rest, draft, a stone that falls in.
 #include "pool.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <doctest/doctest.h>
 

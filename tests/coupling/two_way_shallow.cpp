@@ -1,5 +1,5 @@
 // Depth-averaged water that feels bodies: momentum, what they displace, the drag of a row of them.
-#include <abrade/coupling/two_way_shallow.hpp>
+#include <abrade/coupling/averaging/two_way_shallow.hpp>
 
 #include <doctest/doctest.h>
 
@@ -18,11 +18,11 @@ struct Ball {
     }
 };
 
-TwoWayShallow<>::Params box(WaterSide side, Real depth, Real speed) {
+TwoWayShallow<>::Params box(ShallowBoundary side, Real depth, Real speed) {
     return {.low = {0, -0.5},
             .high = {4, 0.5},
             .cells = {80, 20},
-            .sides = {{{side, side}, {WaterSide::wall(), WaterSide::wall()}}},
+            .boundaries = {{{side, side}, {ShallowBoundary::wall(), ShallowBoundary::wall()}}},
             .surface = [depth](Real, Real) { return depth; },
             .speed = {[speed](Real, Real) { return speed; }, nullptr},
             .gravity = {0, 0, -g},
@@ -39,7 +39,7 @@ Real momentum(const TwoWayShallow<>& flow) {
 }  // namespace
 
 TEST_CASE("momentum goes from the water to a ball: what is lost is a fiftieth, in the slope of the surface") {
-    TwoWayShallow<> flow(box(WaterSide::periodic(), 0.3, 2));
+    TwoWayShallow<> flow(box(ShallowBoundary::periodic(), 0.3, 2));
     std::vector<Ball> balls{{Vec3(1, 0.1, 0.1), 0.05, 2650}};
     FlowBody& ball = balls[0].body;
     const Real start = momentum(flow), mass = 1 / ball.inverse_mass;
@@ -55,7 +55,7 @@ TEST_CASE("momentum goes from the water to a ball: what is lost is a fiftieth, i
 TEST_CASE("a ball at a periodic side takes from both ends, and beyond the water nothing acts on it") {
     std::vector<Vec3> loads;
     for (const Real x : {2.02, 0.02, -0.03, 4.02}) {
-        TwoWayShallow<> flow(box(WaterSide::periodic(), 0.3, 2));
+        TwoWayShallow<> flow(box(ShallowBoundary::periodic(), 0.3, 2));
         Ball ball(Vec3(x, 0.1, 0.1), 0.05, 0);
         const Real start = momentum(flow);
         flow.advance(0.01, {&ball.body, 1});
@@ -65,14 +65,14 @@ TEST_CASE("a ball at a periodic side takes from both ends, and beyond the water 
         CHECK(differs < 0.02);  // shallow water is sampled at a side as at the edge
         CHECK(start - momentum(flow) == doctest::Approx(0.01 * loads[0].x()).epsilon(1e-3));
     }
-    TwoWayShallow<> lake(box(WaterSide::wall(), 0.3, 0));
+    TwoWayShallow<> lake(box(ShallowBoundary::wall(), 0.3, 0));
     Ball beyond(Vec3(4.5, 0.1, 0.1), 0.05, 0);
     lake.advance(0.01, {&beyond.body, 1});
     CHECK(beyond.body.load.force.norm() == 0);
 }
 
 TEST_CASE("a lake with a ball in it: its mean level is higher by what the ball displaces, and only swings") {
-    TwoWayShallow<> flow(box(WaterSide::wall(), 0.3, 0));
+    TwoWayShallow<> flow(box(ShallowBoundary::wall(), 0.3, 0));
     Ball ball(Vec3(2, 0.03, 0.12), 0.1, 0);
     std::array<Real, 4> mean{};
     constexpr std::array<Index, 4> places{0, 20, 40, 79};
@@ -87,8 +87,8 @@ TEST_CASE("a lake with a ball in it: its mean level is higher by what the ball d
 }
 
 TEST_CASE("a row of fixed balls takes from a stream what their drag adds up to") {
-    auto params = box(WaterSide::inflow(0.6, 0.3), 0.3, 2);
-    params.sides[0][1] = WaterSide::outflow();
+    auto params = box(ShallowBoundary::inflow(0.6, 0.3), 0.3, 2);
+    params.boundaries[0][1] = ShallowBoundary::outflow();
     TwoWayShallow<> flow(std::move(params));
     std::vector<Ball> balls;
     for (int n = 0; n < 10; ++n) balls.emplace_back(Vec3(2, -0.45 + 0.1 * n, 0.15), 0.04, 0, n);
@@ -111,7 +111,7 @@ TEST_CASE("a row of fixed balls takes from a stream what their drag adds up to")
 }
 
 TEST_CASE("a ball ahead of the wet front feels no water, one in it does, and it goes on as it is") {
-    auto params = box(WaterSide::wall(), 0.3, 0);
+    auto params = box(ShallowBoundary::wall(), 0.3, 0);
     params.surface = [](Real x, Real) { return x < 1 ? 0.3 : -1; };  // a dam that breaks on a dry bed
     params.bed = [](Real, Real y) { return 0.2 * y * y; };
     TwoWayShallow<> flow(params);
@@ -137,6 +137,6 @@ TEST_CASE("a ball ahead of the wet front feels no water, one in it does, and it 
 }
 
 TEST_CASE("bad input is refused") {
-    TwoWayShallow<> flow(box(WaterSide::wall(), 0.3, 0));
+    TwoWayShallow<> flow(box(ShallowBoundary::wall(), 0.3, 0));
     CHECK_THROWS_AS(flow.advance(std::nan(""), {}), InputError);
 }

@@ -1,7 +1,7 @@
 // Where the energy of water and bodies goes: what one gives the other has, and nothing is made.
 #include "pool.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -26,7 +26,7 @@ TEST_CASE_TEMPLATE("a ball that sinks in a box: the water gets what the ball los
                    MonolithicSolids<>, MixtureSolids, DirectForcing) {
     for (const Real radius : {0.05, 0.1}) {  // of which MonolithicSolids averages the first
         WaterAmong<Solids> water({.grid = {.cells = {20, 20, 40}, .spacing = Vec3::Constant(h)},
-                                  .sides = Sides<3>::all(Side::slip),
+                                  .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                                   .gravity = {0, 0, -g},
                                   .density = 1000,
                                   .viscosity = 1,

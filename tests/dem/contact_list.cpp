@@ -1,6 +1,6 @@
 // Pairs in slots, their memory over renewals of the list, and the loads on spheres.
-#include <abrade/dem/contact_list.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/contacts/contact_list.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/wear/wear_law.hpp>
 
 #include <doctest/doctest.h>
@@ -41,7 +41,7 @@ struct Rig {
         contacts.refine(store.lines, walls, 0.002);
     }
     ContactSums respond(Real dt = 1e-5) {
-        for (SphereLoad& load : store.lines.load) load.force.setZero(), load.lever.setZero();
+        for (SphereLoad& load : store.lines.load) load.force.setZero(), load.torque_over_radius.setZero();
         ContactSums sums;
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
             sums += contacts.section(slab).respond(law, NoWear{}, walls, store.lines, {dt, 0.5});
@@ -81,7 +81,7 @@ TEST_CASE("memory survives renewal of the list, with spheres renumbered") {
     CHECK(renewed.p.spheres() == 2);
     const ContactSums a = kept.respond(), b = renewed.respond();
     CHECK(renewed.load(0).force == kept.load(1).force);
-    CHECK(renewed.load(1).lever == kept.load(2).lever);
+    CHECK(renewed.load(1).torque_over_radius == kept.load(2).torque_over_radius);
     CHECK(a.stored == b.stored);
 
     // The twin that forgets answers differently, so the test can fail.
@@ -134,7 +134,7 @@ TEST_CASE("opposite forces, and torques that conserve angular momentum") {
     CHECK(rig.load(2).force == -force);
     CHECK(force.x() < 0);  // the second stands at +x and pushes the first to -x
     const Vec3 about = rig.place(1).centre.cross(force) - rig.place(2).centre.cross(force) +
-                       0.01 * (rig.load(1).lever + rig.load(2).lever);
+                       0.01 * (rig.load(1).torque_over_radius + rig.load(2).torque_over_radius);
     CHECK(about.norm() < 1e-15 * force.norm());
     CHECK(rig.load(0).force == Vec3::Zero());
 }
@@ -188,9 +188,9 @@ TEST_CASE("slabs, chunks and images: the same forces as pair by pair, in open an
         std::vector<Vec3> expected(count, Vec3::Zero());
         const std::vector<Seeks> seeks(count, Seeks::all);
         const std::vector<Vec3> centre = rig.p.centre;
-        for (const NearPair& pair :
-             near_pairs_brute_force({centre, rig.p.radius, rig.p.body, seeks, 0, period})) {
-            SphereLines two;
+        for (const VerletPair& pair :
+             verlet_pairs_brute_force({centre, rig.p.radius, rig.p.body, seeks, 0, period})) {
+            HotArrays two;
             two.resize(2);
             const auto i = static_cast<std::size_t>(pair.first), j = static_cast<std::size_t>(pair.second);
             for (const auto& [slot, sphere] :

@@ -1,5 +1,5 @@
 // The pieces that contact and bond laws share: turning a spring, a spring without tension, a slider.
-#include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/laws/contact_law.hpp>
 
 #include <doctest/doctest.h>
 

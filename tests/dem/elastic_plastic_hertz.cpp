@@ -1,7 +1,7 @@
 // The elastic-plastic contact as a pure function, and in impacts of one mass.
 #include "one_contact.hpp"
 
-#include <abrade/dem/elastic_plastic_hertz.hpp>
+#include <abrade/dem/laws/elastic_plastic_hertz.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,8 +1,8 @@
 // The linear hysteretic contact as a pure function, and in impacts of one mass.
 #include "one_contact.hpp"
 
-#include <abrade/dem/linear_hysteretic.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 
 #include <doctest/doctest.h>
 

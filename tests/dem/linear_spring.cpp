@@ -1,5 +1,5 @@
 // The linear spring-dashpot-slider as a pure function.
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 
 #include <doctest/doctest.h>
 
@@ -70,7 +70,7 @@ TEST_CASE("the force on i points along the normal, from j to i: pushed apart") {
 TEST_CASE("friction opposes the slip of i over j") {
     ContactKinematics<Real> contact = head_on(1e-4, 0);
     contact.velocity = {0.3, 0, 0};
-    contact.travel = contact.time_step * contact.velocity;
+    contact.displacement = contact.time_step * contact.velocity;
     const auto [load, memory] = law().respond(contact, Memory{});
     CHECK(load.force.x() < 0);
     CHECK(load.lost_tangential > 0);
@@ -181,7 +181,7 @@ TEST_CASE("what has no friction loses nothing to sliding") {
     for (int n = 0; n < 100; ++n) {
         ContactKinematics<Real> contact = head_on(1e-4, 0);
         contact.velocity.x() = 0.01 * n;  // speeding up
-        contact.travel = contact.time_step * Vec3(0.01 * (n - 0.5), 0, 0);
+        contact.displacement = contact.time_step * Vec3(0.01 * (n - 0.5), 0, 0);
         const auto [load, next] = smooth.respond(contact, memory);
         lost += load.lost_tangential;
         REQUIRE(load.force.x() == 0);

@@ -3,7 +3,7 @@
 #include "../message_of.hpp"
 
 #include <abrade/abrade.hpp>
-#include <abrade/dem/lubrication.hpp>
+#include <abrade/dem/laws/lubrication.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // The cell list finds exactly the pairs that testing every pair finds.
-#include <abrade/dem/neighbours.hpp>
+#include <abrade/dem/store/neighbours.hpp>
 
 #include <doctest/doctest.h>
 
@@ -34,11 +34,11 @@ struct Random {
 
 /// Both lists; REQUIREs that they hold the same pairs, each once.
 std::size_t compare(const Spheres& s, Real skin) {
-    auto fast = near_pairs(s.query(skin)), slow = near_pairs_brute_force(s.query(skin));
+    auto fast = verlet_pairs(s.query(skin)), slow = verlet_pairs_brute_force(s.query(skin));
     std::sort(fast.begin(), fast.end()), std::sort(slow.begin(), slow.end());
     REQUIRE(fast == slow);
     REQUIRE(std::adjacent_find(fast.begin(), fast.end()) == fast.end());
-    for (const NearPair& p : fast) REQUIRE(p.first < p.second);
+    for (const VerletPair& p : fast) REQUIRE(p.first < p.second);
     return fast.size();
 }
 

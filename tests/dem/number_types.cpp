@@ -1,10 +1,10 @@
 // One source of the contact law for several number types.
 #include <abrade/core/simd.hpp>
-#include <abrade/dem/contact_kernel.hpp>
-#include <abrade/dem/elastic_plastic_hertz.hpp>
-#include <abrade/dem/hertz_mindlin.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/contacts/contact_kernel.hpp>
+#include <abrade/dem/laws/elastic_plastic_hertz.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 
 #include <doctest/doctest.h>
 
@@ -74,7 +74,7 @@ TEST_CASE("a pack of contacts answers as its contacts do one by one") {
             for (int a = 0; a < 3; ++a) {
                 all.normal[a].set(lane, normal[a]);
                 all.velocity[a].set(lane, one.back().velocity[a]);
-                all.travel[a].set(lane, one.back().travel[a]);
+                all.displacement[a].set(lane, one.back().displacement[a]);
                 held_by_all.spring[a].set(lane, held.back().spring[a]);
             }
             all.overlap.set(lane, overlap), all.inverse_mass.set(lane, 100), all.curvature.set(lane, 200);
@@ -135,7 +135,7 @@ TEST_CASE(
                         for (int a = 0; a < 3; ++a) {
                             all.normal[a].set(lane, one.back().normal[a]);
                             all.velocity[a].set(lane, one.back().velocity[a]);
-                            all.travel[a].set(lane, one.back().travel[a]);
+                            all.displacement[a].set(lane, one.back().displacement[a]);
                             held_by_all.spring[a].set(lane, held.back().spring[a]);
                         }
                         held_by_all.stiffness.set(lane, held.back().stiffness);
@@ -187,10 +187,10 @@ void lanes_answer_alone(const Law& yields, Real stiffness) {
         const Real speed = n % 2 ? 1 : 1e-3;
         for (int lane = 0; lane < pack_lanes; ++lane) {
             const Vec3 normal = anything().normalized(), velocity = speed * anything(),
-                       travel = speed * 1e-6 * anything(), spring = 1e-6 * anything();
+                       displacement = speed * 1e-6 * anything(), spring = 1e-6 * anything();
             for (int a = 0; a < 3; ++a) {
                 all.normal[a].set(lane, normal[a]), all.velocity[a].set(lane, velocity[a]);
-                all.travel[a].set(lane, travel[a]), held_by_all.spring[a].set(lane, spring[a]);
+                all.displacement[a].set(lane, displacement[a]), held_by_all.spring[a].set(lane, spring[a]);
             }
             all.overlap.set(lane, n % 2 ? 5e-5 * u(random) * u(random) : 5e-5);
             all.inverse_mass.set(lane, 100), all.curvature.set(lane, 200);

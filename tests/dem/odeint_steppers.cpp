@@ -1,5 +1,5 @@
 // The methods on systems whose solution is known: order, energy over a long time, memory, the velocity lag.
-#include <abrade/dem/odeint_steppers.hpp>
+#include <abrade/dem/time/odeint_steppers.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 // One contact by Verlet's method as the engine takes it: what a law answers to a fall, an impact, a path.
 
-#include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/laws/contact_law.hpp>
 
 #include <cmath>
 #include <random>

@@ -1,5 +1,5 @@
 // Columns stay straight when bodies come and go.
-#include <abrade/dem/particles.hpp>
+#include <abrade/dem/store/particles.hpp>
 #include <abrade/geometry/stone_shapes.hpp>
 
 #include "../message_of.hpp"

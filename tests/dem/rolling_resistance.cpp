@@ -1,8 +1,8 @@
 // Resistance to rolling: one contact at a time.
-#include <abrade/dem/contact_list.hpp>
-#include <abrade/dem/hertz_mindlin.hpp>
-#include <abrade/dem/linear_spring.hpp>
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/contacts/contact_list.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 #include <abrade/wear/wear_law.hpp>
 
 #include <doctest/doctest.h>
@@ -37,7 +37,7 @@ Hertz hertz() {
 ContactKinematics<Real> rolling_at(Real overlap, Real spin, Real dt = 1e-6) {
     ContactKinematics<Real> contact{Vec3(0, 0, 1), overlap, Vec3::Zero(), 100, 200, dt};
     contact.spin = Vec3(spin, 0, 0);
-    contact.turn = dt * contact.spin;
+    contact.rotation = dt * contact.spin;
     contact.inverse_turning = 1e6;
     return contact;
 }
@@ -69,7 +69,7 @@ TEST_CASE("the spring holds k_r theta up to mu_r R f_n, along what rolls, and sl
 TEST_CASE("spin about the normal is not resisted; nor is anything when the spheres are apart") {
     const Linear law = linear();
     ContactKinematics<Real> drilling = rolling_at(1e-4, 0);
-    drilling.spin = Vec3(0, 0, 50), drilling.turn = 1e-6 * drilling.spin;
+    drilling.spin = Vec3(0, 0, 50), drilling.rotation = 1e-6 * drilling.spin;
     CHECK(law.respond(drilling, Linear::Memory<Real>{}).load.couple.norm() == 0);
 
     const auto held = law.respond(rolling_at(1e-4, 5), Linear::Memory<Real>{});
@@ -77,10 +77,10 @@ TEST_CASE("spin about the normal is not resisted; nor is anything when the spher
     const auto apart = law.respond(rolling_at(-1e-9, 5), held.memory);
     CHECK(apart.load.couple.norm() == 0);
     CHECK(apart.load.stored == 0);
-    CHECK(apart.memory.turn.norm() == 0);
+    CHECK(apart.memory.rotation.norm() == 0);
     CHECK(apart.memory.stiffness == 0);
     // What the spring held is lost, once.
-    CHECK(apart.load.lost_rolling / (0.5 * stiffness * held.memory.turn.squaredNorm()) ==
+    CHECK(apart.load.lost_rolling / (0.5 * stiffness * held.memory.rotation.squaredNorm()) ==
           doctest::Approx(1).epsilon(1e-12).scale(0));
     CHECK(law.respond(rolling_at(-1e-9, 5), apart.memory).load.lost_rolling == 0);
 }
@@ -93,7 +93,7 @@ TEST_CASE("the force is that of the law alone, bit for bit") {
     for (int n = 0; n < 1000; ++n) {
         ContactKinematics<Real> contact{anything().normalized(), 1e-4 * u(random), anything(), 100, 200, 1e-6,
                                         1e-6 * anything()};
-        contact.spin = 30 * anything(), contact.turn = 1e-6 * contact.spin, contact.inverse_turning = 1e6;
+        contact.spin = 30 * anything(), contact.rotation = 1e-6 * contact.spin, contact.inverse_turning = 1e6;
         const Vec3 held = 1e-6 * anything();
         const auto with =
             linear().respond(contact, Linear::Memory<Real>{{held}, 1e-3 * anything(), stiffness});
@@ -138,15 +138,15 @@ TEST_CASE_TEMPLATE("a pack answers as its contacts do; limit and losses hold for
                  200,
                  1e-6,
                  speed * 1e-6 * anything()};
-            c.spin = 100 * speed * anything(), c.turn = 1e-6 * c.spin;
+            c.spin = 100 * speed * anything(), c.rotation = 1e-6 * c.spin;
             c.inverse_turning = 1e6 * (1.5 + u(random));
             auto& m = held.emplace_back();
-            m.turn = 1e-3 * speed * anything();
+            m.rotation = 1e-3 * speed * anything();
             m.stiffness = std::same_as<Law, Linear> ? stiffness : stiffness * (1 + 0.5 * u(random));
             for (int a = 0; a < 3; ++a) {
                 all.normal[a].set(lane, c.normal[a]), all.velocity[a].set(lane, c.velocity[a]);
-                all.travel[a].set(lane, c.travel[a]), all.spin[a].set(lane, c.spin[a]);
-                all.turn[a].set(lane, c.turn[a]);
+                all.displacement[a].set(lane, c.displacement[a]), all.spin[a].set(lane, c.spin[a]);
+                all.rotation[a].set(lane, c.rotation[a]);
             }
             all.overlap.set(lane, c.overlap), all.inverse_mass.set(lane, 100), all.curvature.set(lane, 200);
             all.inverse_turning.set(lane, c.inverse_turning);
@@ -163,7 +163,8 @@ TEST_CASE_TEMPLATE("a pack answers as its contacts do; limit and losses hold for
             for (int a = 0; a < 3; ++a) {
                 REQUIRE(answer.load.couple[a][lane] ==
                         doctest::Approx(alone.load.couple[a]).scale(couple).epsilon(1e-9));
-                REQUIRE(memory.turn[a] == doctest::Approx(alone.memory.turn[a]).scale(1e-3).epsilon(1e-9));
+                REQUIRE(memory.rotation[a] ==
+                        doctest::Approx(alone.memory.rotation[a]).scale(1e-3).epsilon(1e-9));
             }
             REQUIRE(memory.stiffness == doctest::Approx(alone.memory.stiffness).epsilon(1e-9));
             REQUIRE(answer.load.stored[lane] ==
@@ -207,13 +208,14 @@ TEST_CASE_TEMPLATE(
             const Real t = n * dt, overlap = 1e-4 * square(std::sin(pi * t / period)) + 1e-12;
             ContactKinematics<Real> contact = rolling_at(overlap, spin(t), dt);
             contact.velocity.z() = -1e-4 * pi / period * std::sin(2 * pi * t / period);
-            contact.turn = Vec3(dt * spin(t - 0.5 * dt), 0, 0);
+            contact.rotation = Vec3(dt * spin(t - 0.5 * dt), 0, 0);
             const auto [load, next] = law.respond(contact, memory);
             work -= load.couple.x() * spin(t) * dt;
             lost += load.lost_rolling;
             memory = next;
         }
-        return std::abs(work - lost - 0.5 * memory.stiffness * memory.turn.squaredNorm()) / std::abs(work);
+        return std::abs(work - lost - 0.5 * memory.stiffness * memory.rotation.squaredNorm()) /
+               std::abs(work);
     };
     for (const Real friction : {0.05, 0.5}) {
         const Real coarse = mismatch(friction, 200), fine = mismatch(friction, 800);
@@ -241,11 +243,11 @@ TEST_CASE("unequal spheres feel opposite torques, not opposite levers") {
     ContactSums sums;
     for (Index slab = 0; slab < store.slabs.count(); ++slab)
         sums += contacts.section(slab).respond(law, NoWear{}, {}, store.lines, {1e-5, 0.5});
-    const auto lever = [&](Index sphere) {
-        return store.lines.load[static_cast<std::size_t>(store.slot_of(sphere))].lever;
+    const auto torque_over_radius = [&](Index sphere) {
+        return store.lines.load[static_cast<std::size_t>(store.slot_of(sphere))].torque_over_radius;
     };
-    const Vec3 torque = 0.01 * lever(0);
-    CHECK((torque + 0.03 * lever(1)).norm() < 1e-15);
+    const Vec3 torque = 0.01 * torque_over_radius(0);
+    CHECK((torque + 0.03 * torque_over_radius(1)).norm() < 1e-15);
     const auto alone = law.respond(
         contact_between(store.lines, {}, {store.slot_of(0), store.slot_of(1)}, 1e-5), Linear::Memory<Real>{});
     CHECK((torque - alone.load.couple).norm() < 1e-12 * torque.norm());

@@ -1,5 +1,5 @@
 // Free rotation of an asymmetric body: what is conserved, the order, the flip about the middle axis.
-#include <abrade/dem/rotation.hpp>
+#include <abrade/dem/time/rotation.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // Our velocity Verlet as one of odeint's steppers.
-#include <abrade/dem/stepper.hpp>
+#include <abrade/dem/time/stepper.hpp>
 
 #include <doctest/doctest.h>
 #include <boost/numeric/odeint/integrate/integrate_const.hpp>

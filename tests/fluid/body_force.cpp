@@ -1,5 +1,5 @@
 // Grid water in a box that moves: a body force that changes in time, in a full box and below a surface.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -15,7 +15,7 @@ constexpr Real g = 9.81;
 
 GridFluid<2>::Params basin(PlaceFunction<2> water) {
     return {.grid = {.cells = {16, 16}, .spacing = Point<2>::Constant(1.0 / 16)},
-            .sides = Sides<2>::all(Side::slip),
+            .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
             .water = std::move(water),
             .gravity = {0, -g},
             .tolerance = 1e-10};
@@ -26,7 +26,7 @@ GridFluid<2>::Params basin(PlaceFunction<2> water) {
 TEST_CASE("a full box without ends moves as its force tells, to second order in the step") {
     const auto error_of = [](int pairs) {
         GridFluid<2, FullBox> flow({.grid = {.cells = {8, 8}, .spacing = Point<2>::Constant(0.125)},
-                                    .sides = Sides<2>::all(Side::periodic),
+                                    .boundaries = BoundaryConditions<2>::all(Boundary::periodic),
                                     .body_force = [](Real t) { return Point<2>(3 * std::cos(2 * t), 0); },
                                     .courant = 1});
         for (int k = 0; k < pairs; ++k) flow.step(0.4 / pairs), flow.step(0.6 / pairs);

@@ -1,6 +1,6 @@
 // Water along walls that close faces of the grid: it keeps its speed, gains no energy, and a mirror image of
 // it is the same.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@ using namespace abrade;
 TEST_CASE("water that turns in a frictionless circle slows down little, and does not speed up") {
     constexpr int n = 16;
     GridFluidParams<2> params{.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)},
-                              .sides = Sides<2>::all(Side::slip)};
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip)};
     const Point<2> centre(0.503, 0.497);
     params.wall = [=](const Point<2>& x) { return 0.48 - (x - centre).norm(); };
     params.wall_law = {WallLaw::Kind::slip};
@@ -35,7 +35,7 @@ TEST_CASE("a stream along a wall that meets a side is its mirror image's") {
     constexpr Real h = 0.05, slope = 0.57735;  // 30 degrees
     const auto stream = [&](bool mirrored) {
         GridFluidParams<2> params{.grid = {.cells = {n, 20}, .spacing = Point<2>::Constant(h)},
-                                  .sides = Sides<2>::all(Side::slip)};
+                                  .boundaries = BoundaryConditions<2>::all(Boundary::free_slip)};
         params.wall = [=](const Point<2>& x) {
             return 0.5 * (mirrored ? n * h - x[0] : x[0]) + 0.5 * std::sqrt(3.0) * (x[1] - 0.42);
         };

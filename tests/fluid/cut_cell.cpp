@@ -1,5 +1,5 @@
 // A plane in a cell: closed forms, the inverse, and normals that are parallel to faces, or nearly so.
-#include <abrade/fluid/cut_cell.hpp>
+#include <abrade/fluid/vof/plic.hpp>
 
 #include <doctest/doctest.h>
 
@@ -36,7 +36,7 @@ void check_inverse(bool nearly_degenerate) {
         Real f = uniform(random);
         if (k % 3 == 1) f = std::pow(10, exponent(random));
         if (k % 3 == 2) f = 1 - std::pow(10, exponent(random));
-        const Real back = liquid_fraction<Dim>(n, plane_distance<Dim>(n, f));
+        const Real back = fraction_below<Dim>(n, plane_distance<Dim>(n, f));
         worst = std::max(worst, std::abs(back - f));
     }
     CHECK(worst < 1e-14);
@@ -59,16 +59,16 @@ TEST_CASE("a plane against the sums of cubes") {
 TEST_CASE("planes parallel to faces and edges, and of no normal at all") {
     for (const Real d : {-0.6, -0.5, -0.3, 0.0, 0.2, 0.5, 0.9}) {
         const Real slab = std::clamp(d + 0.5, 0.0, 1.0);
-        CHECK(std::abs(liquid_fraction<3>(std::array<Real, 3>{0, 0, 1}, d) - slab) < 1e-15);
-        CHECK(std::abs(liquid_fraction<3>(std::array<Real, 3>{0, -2, 0}, 2 * d) - slab) < 1e-15);
-        CHECK(std::abs(liquid_fraction<2>(std::array<Real, 2>{1e-20, 1}, d) - slab) < 1e-15);
-        CHECK(std::abs(liquid_fraction<3>(std::array<Real, 3>{1e-20, 1e-17, 1}, d) - slab) < 1e-15);
+        CHECK(std::abs(fraction_below<3>(std::array<Real, 3>{0, 0, 1}, d) - slab) < 1e-15);
+        CHECK(std::abs(fraction_below<3>(std::array<Real, 3>{0, -2, 0}, 2 * d) - slab) < 1e-15);
+        CHECK(std::abs(fraction_below<2>(std::array<Real, 2>{1e-20, 1}, d) - slab) < 1e-15);
+        CHECK(std::abs(fraction_below<3>(std::array<Real, 3>{1e-20, 1e-17, 1}, d) - slab) < 1e-15);
         // Parallel to an edge: a triangle or what it leaves.
         const Real reach = 0.5 - std::abs(d) / 2, tip = reach > 0 ? 2 * reach * reach : 0;
-        CHECK(std::abs(liquid_fraction<3>(std::array<Real, 3>{1, 1e-19, 1}, d) - (d < 0 ? tip : 1 - tip)) <
+        CHECK(std::abs(fraction_below<3>(std::array<Real, 3>{1, 1e-19, 1}, d) - (d < 0 ? tip : 1 - tip)) <
               1e-15);
     }
-    const Real f = liquid_fraction<3>(std::array<Real, 3>{0, 0, 0}, 0.0);
+    const Real f = fraction_below<3>(std::array<Real, 3>{0, 0, 0}, 0.0);
     CHECK((f >= 0 && f <= 1));
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("slabs add up to the cell") {
         const Real low = uniform(random);
         const Real sum = low * slab_fraction(plane, axis, -1.0, low) +
                          (1 - low) * slab_fraction(plane, axis, 1.0, 1 - low);
-        CHECK(std::abs(sum - liquid_fraction(plane)) < 1e-14);
+        CHECK(std::abs(sum - fraction_below(plane)) < 1e-14);
     }
 }
 

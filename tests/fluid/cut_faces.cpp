@@ -1,7 +1,7 @@
 // Friction along a plane wall at any angle: in a uniform shear, u = s d along the wall, what the water about
 // a face brings is what the wall takes, for each face alone.
-#include <abrade/fluid/open_friction.hpp>
-#include <abrade/fluid/wall_friction.hpp>
+#include <abrade/fluid/embedded_boundary/open_friction.hpp>
+#include <abrade/fluid/embedded_boundary/wall_friction.hpp>
 
 #include <doctest/doctest.h>
 
@@ -29,13 +29,13 @@ struct Shear {
             return Grid<Dim>(box);
         }();
         const Layout<Dim>& layout = grid.layout();
-        const auto sides = Sides<Dim>::all(Side::slip);
-        const Walls<Dim> walls(grid, [this](const Point<Dim>& x) { return distance(x); },
-                               {.closed_below = 0});
-        const auto open = detail::open_friction_of(walls, sides);
+        const auto boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
+        const EmbeddedBoundary<Dim> walls(grid, [this](const Point<Dim>& x) { return distance(x); },
+                                          {.closed_below = 0});
+        const auto open = detail::open_friction_of(walls, boundaries);
         FaceField<Dim> taken = face_field<Dim>(layout);
-        for (const WallCell<Dim>& wall : walls.wall_cells())
-            WallFriction<Dim>::each_held_face(grid, sides, walls, wall, [&](const auto& f) {
+        for (const CutCell<Dim>& wall : walls.cut_cells())
+            WallFriction<Dim>::each_held_face(grid, boundaries, walls, wall, [&](const auto& f) {
                 taken[f.axis][f.face] += f.area / f.distance;
             });
         const Point<Dim> size = Point<Dim>::Constant(h);
@@ -45,7 +45,7 @@ struct Shear {
             for (const int i : cell)
                 if (i < 2 || i > 7) return;
             for (int a = 0; a < Dim; ++a) {
-                const Field<Real>& area = walls.open_area()[a];
+                const Field<Real>& area = walls.aperture()[a];
                 const auto speed = [&](Offset face) {
                     const Point<Dim> centroid = detail::centroid_of_face<Dim>(normal, size, a, area[face]);
                     return distance(grid.face_centre(a, layout.number(face)) + h * centroid);

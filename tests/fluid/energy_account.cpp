@@ -1,7 +1,7 @@
 // The energy account of water on a grid: it closes, its terms are those of closed forms, and what is left
 // over is small. What is measured stands in docs/verification/water_energy.md.
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 
 #include <doctest/doctest.h>
 
@@ -31,7 +31,7 @@ void look_at(const std::string& scene, const Flow& flow) {
 GridFluid<2> standing_wave(int cells, Real height) {
     return GridFluid<2>(
         {.grid = {.cells = {cells, cells * 3 / 4}, .spacing = Point<2>::Constant(1.0 / cells)},
-         .sides = Sides<2>::all(Side::slip),
+         .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
          .water = [=](const Point<2>& x) { return 0.5 + height * std::cos(pi * x[0]) - x[1]; },
          .gravity = {0, -g},
          .viscosity = 0,
@@ -42,7 +42,7 @@ Real period() { return 2 * pi / std::sqrt(g * pi * std::tanh(0.5 * pi)); }
 /// Half of a box is let go.
 GridFluid<2> dam(Real largest_step) {
     return GridFluid<2>({.grid = {.cells = {64, 40}, .spacing = Point<2>::Constant(1.0 / 40)},
-                         .sides = Sides<2>::all(Side::slip),
+                         .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                          .water = [](const Point<2>& x) { return std::min(0.5 - x[0], 0.5 - x[1]); },
                          .gravity = {0, -g},
                          .largest_step = largest_step});
@@ -66,7 +66,7 @@ TEST_CASE_TEMPLATE("centre of the part of a cell below a plane: by sections and 
         }
         plane.distance = half.constant = 0.5 * any(random) * half.slope.template lpNorm<1>();
         const auto part = detail::part_of_cell<dim>({&half, 1});
-        REQUIRE(part.volume == doctest::Approx(liquid_fraction(plane)).epsilon(1e-10));
+        REQUIRE(part.volume == doctest::Approx(fraction_below(plane)).epsilon(1e-10));
         for (int a = 0; a < dim && part.volume > 1e-6; ++a)
             REQUIRE(std::abs(detail::centroid_along(plane, a) - part.moment[a] / part.volume) < 1e-8);
     }
@@ -82,7 +82,7 @@ TEST_CASE(
                                              .low = Vec3(0, 0, 0.1),
                                              .spacing = Vec3(0.1, 0.1, 0.1),
                                              .levels = {0.1, 0.15, 0.22, 0.3, 0.42, 0.5, 0.7}},
-                                    .sides = Sides<3>::all(Side::slip),
+                                    .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                                     .water = [=](const Vec3& x) { return surface(x[0], x[1]) - x[2]; },
                                     .gravity = gravity};
         if (sloping) params.wall = [=](const Vec3& x) { return (x[2] - bed(x[0])) / std::hypot(1, 0.2); };
@@ -170,7 +170,7 @@ TEST_CASE("Taylor-Green vortices: friction is the analytic dissipation, the rest
     constexpr int n = 64;
     constexpr Real nu = 0.01;
     GridFluid<2, FullBox> flow({.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(2 * pi / n)},
-                                .sides = Sides<2>::all(Side::periodic),
+                                .boundaries = BoundaryConditions<2>::all(Boundary::periodic),
                                 .velocity =
                                     [](const Point<2>& x) {
                                         return Point<2>(std::cos(x[0]) * std::sin(x[1]),
@@ -191,12 +191,12 @@ TEST_CASE("Taylor-Green vortices: friction is the analytic dissipation, the rest
 }
 
 TEST_CASE("flow between plates, one of which moves: each term is needed") {
-    Sides<2> sides;
-    sides[0] = {Side::periodic, Side::periodic};
+    BoundaryConditions<2> boundaries;
+    boundaries[0] = {Boundary::periodic, Boundary::periodic};
     GridFluid<2, FullBox> flow(
         {.grid = {.cells = {4, 16}, .spacing = {0.0625, 0.0625}},
-         .sides = sides,
-         .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.999 ? 1 : 0, 0); },
+         .boundaries = boundaries,
+         .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.999 ? 1 : 0, 0); },
          .gravity = {8, 0},
          .density = 1,
          .viscosity = 1,
@@ -208,18 +208,18 @@ TEST_CASE("flow between plates, one of which moves: each term is needed") {
     const WaterEnergy& e = flow.energy();
     // u = z + 4 z (1 - z): discharge 1/2 + 2/3, shear at the wall that moves 1 - 4; for 0.5 s, 0.25 m long.
     CHECK(e.body_force == doctest::Approx(0.125 * 8 * (0.5 + 2.0 / 3)).epsilon(0.01).scale(0));
-    CHECK(e.sides == doctest::Approx(0.125 * (1 - 4)).epsilon(0.01).scale(0));
-    CHECK(e.viscous == doctest::Approx(e.body_force + e.sides).epsilon(1e-6).scale(0));
-    for (const Real term : {e.body_force, e.sides, e.viscous})
+    CHECK(e.boundaries == doctest::Approx(0.125 * (1 - 4)).epsilon(0.01).scale(0));
+    CHECK(e.viscous == doctest::Approx(e.body_force + e.boundaries).epsilon(1e-6).scale(0));
+    for (const Real term : {e.body_force, e.boundaries, e.viscous})
         CHECK(std::abs(e.numerical) < 1e-6 * std::abs(term));
 }
 
 TEST_CASE("a channel from inflow to outflow: what comes in and does not leave is lost to friction") {
-    Sides<2> sides;
-    sides[0] = {Side::inflow, Side::outflow};
+    BoundaryConditions<2> boundaries;
+    boundaries[0] = {Boundary::inflow, Boundary::outflow};
     GridFluid<2, FullBox> flow({.grid = {.cells = {48, 16}, .spacing = {0.0625, 0.0625}},
-                                .sides = sides,
-                                .side_velocity =
+                                .boundaries = boundaries,
+                                .boundary_velocity =
                                     [](const Point<2>& x, Real) {
                                         const Real z = std::clamp(x[1], 0.0, 1.0);
                                         return Point<2>(x[0] < 0.01 ? 4 * z * (1 - z) : 0, 0);
@@ -242,14 +242,14 @@ TEST_CASE("a laminar film on a side and on a bed inside a cell: gravity's work i
     constexpr Real slope = 0.1;
     for (const Real bed : {0.0, 0.03}) {
         GridFluidParams<2> params{.grid = {.cells = {8, 24}, .spacing = {0.05, 0.05}},
-                                  .sides = Sides<2>::all(Side::slip),
+                                  .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                                   .water = [=](const Point<2>& x) { return bed + 0.78 - x[1]; },
                                   .gravity = {g * std::sin(slope), -g * std::cos(slope)},
                                   .viscosity = 200,
                                   .tolerance = 1e-9};
-        params.sides[0] = {Side::periodic, Side::periodic};
+        params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
         if (bed == 0)
-            params.sides[1][0] = Side::wall;
+            params.boundaries[1][0] = Boundary::wall;
         else
             params.wall = [=](const Point<2>& x) { return x[1] - bed; };
         GridFluid<2> flow(params);
@@ -272,11 +272,11 @@ TEST_CASE("a laminar film on a side and on a bed inside a cell: gravity's work i
 }
 
 TEST_CASE("uniform flow with eddies over a rough bed: what gravity puts in") {
-    Sides<2> sides;
-    sides[0] = {Side::periodic, Side::periodic}, sides[1][1] = Side::slip;
-    GridFluid<2, FullBox, Limited, Real, MixingLength> flow(
+    BoundaryConditions<2> boundaries;
+    boundaries[0] = {Boundary::periodic, Boundary::periodic}, boundaries[1][1] = Boundary::free_slip;
+    GridFluid<2, FullBox, Koren, Real, MixingLength> flow(
         {.grid = {.cells = {4, 16}, .spacing = {0.0125, 0.00625}},
-         .sides = sides,
+         .boundaries = boundaries,
          .wall_law = {WallLaw::Kind::logarithmic, 3.5e-3},
          .velocity = [](const Point<2>&) { return Point<2>(1, 0); },
          .gravity = {g * 0.005, -g},
@@ -295,15 +295,15 @@ TEST_CASE("uniform flow with eddies over a rough bed: what gravity puts in") {
 TEST_CASE("a stream with a surface: in - out is what friction and eddies take, and the rest is told") {
     constexpr Real depth = 0.1, speed = 2;
     GridFluidParams<2> params{.grid = {.cells = {80, 16}, .spacing = {0.025, 0.0125}},
-                              .sides = Sides<2>::all(Side::slip),
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                               .wall_law = {WallLaw::Kind::logarithmic, 3.5e-3},
                               .water = [](const Point<2>& x) { return depth - x[1]; },
                               .velocity = [=](const Point<2>&) { return Point<2>(speed, 0); },
                               .gravity = {g * std::sin(0.01), -g * std::cos(0.01)},
                               .tolerance = 1e-7};
-    params.sides[0] = {Side::inflow, Side::outflow}, params.sides[1][0] = Side::wall;
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow}, params.boundaries[1][0] = Boundary::wall;
     Inflow<2>({.discharge = speed * depth, .depth = depth}).give_to(params);
-    GridFluid<2, FreeSurface, Limited, Real, MixingLength> flow(params, {.depth = depth});
+    GridFluid<2, FreeSurface, Koren, Real, MixingLength> flow(params, {.depth = depth});
     flow.open_energy_account();
     flow.advance(4);
     const Real kinetic = flow.energy().kinetic;
@@ -318,7 +318,7 @@ TEST_CASE("a stream with a surface: in - out is what friction and eddies take, a
 
 TEST_CASE("a box that is shaken: the force's work is the energy gained") {
     GridFluid<2, FullBox> full({.grid = {.cells = {8, 8}, .spacing = Point<2>::Constant(0.125)},
-                                .sides = Sides<2>::all(Side::periodic),
+                                .boundaries = BoundaryConditions<2>::all(Boundary::periodic),
                                 .body_force = [](Real t) { return Point<2>(3 * std::cos(2 * t), 0); },
                                 .largest_step = 0.01});
     full.open_energy_account();
@@ -330,7 +330,7 @@ TEST_CASE("a box that is shaken: the force's work is the energy gained") {
 
     constexpr Real frequency = 5.4;  // near the first mode's, 5.3
     GridFluid<2> tank({.grid = {.cells = {32, 24}, .spacing = Point<2>::Constant(1.0 / 32)},
-                       .sides = Sides<2>::all(Side::slip),
+                       .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                        .water = [](const Point<2>& x) { return 0.5 - x[1]; },
                        .gravity = {0, -g},
                        .body_force = [=](Real t) { return Point<2>(0.05 * std::sin(frequency * t), 0); },
@@ -364,7 +364,7 @@ TEST_CASE("dam break: what the scheme gains falls with the step") {
 TEST_CASE("a bed that wears: what changing the wall takes is told apart") {
     Real bed = 0.243;
     GridFluidParams<2> params{.grid = {.cells = {32, 32}, .spacing = {1.0 / 32, 1.0 / 32}},
-                              .sides = Sides<2>::all(Side::slip),
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                               .wall = [bed](const Point<2>& x) { return x[1] - bed; },
                               .water = [](const Point<2>& x) { return 0.613 - x[1]; },
                               .gravity = {0, -g}};

@@ -1,8 +1,8 @@
 // What a user asks a flow: pressures, sections and levels are those of closed forms.
-#include <abrade/fluid/flow_queries.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
-#include <abrade/fluid/wall_solids.hpp>
+#include <abrade/fluid/embedded_boundary/solid_shapes.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/queries/flow_queries.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 
 #include <doctest/doctest.h>
 
@@ -24,7 +24,7 @@ GridFluidParams<Dim> tank(int cells, Real level) {
     GridFluidParams<Dim> params;
     params.grid.cells.fill(cells);
     params.grid.spacing = Point<Dim>::Constant(1.0 / cells);
-    params.sides = Sides<Dim>::all(Side::slip);
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
     params.water = [level](const Point<Dim>& x) { return level - x[Dim - 1]; };
     params.gravity[Dim - 1] = -g;
     return params;
@@ -108,7 +108,7 @@ TEST_CASE("vortices between slip sides: pressures in the water and on the sides 
     const auto errors = [](int cells) {
         const Real size = std::numbers::pi / cells;
         const GridFluid<2, FullBox> still({.grid = {.cells = {cells, cells}, .spacing = {size, size}},
-                                           .sides = Sides<2>::all(Side::slip),
+                                           .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                                            .velocity =
                                                [](const Point<2>& x) {
                                                    return Point<2>(std::sin(x[0]) * std::cos(x[1]),
@@ -121,15 +121,15 @@ TEST_CASE("vortices between slip sides: pressures in the water and on the sides 
         flow.advance(0.2);
         const auto exact = [](Real x, Real z) { return 0.25 * (std::cos(2 * x) + std::cos(2 * z)); };
         const Real base = pressure_at(flow, {1.571, 1.571}) - exact(1.571, 1.571);
-        Real inside = 0, sides = 0;
+        Real inside = 0, boundaries = 0;
         for (Real s = 0.05; s < 3.1; s += 0.0713) {
             for (Real z = 0.06; z < 3.1; z += 0.0519)
                 inside = std::max(inside, std::abs(pressure_at(flow, {s, z}) - base - exact(s, z)));
-            sides = std::max(sides, std::abs(pressure_on_wall(flow, {s, 0}) - base - exact(s, 0)));
-            sides =
-                std::max(sides, std::abs(pressure_on_wall(flow, {std::numbers::pi, s}) - base - exact(0, s)));
+            boundaries = std::max(boundaries, std::abs(pressure_on_wall(flow, {s, 0}) - base - exact(s, 0)));
+            boundaries = std::max(
+                boundaries, std::abs(pressure_on_wall(flow, {std::numbers::pi, s}) - base - exact(0, s)));
         }
-        return std::pair(inside, sides);
+        return std::pair(inside, boundaries);
     };
     const auto coarse = errors(16), fine = errors(32);
     MESSAGE("largest error over the range of the pressure: inside "
@@ -141,11 +141,11 @@ TEST_CASE("vortices between slip sides: pressures in the water and on the sides 
 }
 
 TEST_CASE("a full box and uniform flow: discharge, mass, kinetic energy, area, speed") {
-    Sides<3> sides = Sides<3>::all(Side::slip);
-    sides[0] = {Side::inflow, Side::outflow};
+    BoundaryConditions<3> boundaries = BoundaryConditions<3>::all(Boundary::free_slip);
+    boundaries[0] = {Boundary::inflow, Boundary::outflow};
     GridFluid<3, FullBox> flow({.grid = {.cells = {8, 5, 4}, .spacing = {0.1, 0.2, 0.3}},
-                                .sides = sides,
-                                .side_velocity = [](const Point<3>&, Real) { return Point<3>(2, 0, 0); },
+                                .boundaries = boundaries,
+                                .boundary_velocity = [](const Point<3>&, Real) { return Point<3>(2, 0, 0); },
                                 .velocity = [](const Point<3>&) { return Point<3>(2, 0, 0); }});
     flow.advance(0.1);
     for (const Real x : {0.0, 0.1, 0.44, 0.8}) {
@@ -163,12 +163,12 @@ TEST_CASE("a full box and uniform flow: discharge, mass, kinetic energy, area, s
 
 TEST_CASE("a fast uniform stream: what comes in goes through each section, and so does its energy") {
     // Down a slope without friction in the bed's own coordinates; gravity across it alone.
-    Sides<2> sides = Sides<2>::all(Side::slip);
-    sides[0] = {Side::inflow, Side::outflow};
+    BoundaryConditions<2> boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
+    boundaries[0] = {Boundary::inflow, Boundary::outflow};
     const auto below = [](const Point<2>& x) { return 0.213 - x[1]; };
     GridFluid<2> flow({.grid = {.cells = {40, 16}, .spacing = {0.025, 0.025}},
-                       .sides = sides,
-                       .side_velocity = [](const Point<2>&, Real) { return Point<2>(3, 0); },
+                       .boundaries = boundaries,
+                       .boundary_velocity = [](const Point<2>&, Real) { return Point<2>(3, 0); },
                        .water = below,
                        .inflow_water = below,
                        .velocity = [](const Point<2>&) { return Point<2>(3, 0); },
@@ -192,8 +192,8 @@ TEST_CASE("the invert channel: the section has the discharge that the inflow was
     const Invert invert{};
     GridFluidParams<3> params;
     params.grid = {.cells = {10, 52, 16}, .low = {0, -0.52, -0.04}, .spacing = {0.05, 0.02, 0.02}};
-    params.sides = Sides<3>::all(Side::slip);
-    params.sides[0][1] = Side::outflow;
+    params.boundaries = BoundaryConditions<3>::all(Boundary::free_slip);
+    params.boundaries[0][1] = Boundary::outflow;
     params.gravity = {0, 0, -g};
     params.wall = InvertWall(invert);
     params.wall_law.kind = WallLaw::Kind::slip;

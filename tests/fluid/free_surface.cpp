@@ -1,8 +1,8 @@
 // The free surface: planes found exactly beside walls too, volume kept to round-off whatever the velocities,
 // fractions within their bounds, sides, threads, bad input.
-#include <abrade/fluid/fill_below.hpp>
-#include <abrade/fluid/volume_of_fluid.hpp>
-#include <abrade/fluid/walls.hpp>
+#include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
+#include <abrade/fluid/vof/fill_below.hpp>
+#include <abrade/fluid/vof/volume_of_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -35,7 +35,7 @@ void check_planes(bool stretched) {
     std::mt19937 random(1);
     std::normal_distribution<Real> normal;
     std::uniform_real_distribution<Real> part(0.3, 0.7);
-    VolumeOfFluid<Dim> water(grid, Sides<Dim>::all(Side::wall));
+    VolumeOfFluid<Dim> water(grid, BoundaryConditions<Dim>::all(Boundary::wall));
     Real worst = 0, worst_share = 0;
     long planes = 0, pairs = 0;
     for (int trial = 0; trial < 150; ++trial) {
@@ -90,7 +90,7 @@ void check_planes(bool stretched) {
 
 /// A velocity that is divergence-free but for `noise` [m/s] on each face; nothing passes closed sides.
 template <int Dim>
-FaceField<Dim> stirred(const Grid<Dim>& grid, const Sides<Dim>& sides, Real noise) {
+FaceField<Dim> stirred(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries, Real noise) {
     auto u = face_field<Dim>(grid.layout());
     std::mt19937 random(4);
     std::uniform_real_distribution<Real> uniform(-1, 1);
@@ -114,7 +114,7 @@ FaceField<Dim> stirred(const Grid<Dim>& grid, const Sides<Dim>& sides, Real nois
             u[a][c] += noise * uniform(random);
             // One face at both ends of a periodic axis; none at walls.
             if (cell[a] == 0) {
-                if (is_closed(sides[a][0])) u[a][c] = 0;
+                if (is_closed(boundaries[a][0])) u[a][c] = 0;
                 u[a][c + grid.cells(a) * grid.layout().stride[a]] = u[a][c];
             }
         });
@@ -130,25 +130,25 @@ Bounds bounds_of(const VolumeOfFluid<Dim>& water) {
     water.grid().for_each([&](const CellNumber<Dim>&, Offset c) {
         b.low = std::min(b.low, water.fraction()[c]);
         b.high = std::max(b.high, water.fraction()[c]);
-        b.deepest = std::min(b.deepest, water.surplus()[c]);
-        b.largest = std::max(b.largest, water.surplus()[c]);
+        b.deepest = std::min(b.deepest, water.volume_defect()[c]);
+        b.largest = std::max(b.largest, water.volume_defect()[c]);
     });
     return b;
 }
 
 template <int Dim>
-void check_volume(const Sides<Dim>& sides, bool stretched, Real noise, int steps) {
+void check_volume(const BoundaryConditions<Dim>& boundaries, bool stretched, Real noise, int steps) {
     CellNumber<Dim> cells;
     cells.fill(Dim == 3 ? 10 : 24);
     cells[0] += 2;
     const Grid<Dim> grid = grid_of<Dim>(cells, false, stretched);
-    VolumeOfFluid<Dim> water(grid, sides);
+    VolumeOfFluid<Dim> water(grid, boundaries);
     const Point<Dim> middle = 0.5 * (grid.centre(CellNumber<Dim>{}) + grid.centre(cells));
     fill_below<Dim>(
         water.fraction(), grid,
         [&](const Point<Dim>& x) { return std::min((x - middle).norm() - 0.3, x[Dim - 1] - 0.25); }, 2);
     water.prepare();
-    const auto u = stirred<Dim>(grid, sides, noise);
+    const auto u = stirred<Dim>(grid, boundaries, noise);
     const Real before = water.volume(), dt = 0.9 * water.stable_step(u);
     REQUIRE(before > 0);
     Real worst = 0, low = 1, high = 0;
@@ -178,24 +178,24 @@ TEST_CASE("planes are found exactly, whatever their tilt, beside sides too") {
 }
 
 TEST_CASE("volume to 1e-12 over 1000 steps, with divergence and without; bounds") {
-    check_volume<2>(Sides<2>::all(Side::wall), false, 0, 1000);
-    check_volume<2>(Sides<2>::all(Side::slip), true, 0.01, 1000);
-    check_volume<2>(Sides<2>::all(Side::periodic), false, 0.01, 1000);
-    check_volume<3>(Sides<3>::all(Side::wall), false, 1e-4, 400);
-    Sides<3> mixed = Sides<3>::all(Side::periodic);
-    mixed[2] = {Side::wall, Side::wall};
+    check_volume<2>(BoundaryConditions<2>::all(Boundary::wall), false, 0, 1000);
+    check_volume<2>(BoundaryConditions<2>::all(Boundary::free_slip), true, 0.01, 1000);
+    check_volume<2>(BoundaryConditions<2>::all(Boundary::periodic), false, 0.01, 1000);
+    check_volume<3>(BoundaryConditions<3>::all(Boundary::wall), false, 1e-4, 400);
+    BoundaryConditions<3> mixed = BoundaryConditions<3>::all(Boundary::periodic);
+    mixed[2] = {Boundary::wall, Boundary::wall};
     check_volume<3>(mixed, true, 0.01, 1000);
 }
 
 TEST_CASE("in the bulk the surplus is minus dt div u, and the flow through faces tells all that changed") {
     const Grid<3> grid = grid_of<3>({8, 8, 8}, false, false);
-    const auto sides = Sides<3>::all(Side::wall);
-    VolumeOfFluid<3> water(grid, sides);
+    const auto boundaries = BoundaryConditions<3>::all(Boundary::wall);
+    VolumeOfFluid<3> water(grid, boundaries);
     fill_below<3>(
         water.fraction(), grid, [](const Point<3>& x) { return x[2] - 0.71; }, 0);
     water.prepare();
     const Field<Real> before = water.fraction();
-    const auto u = stirred<3>(grid, sides, 0.05);
+    const auto u = stirred<3>(grid, boundaries, 0.05);
     const Real dt = 0.8 * water.stable_step(u);
     water.advance(u, dt);
     Real worst = 0, worst_bulk = 0, largest = 0;
@@ -204,16 +204,16 @@ TEST_CASE("in the bulk the surplus is minus dt div u, and the flow through faces
         Real out = 0, divergence = 0;
         for (std::size_t a = 0; a < 3; ++a) {
             const Offset up = c + grid.layout().stride[a];
-            out += water.moved()[a][up] - water.moved()[a][c];
+            out += water.volume_flux()[a][up] - water.volume_flux()[a][c];
             divergence += (u[a][up] - u[a][c]) / grid.size(static_cast<int>(a), cell[a]);
         }
-        const Real change = water.fraction()[c] + water.surplus()[c] - before[c];
+        const Real change = water.fraction()[c] + water.volume_defect()[c] - before[c];
         worst = std::max(worst, std::abs(change + out / grid.volume(cell)));
         if (cell[2] > 2) return;
         ++bulk;
         CHECK(water.fraction()[c] == 1);
         largest = std::max(largest, std::abs(dt * divergence));
-        worst_bulk = std::max(worst_bulk, std::abs(water.surplus()[c] + dt * divergence));
+        worst_bulk = std::max(worst_bulk, std::abs(water.volume_defect()[c] + dt * divergence));
     });
     CHECK(bulk == 3 * 64);
     CHECK(largest > 1e-3);
@@ -225,7 +225,7 @@ TEST_CASE("what divergence leaves in the bulk stays small where the velocity tak
     // The pressure is told surplus / dt as its target: here the divergence of each step is just that, and a
     // residual of its own.
     const Grid<2> grid = grid_of<2>({16, 16}, true, false);
-    VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall));
+    VolumeOfFluid<2> water(grid, BoundaryConditions<2>::all(Boundary::wall));
     fill_below<2>(
         water.fraction(), grid, [](const Point<2>& x) { return x[1] - 1.2; }, 0);
     water.prepare();
@@ -240,12 +240,12 @@ TEST_CASE("what divergence leaves in the bulk stays small where the velocity tak
             for (int z = 0; z < 14; ++z) {
                 const Offset c = grid.layout().at({i, z});
                 const bool full = water.fraction()[c] == 1;
-                u[1][c + 1] = u[1][c] + (full ? 0.1 * (water.surplus()[c] / dt + uniform(random)) : 0);
+                u[1][c + 1] = u[1][c] + (full ? 0.1 * (water.volume_defect()[c] / dt + uniform(random)) : 0);
             }
         water.advance(u, dt);
         for (int i = 0; i < 16; ++i)
             for (int z = 0; z < 10; ++z)
-                worst = std::max(worst, std::abs(water.surplus()[grid.layout().at({i, z})]));
+                worst = std::max(worst, std::abs(water.volume_defect()[grid.layout().at({i, z})]));
     }
     CHECK(worst > 0);
     CHECK(worst <= dt * residual * (1 + 1e-6));
@@ -254,8 +254,8 @@ TEST_CASE("what divergence leaves in the bulk stays small where the velocity tak
 TEST_CASE("a drop comes back where it was through periodic sides") {
     const auto error_of = [](int n) {
         const Grid<2> grid({.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)});
-        const auto sides = Sides<2>::all(Side::periodic);
-        VolumeOfFluid<2> water(grid, sides);
+        const auto boundaries = BoundaryConditions<2>::all(Boundary::periodic);
+        VolumeOfFluid<2> water(grid, boundaries);
         fill_below<2>(water.fraction(), grid,
                       [](const Point<2>& x) { return (x - Point<2>(0.5, 0.5)).norm() - 0.25; });
         water.prepare();
@@ -281,14 +281,14 @@ TEST_CASE("the same bits for one and two threads") {
     const auto run = [](int count) {
         set_thread_count(count);
         const Grid<3> grid = grid_of<3>({20, 18, 16}, false, false);
-        Sides<3> sides = Sides<3>::all(Side::wall);
-        sides[1] = {Side::periodic, Side::periodic};
-        VolumeOfFluid<3> water(grid, sides);
+        BoundaryConditions<3> boundaries = BoundaryConditions<3>::all(Boundary::wall);
+        boundaries[1] = {Boundary::periodic, Boundary::periodic};
+        VolumeOfFluid<3> water(grid, boundaries);
         fill_below<3>(water.fraction(), grid, [](const Point<3>& x) {
             return x[2] - 0.9 - 0.2 * std::sin(3 * x[0]) * std::cos(2 * x[1]);
         });
         water.prepare();
-        const auto u = stirred<3>(grid, sides, 0.02);
+        const auto u = stirred<3>(grid, boundaries, 0.02);
         const Real dt = 0.9 * water.stable_step(u);
         for (int k = 0; k < 20; ++k) water.advance(u, std::min(dt, water.stable_step(u)));
         return water;
@@ -297,17 +297,18 @@ TEST_CASE("the same bits for one and two threads") {
     set_thread_count(threads);
     bool same = one.planes().count() == two.planes().count();
     one.grid().for_each([&](const CellNumber<3>&, Offset c) {
-        same = same && one.fraction()[c] == two.fraction()[c] && one.surplus()[c] == two.surplus()[c];
-        for (std::size_t a = 0; a < 3; ++a) same = same && one.moved()[a][c] == two.moved()[a][c];
+        same = same && one.fraction()[c] == two.fraction()[c] &&
+               one.volume_defect()[c] == two.volume_defect()[c];
+        for (std::size_t a = 0; a < 3; ++a) same = same && one.volume_flux()[a][c] == two.volume_flux()[a][c];
     });
     CHECK(same);
 }
 
 TEST_CASE("inflow brings what it is given, outflow lets it leave") {
     const Grid<2> grid({.cells = {20, 10}, .spacing = Point<2>::Constant(0.1)});
-    Sides<2> sides = Sides<2>::all(Side::slip);
-    sides[0] = {Side::inflow, Side::outflow};
-    VolumeOfFluid<2> water(grid, sides);
+    BoundaryConditions<2> boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
+    boundaries[0] = {Boundary::inflow, Boundary::outflow};
+    VolumeOfFluid<2> water(grid, boundaries);
     // Water 0.43 m deep beyond the inflow, none in the box.
     grid.for_each(
         [&](const CellNumber<2>& cell, Offset c) {
@@ -322,8 +323,8 @@ TEST_CASE("inflow brings what it is given, outflow lets it leave") {
     for (int k = 0; k < 100; ++k) {
         water.advance(u, 0.04);
         for (int z = 0; z < 10; ++z) {
-            in += water.moved()[0][grid.layout().at({0, z})];
-            out += water.moved()[0][grid.layout().at({20, z})];
+            in += water.volume_flux()[0][grid.layout().at({0, z})];
+            out += water.volume_flux()[0][grid.layout().at({20, z})];
         }
         CHECK(std::abs(water.volume() - (in - out)) < 1e-13);
     }
@@ -351,7 +352,7 @@ TEST_CASE("walls that cut cells: the volume stays, nothing enters what is closed
             faces[1][c] = (to - from) / h;
         },
         1);
-    VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall));
+    VolumeOfFluid<2> water(grid, BoundaryConditions<2>::all(Boundary::wall));
     water.set_walls(&faces, &open);
     fill_below<2>(
         water.fraction(), grid, [](const Point<2>& x) { return x[1] - 0.6; }, 0);
@@ -382,7 +383,7 @@ TEST_CASE("walls that cut cells: the volume stays, nothing enters what is closed
     CHECK(b.low >= 0);
     CHECK(b.high <= 1);
     grid.for_each([&](const CellNumber<2>&, Offset c) {
-        if (open[c] <= smallest_open_volume) CHECK(water.fraction()[c] + water.surplus()[c] == 0);
+        if (open[c] <= smallest_open_fraction) CHECK(water.fraction()[c] + water.volume_defect()[c] == 0);
     });
 }
 
@@ -402,19 +403,19 @@ TEST_CASE("a planar surface is exact up to walls that cut cells") {
         Field<Real> open(grid.layout().total, 0), plane = open;
         fill_below<2>(open, grid, in_wall, 4);
         fill_below<2>(plane, grid, water_level, 0);
-        const Walls<2> walls(grid, [&](const Point<2>& x) { return -in_wall(x); });
-        VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall));
-        water.set_walls(&walls.open_area(), &open);
+        const EmbeddedBoundary<2> walls(grid, [&](const Point<2>& x) { return -in_wall(x); });
+        VolumeOfFluid<2> water(grid, BoundaryConditions<2>::all(Boundary::wall));
+        water.set_walls(&walls.aperture(), &open);
         grid.for_each([&](const CellNumber<2>& cell, Offset c) {
             const auto at = [&](const Point<2>& unit) {
                 return -water_level({grid.face(0, cell[0]) + unit[0] * grid.size(0, cell[0]),
                                      grid.face(1, cell[1]) + unit[1] * grid.size(1, cell[1])});
             };
-            if (open[c] > smallest_open_volume)
+            if (open[c] > smallest_open_fraction)
                 water.fraction()[c] = open[c] == 1
                                           ? plane[c]
                                           : detail::WaterAmongWalls<2>::share(
-                                                walls.open_area(), grid.layout().stride, c, open[c], at);
+                                                walls.aperture(), grid.layout().stride, c, open[c], at);
         });
         water.prepare();
         grid.for_each([&](const CellNumber<2>& cell, Offset c) {
@@ -442,12 +443,12 @@ TEST_CASE("a planar surface is exact up to walls that cut cells") {
 
 TEST_CASE("Courant limits: bounds beyond the stable step, and an error that names the cell beyond the end") {
     const Grid<2> grid({.cells = {16, 16}, .spacing = Point<2>::Constant(0.1)});
-    const auto sides = Sides<2>::all(Side::wall);
-    VolumeOfFluid<2> water(grid, sides);
+    const auto boundaries = BoundaryConditions<2>::all(Boundary::wall);
+    VolumeOfFluid<2> water(grid, boundaries);
     fill_below<2>(water.fraction(), grid,
                   [](const Point<2>& x) { return (x - Point<2>(0.8, 0.8)).norm() - 0.4; });
     water.prepare();
-    const auto u = stirred<2>(grid, sides, 0);
+    const auto u = stirred<2>(grid, boundaries, 0);
     const Real before = water.volume();
     for (int k = 0; k < 200; ++k) {
         const VolumeStep step = water.advance(u, 1.9 * water.stable_step(u));
@@ -465,19 +466,19 @@ TEST_CASE("Courant limits: bounds beyond the stable step, and an error that name
     auto still = face_field<2>(grid.layout());
     CHECK(std::isinf(water.stable_step(still)));
 
-    VolumeOfFluid<2> faster(grid, sides, {.courant = 0.9});
+    VolumeOfFluid<2> faster(grid, boundaries, {.courant = 0.9});
     faster.fraction() = water.fraction();
     faster.prepare();
     CHECK(faster.stable_step(u) == doctest::Approx(1.8 * water.stable_step(u)).epsilon(1e-12));
-    CHECK(message_of<InputError>([&] { VolumeOfFluid<2>(grid, sides, {.courant = 2}); }) ==
+    CHECK(message_of<InputError>([&] { VolumeOfFluid<2>(grid, boundaries, {.courant = 2}); }) ==
           "VolumeOfFluid.courant must be in (0, 1], got 2; 0.5 is usual");
 }
 
 TEST_CASE("a single wet cell, a full box, an empty box") {
     const Grid<3> grid = grid_of<3>({6, 6, 6}, true, false);
-    const auto sides = Sides<3>::all(Side::wall);
-    const auto u = stirred<3>(grid, sides, 0.01);
-    VolumeOfFluid<3> water(grid, sides);
+    const auto boundaries = BoundaryConditions<3>::all(Boundary::wall);
+    const auto u = stirred<3>(grid, boundaries, 0.01);
+    VolumeOfFluid<3> water(grid, boundaries);
     CHECK(water.advance(u, 0.1).courant == 0);
     CHECK(water.volume() == 0);
     water.fraction()[grid.layout().at({2, 3, 3})] = 0.4;
@@ -494,14 +495,15 @@ TEST_CASE("a single wet cell, a full box, an empty box") {
 }
 
 TEST_CASE("bad input") {
-    Sides<2> sides;
-    sides[0] = {Side::periodic, Side::outflow};
+    BoundaryConditions<2> boundaries;
+    boundaries[0] = {Boundary::periodic, Boundary::outflow};
     const Grid<2> grid({.cells = {4, 4}, .spacing = Point<2>::Constant(0.1)});
-    CHECK(message_of<InputError>([&] { VolumeOfFluid<2> water(grid, sides); }) ==
-          "Sides.x must be periodic at both ends or at none, got periodic and outflow; what leaves at one "
+    CHECK(message_of<InputError>([&] { VolumeOfFluid<2> water(grid, boundaries); }) ==
+          "BoundaryConditions.x must be periodic at both ends or at none, got periodic and outflow; what "
+          "leaves at one "
           "end must "
           "come back at the other");
-    VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall));
+    VolumeOfFluid<2> water(grid, BoundaryConditions<2>::all(Boundary::wall));
     water.fraction()[grid.layout().at({1, 2})] = 1.5;
     CHECK(message_of<InputError>([&] { water.prepare(); }) ==
           "VolumeOfFluid.fraction[1, 2] must be from 0 to 1, got 1.5; give the share of the cell's open "

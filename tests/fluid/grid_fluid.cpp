@@ -1,6 +1,6 @@
 // Water on a grid: rest, drops, closed boxes, films, errors that leave it as it was, bits that do not depend
 // on threads.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -15,7 +15,7 @@ constexpr Real g = 9.81;
 /// A basin of n x n cells of 1 m in all, filled below `surface`.
 GridFluid<2>::Params basin(int n, PlaceFunction<2> water) {
     return {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)},
-            .sides = Sides<2>::all(Side::slip),
+            .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
             .water = std::move(water),
             .gravity = {0, -g}};
 }
@@ -148,7 +148,7 @@ bool same_bits(const std::vector<Real>& a, const std::vector<Real>& b) {
 TEST_CASE("the same bits for a long box, of which momentum is carried in parts, and three threads") {
     const GridFluidParams<2> params{
         .grid = {.cells = {280, 24}, .spacing = Point<2>::Constant(0.02)},
-        .sides = Sides<2>::all(Side::slip),
+        .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
         .wall = [](const Point<2>& x) { return (x - Point<2>(3, 0)).norm() - 0.1; },
         .water = [](const Point<2>& x) { return x[0] < 2.5 ? 0.4 - x[1] : 0.1 - x[1]; },
         .gravity = {0, -g}};
@@ -160,7 +160,7 @@ TEST_CASE("the same bits for a long box, of which momentum is carried in parts, 
 TEST_CASE("the same bits for one thread and two") {
     const GridFluidParams<3> params{
         .grid = {.cells = {40, 12, 24}, .spacing = Point<3>::Constant(0.05)},
-        .sides = Sides<3>::all(Side::slip),
+        .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
         .wall = [](const Point<3>& x) { return (x - Point<3>(1, 0.3, 0)).norm() - 0.2; },
         .water = [](const Point<3>& x) { return std::min(0.6 - x[0], 0.8 - x[2]); },
         .gravity = {0, 0, -g}};
@@ -181,7 +181,7 @@ TEST_CASE("steps name their limit") {
 TEST_CASE("a step that is too long in a full box is refused before it is taken, with its limit") {
     GridFluid<2, FullBox> flow(
         {.grid = {.cells = {16, 16}, .spacing = Point<2>::Constant(1.0 / 16)},
-         .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
+         .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
          .density = 1,
          .viscosity = 1e-2});
     flow.advance(1);
@@ -211,16 +211,17 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     params.grid.spacing[1] = 0;
     CHECK(says(params).starts_with("Grid.spacing.z must be finite and > 0, got 0 m"));
     params = good;
-    params.sides[0] = {Side::periodic, Side::wall};
+    params.boundaries[0] = {Boundary::periodic, Boundary::wall};
     CHECK(says(params).find("periodic at both ends") != std::string::npos);
     params = good;
-    params.sides[1] = {Side::periodic, Side::periodic};
+    params.boundaries[1] = {Boundary::periodic, Boundary::periodic};
     CHECK(says(params) ==
-          "GridFluid.sides.z must be not periodic where there is a surface, got periodic; close the floor, "
+          "GridFluid.boundaries.z must be not periodic where there is a surface, got periodic; close the "
+          "floor, "
           "or take a FullBox");
     params = good;
-    params.sides[0][0] = Side::inflow;
-    CHECK(says(params).starts_with("GridFluid.side_velocity must be given where a side is an inflow"));
+    params.boundaries[0][0] = Boundary::inflow;
+    CHECK(says(params).starts_with("GridFluid.boundary_velocity must be given where a side is an inflow"));
     params = good;
     params.wall = [](const Point<2>&) { return -1.0; };
     CHECK(says(params).find("leaves open") != std::string::npos);
@@ -240,7 +241,7 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     params.velocity = [](const Point<2>&) { return Point<2>(1e200, 0); };
     CHECK(
         says(params).starts_with("GridFluid.velocity.x at x = 0 m, z = 0.0625 m, t = 0 s must be at most "
-                                 "GridFluid.fastest, 100, got 1e+200 m/s"));
+                                 "GridFluid.velocity_limit, 100, got 1e+200 m/s"));
     params = good;
     params.start_time = 1e17;
     CHECK(says(params).starts_with("GridFluid.start_time must be from -1e9 to 1e9, got 1e+17 s"));
@@ -258,12 +259,12 @@ TEST_CASE("bad input names field, value, rule and remedy") {
     params = good;
     params.inflow_water = good.water;
     CHECK(says(params).starts_with("GridFluid.inflow_water must be left out where no side is an inflow"));
-    params.sides[0] = {Side::inflow, Side::outflow};
-    params.side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.5 ? inf : 1, 0); };
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
+    params.boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.5 ? inf : 1, 0); };
     CHECK(
-        says(params).starts_with("GridFluid.side_velocity.x at x = 0 m, z = 0.5625 m, t = 0 s must be "
+        says(params).starts_with("GridFluid.boundary_velocity.x at x = 0 m, z = 0.5625 m, t = 0 s must be "
                                  "finite, got inf m/s"));
-    params.side_velocity = [](const Point<2>&, Real) { return Point<2>(1, 0); };
+    params.boundary_velocity = [](const Point<2>&, Real) { return Point<2>(1, 0); };
     CHECK(says(params) == "");
     params.outflow_water = [](const Point<2>& x) { return x[1] > 0.5 ? nan : 0; };
     CHECK(says(params).starts_with("GridFluid.outflow_water at x = 1 m, z = 0.5625 m must be finite, got"));
@@ -281,10 +282,10 @@ TEST_CASE("bad input names field, value, rule and remedy") {
 TEST_CASE(
     "what is given later and is no number, and functions that throw: named, and the flow is as it was") {
     auto params = basin(16, [](const Point<2>& x) { return 0.5 - x[1]; });
-    params.sides[0] = {Side::inflow, Side::outflow};
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
     params.inflow_water = params.water;
-    params.steady_sides = false;
-    params.side_velocity = [](const Point<2>&, Real t) { return Point<2>(std::sqrt(0.1 - t), 0); };
+    params.steady_boundaries = false;
+    params.boundary_velocity = [](const Point<2>&, Real t) { return Point<2>(std::sqrt(0.1 - t), 0); };
     GridFluid<2> flow(params);
     std::string message;
     try {
@@ -293,12 +294,12 @@ TEST_CASE(
         message = error.what();
     }
     MESSAGE(message);
-    CHECK(message.find("GridFluid.side_velocity.x at x = 0 m") != std::string::npos);
+    CHECK(message.find("GridFluid.boundary_velocity.x at x = 0 m") != std::string::npos);
     CHECK(flow.time() < 0.1);
     flow.advance(0.099);
     CHECK(flow.time() == 0.099);
     CHECK(std::isfinite(flow.kinetic_energy()));
-    params.side_velocity = [](const Point<2>&, Real t) {
+    params.boundary_velocity = [](const Point<2>&, Real t) {
         if (t > 0.05) throw std::runtime_error("no record of the river");
         return Point<2>(0.5, 0);
     };
@@ -310,10 +311,10 @@ TEST_CASE(
 
 TEST_CASE("an inflow that begins later enters a dry box") {
     auto params = basin(16, {});
-    params.sides[0] = {Side::inflow, Side::outflow};
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
     params.inflow_water = [](const Point<2>& x) { return 0.25 - x[1]; };
-    params.steady_sides = false;
-    params.side_velocity = [](const Point<2>&, Real t) { return Point<2>(std::min(10 * t, 1.0), 0); };
+    params.steady_boundaries = false;
+    params.boundary_velocity = [](const Point<2>&, Real t) { return Point<2>(std::min(10 * t, 1.0), 0); };
     params.largest_step = 1e-3;
     GridFluid<2> flow(params);
     flow.advance(0.2);
@@ -323,8 +324,8 @@ TEST_CASE("an inflow that begins later enters a dry box") {
 
 TEST_CASE("a box that fills: refused as soon as nothing is left that could rise") {
     auto params = basin(16, [](const Point<2>& x) { return 0.5 - x[1]; });
-    params.sides[0][0] = Side::inflow;
-    params.side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] < 0.25 ? 1 : 0, 0); };
+    params.boundaries[0][0] = Boundary::inflow;
+    params.boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] < 0.25 ? 1 : 0, 0); };
     params.inflow_water = [](const Point<2>&) { return 1.0; };
     GridFluid<2> flow(params);
     CHECK_THROWS_WITH_AS(flow.advance(4), doctest::Contains("more flows in than out"), FluidError);

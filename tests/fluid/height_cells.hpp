@@ -1,7 +1,7 @@
 #pragma once
 // What the cells below a height say, in two and three dimensions: not what the class says of itself.
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +14,9 @@ using namespace abrade;
 Real volume_in_cells(const auto& flow) {
     long double sum = 0;
     flow.grid().for_each([&](const auto& cell, Offset c) {
-        const Real open = flow.walls() ? flow.walls()->open_volume()[c] : 1;
+        const Real open = flow.walls() ? flow.walls()->open_fraction()[c] : 1;
         sum += static_cast<long double>(open * flow.grid().volume(cell)) *
-               static_cast<long double>(flow.liquid().fraction()[c] + flow.liquid().surplus()[c]);
+               static_cast<long double>(flow.liquid().fraction()[c] + flow.liquid().volume_defect()[c]);
     });
     return static_cast<Real>(sum);
 }

@@ -1,7 +1,7 @@
 // A surface that is a height: waves, dams beside those of volume of fluid, rest over beds that cut cells and
 // on dry shores, channels, walls that change, and what is refused. Volume is kept to round-off in all of
 // them.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,7 @@ constexpr Real round_off = 1e-12;  ///< of sums over some thousand cells in some
 
 GridFluidParams<2> box(int along, int up, Real spacing) {
     return {.grid = {.cells = {along, up}, .spacing = {spacing, spacing}},
-            .sides = Sides<2>::all(Side::slip),
+            .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
             .gravity = {0, -g}};
 }
 
@@ -78,7 +78,7 @@ struct Wave {
 template <class Fluid>
 Wave swing() {
     auto params = box(64, 48, 1.0 / 64);
-    params.sides[0] = {Side::periodic, Side::periodic};
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
     params.viscosity = 0;
     static constexpr Real depth = 0.5, height = 0.01;
     params.water = [](const Point<2>& x) { return depth + height * std::cos(2 * pi * x[0]) - x[1]; };
@@ -219,9 +219,9 @@ TEST_CASE("shores: a tilted surface swings in a bowl, and no film runs away") {
 TEST_CASE("faster than its waves in and out: a channel keeps discharge and depth") {
     static constexpr Real depth = 0.21, speed = 3;  // Froude number 2.1
     auto params = box(60, 16, 0.025);
-    params.sides[0] = {Side::inflow, Side::outflow};
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
     params.viscosity = 0;
-    params.side_velocity = [](const Point<2>&, Real) { return Point<2>(speed, 0); };
+    params.boundary_velocity = [](const Point<2>&, Real) { return Point<2>(speed, 0); };
     params.inflow_water = [](const Point<2>& x) { return depth - x[1]; };
     Flow flow(params);  // dry at first
     flow.advance(2);
@@ -277,9 +277,9 @@ TEST_CASE("what is not one height is refused, and the surface that knows it is n
     params.water = [](const Point<2>& x) { return 0.2 - std::hypot(x[0] - 0.5, x[1] - 0.7); };
     CHECK(message_of([&] { Flow{params}; }).find("FreeSurface") != std::string::npos);  // a drop
     params.water = [](const Point<2>& x) { return 0.6 - x[1]; };
-    params.sides[1][0] = Side::outflow;
+    params.boundaries[1][0] = Boundary::outflow;
     CHECK(message_of([&] { Flow{params}; }).find("FreeSurface") != std::string::npos);  // no floor
-    params.sides[1][0] = Side::slip;
+    params.boundaries[1][0] = Boundary::free_slip;
     params.gravity = {0, g};
     CHECK(message_of([&] { Flow{params}; }).find("FreeSurface") !=
           std::string::npos);  // nothing holds it there
@@ -301,7 +301,7 @@ TEST_CASE("a wall that is refused later leaves the flow as it was") {
 TEST_CASE("water that wants to overturn in a large part of its area stops the run") {
     // Streams that meet every tenth of a metre, faster than their waves: crests everywhere.
     auto params = box(128, 96, 1.0 / 64);
-    params.sides[0] = {Side::periodic, Side::periodic};
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
     params.water = [](const Point<2>& x) { return 0.3 - x[1]; };
     params.velocity = [](const Point<2>& x) {
         const Real k = 20 * pi;

@@ -1,6 +1,6 @@
 // A surface that is a height in three dimensions: rest, a dam on a dry hill, the same bits for one thread and
 // two.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -22,7 +22,7 @@ constexpr Real g = 9.81;
 
 GridFluidParams<3> tank(int n, PlaceFunction<3> wall, PlaceFunction<3> water) {
     GridFluidParams<3> params{.grid = {.cells = {2 * n, n, n}, .spacing = Vec3::Constant(1.0 / n)},
-                              .sides = Sides<3>::all(Side::slip),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .gravity = {0, 0, -g}};
     params.wall = std::move(wall);
     params.water = std::move(water);
@@ -59,7 +59,7 @@ TEST_CASE("rest in an invert, its surface tilted with gravity") {
     constexpr Real slope = 0.05, depth = 0.097;
     GridFluidParams<3> params{
         .grid = {.cells = {12, 25, 6}, .low = {0, -0.5, 0}, .spacing = Vec3::Constant(0.04)},
-        .sides = Sides<3>::all(Side::slip),
+        .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
         .wall = InvertWall({.length = 1, .width = 1, .arc_radius = 1, .slope = 0}),
         .gravity = {g * slope, 0, -g * std::sqrt(1 - slope * slope)},
         .tolerance = 1e-8};

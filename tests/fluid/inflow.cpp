@@ -1,8 +1,8 @@
 // Streams of given discharge and depth: the section carries the discharge, on the grid too; bad input.
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/embedded_boundary/shapes.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
-#include <abrade/fluid/wall_shapes.hpp>
 
 #include <doctest/doctest.h>
 
@@ -60,10 +60,10 @@ TEST_CASE("what enters the grid is the discharge") {
                                                      static_cast<int>(std::ceil(0.36 / size))},
                                            .low = {0, -0.5, 0},
                                            .spacing = Vec3::Constant(size)},
-                                  .sides = Sides<3>::all(Side::slip),
+                                  .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                                   .wall = InvertWall(invert),
                                   .gravity = invert.gravity()};
-        params.sides[0][1] = Side::outflow;
+        params.boundaries[0][1] = Boundary::outflow;
         stream.give_to(params);
         GridFluid<3> flow(params);
         flow.advance(0.02);
@@ -78,7 +78,7 @@ TEST_CASE("what enters the grid is the discharge") {
 
 TEST_CASE("a bed that has worn at the inflow keeps the discharge") {
     GridFluidParams<2> params{.grid = {.cells = {20, 20}, .spacing = Point<2>::Constant(0.05)},
-                              .sides = Sides<2>::all(Side::slip),
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                               .wall = [](const Point<2>& x) { return x[1] - 0.21; },
                               .gravity = {0, -9.81}};
     Inflow<2>({.discharge = 0.6, .depth = 0.3, .bed = 0.21}).give_to(params);

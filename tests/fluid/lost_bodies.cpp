@@ -1,6 +1,6 @@
 // Bodies that the water's box cannot hold end the run in the step where it is seen.
 
-#include <abrade/fluid/lost_bodies.hpp>
+#include <abrade/fluid/navier_stokes/lost_bodies.hpp>
 
 #include <doctest/doctest.h>
 
@@ -12,12 +12,12 @@ using namespace abrade;
 namespace lost_bodies_test {
 
 /// What is said of a ball of 0.1 m at `x` in a box of 1 x 1 x 0.5 m; empty: nothing.
-std::string said_of(const Vec3& x, const Sides<3>& sides = {}, bool has_surface = false, Real volume = 5e-4,
-                    Real inverse_mass = 1) {
+std::string said_of(const Vec3& x, const BoundaryConditions<3>& boundaries = {}, bool has_surface = false,
+                    Real volume = 5e-4, Real inverse_mass = 1) {
     const Grid<3> grid({.cells = {10, 10, 5}, .low = {0, 0, 0}, .spacing = {0.1, 0.1, 0.1}});
     FlowBody body{.id = 7, .position = x, .volume = volume, .inverse_mass = inverse_mass};
     try {
-        detail::refuse_lost(grid, sides, {&body, 1}, has_surface);
+        detail::refuse_lost(grid, boundaries, {&body, 1}, has_surface);
     } catch (const FluidError& error) {
         return error.what();
     }
@@ -39,8 +39,8 @@ TEST_CASE("air above a surface, open sides and bodies that move as told are not 
     CHECK(has(said_of({0.5, 0.5, 0.6}), "z = 0.5 m"));
     CHECK(said_of({0.5, 0.5, 0.6}, {}, true).empty());
     CHECK(has(said_of({0.5, 0.5, -0.1}, {}, true), "z = 0 m"));
-    Sides<3> open;
-    open[0][1] = Side::outflow;
+    BoundaryConditions<3> open;
+    open[0][1] = Boundary::outflow;
     CHECK(said_of({1.1, 0.5, 0.25}, open).empty());
     CHECK(!said_of({-0.1, 0.5, 0.25}, open).empty());
     CHECK(said_of({-1, 0.5, 0.25}, {}, false, 5e-4, 0).empty());

@@ -1,5 +1,5 @@
 // The pressure's solver: against Eigen's conjugate gradients, flat iteration counts, singular boxes, threads.
-#include <abrade/fluid/multigrid.hpp>
+#include <abrade/fluid/pressure/multigrid.hpp>
 
 #include <doctest/doctest.h>
 #include <Eigen/IterativeLinearSolvers>

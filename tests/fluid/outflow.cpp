@@ -1,7 +1,7 @@
 // A tailwater behind an outflow: water at rest rests, a slow stream takes its level, a step that goes
 // wrong, bad input.
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 
 #include <doctest/doctest.h>
 
@@ -17,11 +17,11 @@ constexpr Real g = 9.81;
 
 GridFluidParams<2> channel(Real level) {
     GridFluidParams<2> p{.grid = {.cells = {60, 16}, .spacing = {0.05, 0.025}},
-                         .sides = Sides<2>::all(Side::slip),
+                         .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                          .water = [](const Point<2>& x) { return 0.21 - x[1]; },
                          .outflow_water = [level](const Point<2>& x) { return level - x[1]; },
                          .gravity = {0, -g}};
-    p.sides[0][1] = Side::outflow;
+    p.boundaries[0][1] = Boundary::outflow;
     return p;
 }
 Real mean_depth(const GridFluid<2>& flow) {
@@ -80,8 +80,8 @@ void let_out(int axis, bool high, CellNumber<Dim> cells, Point<Dim> spacing) {
     };
     GridFluidParams<Dim> p;
     p.grid.cells = cells, p.grid.spacing = spacing;
-    p.sides = Sides<Dim>::all(Side::slip);
-    p.sides[axis][high] = Side::outflow;
+    p.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
+    p.boundaries[axis][high] = Boundary::outflow;
     p.water = [=](const Point<Dim>& x) { return depth + risen(x) - x[up]; };
     p.outflow_water = [=](const Point<Dim>& x) { return depth - x[up]; };
     p.velocity = [=](const Point<Dim>& x) {
@@ -135,11 +135,11 @@ TEST_CASE("water that comes back through an outflow brings no energy along") {
         CAPTURE(start);
         constexpr Real level = 0.25, length = 5;
         GridFluidParams<2> p{.grid = {.cells = {100, 30}, .spacing = {0.05, 0.02}},
-                             .sides = Sides<2>::all(Side::slip),
+                             .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                              .water = [=](const Point<2>& x) { return start - x[1]; },
                              .outflow_water = [](const Point<2>& x) { return level - x[1]; },
                              .gravity = {0, -g}};
-        p.sides[0][1] = Side::outflow;
+        p.boundaries[0][1] = Boundary::outflow;
         GridFluid<2> flow(p);
         const Grid<2>& grid = flow.grid();
         const auto energy = [&] {
@@ -165,12 +165,12 @@ TEST_CASE("water that comes back through an outflow brings no energy along") {
 
 TEST_CASE("a cylinder that stands in a free outflow: no water comes from beyond, and no energy") {
     GridFluidParams<2> params{.grid = {.cells = {20, 16}, .spacing = {0.05, 0.05}},
-                              .sides = Sides<2>::all(Side::slip),
-                              .side_velocity = [](const Point<2>&, Real) { return Point<2>(3, 0); },
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
+                              .boundary_velocity = [](const Point<2>&, Real) { return Point<2>(3, 0); },
                               .wall = [](const Point<2>& x) { return (x - Point<2>(1, 0.13)).norm() - 0.13; },
                               .inflow_water = [](const Point<2>& x) { return 0.15 - x[1]; },
                               .gravity = {0, -g}};
-    params.sides[0] = {Side::inflow, Side::outflow};
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
     GridFluid<2> flow(params);
     Real most = 0, beyond = 0;
     while (flow.time() < 3) {
@@ -187,14 +187,14 @@ TEST_CASE("a gap that walls leave before a tailwater, which widens to the side")
     const Real depth = 0.23557931349346808;
     GridFluidParams<2> params{
         .grid = {.cells = {19, 17}, .spacing = {0.05, 0.0273966}},
-        .sides = Sides<2>::all(Side::slip),
-        .side_velocity = [](const Point<2>&, Real) { return Point<2>(2.17, 0); },
+        .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
+        .boundary_velocity = [](const Point<2>&, Real) { return Point<2>(2.17, 0); },
         .wall = [](const Point<2>& x) { return (x - Point<2>(0.906883, 0.132026)).norm() - 0.13173; },
         .water = [=](const Point<2>& x) { return std::min(0.5567 - x[0], depth - x[1]); },
         .inflow_water = [=](const Point<2>& x) { return depth - x[1]; },
         .outflow_water = [=](const Point<2>& x) { return depth - x[1]; },
         .gravity = {0, -g}};
-    params.sides[0] = {Side::inflow, Side::outflow};
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
     GridFluid<2> flow(params);
     flow.advance(1);
     // What comes in and falls from the lid makes 3.7 m/s, and walls squeeze it (docs: grid_fluid, not
@@ -204,17 +204,17 @@ TEST_CASE("a gap that walls leave before a tailwater, which widens to the side")
 
 TEST_CASE("where there is nothing to hold it is refused") {
     auto params = channel(0.2);
-    params.sides[0][1] = Side::slip;
+    params.boundaries[0][1] = Boundary::free_slip;
     CHECK(message_of([&] { GridFluid<2> flow(params); })
               .starts_with(
                   "GridFluid.outflow_water must be left out where no side is an outflow, got given; make"));
-    params.sides[0][1] = Side::outflow;
+    params.boundaries[0][1] = Boundary::outflow;
     CHECK(message_of([&] {
               GridFluid<2, FullBox> flow(params);
           }).starts_with("GridFluid.outflow_water must be left out of a FullBox"));
     std::swap(params.inflow_water, params.outflow_water);
-    params.sides[0][0] = Side::inflow;
-    params.side_velocity = [](const Point<2>&, Real) { return Point<2>(1, 0); };
+    params.boundaries[0][0] = Boundary::inflow;
+    params.boundary_velocity = [](const Point<2>&, Real) { return Point<2>(1, 0); };
     CHECK(message_of([&] {
               GridFluid<2, FullBox> flow(params);
           }).starts_with("GridFluid.inflow_water must be left out of a FullBox"));
@@ -223,7 +223,7 @@ TEST_CASE("where there is nothing to hold it is refused") {
 TEST_CASE("a step that goes wrong leaves what streams out as it was") {
     auto params = channel(0.21);
     params.outflow_water = {};
-    params.fastest = 20;
+    params.velocity_limit = 20;
     auto push = std::make_shared<Real>(0);
     params.body_force = [push](Real) { return Point<2>(*push, 0); };
     Inflow<2>({.discharge = 0.6, .depth = 0.21}).give_to(params);
@@ -232,7 +232,7 @@ TEST_CASE("a step that goes wrong leaves what streams out as it was") {
     const auto before = flow.velocity();
     *push = 1e5;
     CHECK_THROWS_WITH_AS(flow.step(flow.stable_step().seconds),
-                         doctest::Contains("beyond GridFluid.fastest"), FluidError);
+                         doctest::Contains("beyond GridFluid.velocity_limit"), FluidError);
     Index changed = 0;
     flow.grid().for_each([&](const CellNumber<2>&, Offset c) {
         for (int a = 0; a < 2; ++a)

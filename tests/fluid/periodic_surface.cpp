@@ -1,6 +1,6 @@
 // Water below a surface in a box whose ends are one: nothing tells where they meet.
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/turbulence.hpp>
+#include <abrade/fluid/momentum/turbulence.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -14,8 +14,8 @@ template <int Dim>
 GridFluidParams<Dim> box(const CellNumber<Dim>& cells, Real spacing) {
     GridFluidParams<Dim> params;
     params.grid = {.cells = cells, .spacing = Point<Dim>::Constant(spacing)};
-    params.sides = Sides<Dim>::all(Side::slip);
-    for (int a = 0; a < Dim - 1; ++a) params.sides[a] = {Side::periodic, Side::periodic};
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
+    for (int a = 0; a < Dim - 1; ++a) params.boundaries[a] = {Boundary::periodic, Boundary::periodic};
     params.gravity[Dim - 1] = -g;
     params.tolerance = 1e-10;
     return params;
@@ -121,7 +121,7 @@ TEST_CASE("periodic_surface: a film that runs around on a rough bed below whole 
     params.velocity = [](const Point<2>&) { return Point<2>(1, 0); };
     for (const int shift : {1, 13})
         same_wherever_it_begins<2>(params, {shift, 0}, 40, [](const GridFluidParams<2>& p) {
-            return GridFluid<2, FreeSurface, Limited, Real, MixingLength>(p, {.depth = 0.32});
+            return GridFluid<2, FreeSurface, Koren, Real, MixingLength>(p, {.depth = 0.32});
         });
 }
 

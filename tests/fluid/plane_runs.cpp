@@ -1,6 +1,6 @@
 // Planes shared out to threads: every plane once, about as much water for each, runs that begin at even
 // planes.
-#include <abrade/fluid/wet_rows.hpp>
+#include <abrade/fluid/mesh/wet_rows.hpp>
 
 #include <doctest/doctest.h>
 

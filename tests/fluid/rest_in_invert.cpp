@@ -1,5 +1,5 @@
 // Water at rest in an invert, its surface on the curved bed: level and tilted, in a section and in space.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,7 @@ Real unrest(Real spacing, Real depth, Real slope) {
     params.grid.cells[Dim - 1] = static_cast<int>(std::lround(0.24 / spacing));
     if constexpr (Dim == 3) params.grid.cells[0] = 12;
     params.grid.low[Dim - 2] = -0.5;
-    params.sides = Sides<Dim>::all(Side::slip);
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
     params.wall = InvertWall({.length = 1, .width = 1, .arc_radius = 1, .slope = 0});
     params.gravity[0] = g * slope, params.gravity[Dim - 1] = -g * std::sqrt(1 - square(slope));
     params.water = [across = params.gravity, depth](const Point<Dim>& x) {

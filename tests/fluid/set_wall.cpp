@@ -1,8 +1,8 @@
-// Walls that change between steps: no water is lost, it goes on as it flowed, and what cannot be leaves it as
-// it was.
-#include <abrade/fluid/grid_fluid.hpp>
+// Walls that change between steps: no water is lost, it goes on as it flowed, and what cannot be
+// leaves it as it was.
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
-#include <abrade/fluid/turbulence.hpp>
+#include <abrade/fluid/momentum/turbulence.hpp>
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,7 @@ namespace {
 /// A tank of 1 m in cells of 1/32 m, above a bed.
 GridFluidParams<2> tank(Real bed, Real level) {
     GridFluidParams<2> params{.grid = {.cells = {32, 32}, .spacing = {1.0 / 32, 1.0 / 32}},
-                              .sides = Sides<2>::all(Side::slip),
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                               .gravity = {0, -9.81}};
     params.wall = [bed](const Point<2>& x) { return x[1] - bed; };
     params.water = [level](const Point<2>& x) { return level - x[1]; };
@@ -36,7 +36,7 @@ bool same_water(const GridFluid<2>& a, const GridFluid<2>& b) {
     a.grid().for_each([&](const auto&, Offset c) {
         for (int k = 0; k < 2; ++k) equal = equal && a.velocity()[k][c] == b.velocity()[k][c];
         equal = equal && a.liquid().fraction()[c] == b.liquid().fraction()[c] &&
-                a.liquid().surplus()[c] == b.liquid().surplus()[c];
+                a.liquid().volume_defect()[c] == b.liquid().volume_defect()[c];
     });
     return equal;
 }
@@ -119,7 +119,7 @@ TEST_CASE("a bed that wears under a film: no void is left below the water") {
         const Field<Real>& f = flow.liquid().fraction();
         const Offset up = flow.grid().layout().stride[1];
         flow.grid().for_each([&](const auto& cell, Offset c) {
-            if (cell[1] + 1 < 32 && flow.walls()->open_volume()[c] > 0 && f[c + up] > 1e-3)
+            if (cell[1] + 1 < 32 && flow.walls()->open_fraction()[c] > 0 && f[c + up] > 1e-3)
                 CHECK(f[c] > 0.999);
         });
         CHECK(std::abs(flow.surface_at({0.5, 0}) - (bed + cells / 32)) < 0.1 / 32);
@@ -129,7 +129,7 @@ TEST_CASE("a bed that wears under a film: no void is left below the water") {
 TEST_CASE("a ball in still water that wears and grows: cells that open below it are no voids") {
     GridFluidParams<3> params;
     params.grid = {.cells = {13, 13, 14}, .spacing = {0.05, 0.05, 0.05}};
-    params.sides = Sides<3>::all(Side::slip);
+    params.boundaries = BoundaryConditions<3>::all(Boundary::free_slip);
     params.gravity = {0, 0, -9.81};
     params.water = [](const Point<3>& x) { return 0.52 - x[2]; };
     const auto ball = [](Real radius) {
@@ -168,16 +168,16 @@ TEST_CASE(
         return [by](const Point<2>& x) { return x[1] - 0.1 + (x[0] > 0.5 && x[0] < 1.5 ? by : 0.0); };
     };
     GridFluidParams<2> params{.grid = {.cells = {100, 24}, .spacing = {0.02, 0.02}},
-                              .sides = Sides<2>::all(Side::slip),
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                               .wall = worn(0),
                               .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
                               .water = [](const Point<2>& x) { return 0.25 - x[1]; },
                               .velocity = [](const Point<2>&) { return Point<2>(2, 0); },
                               .gravity = {0.3, -9.8}};
-    params.sides[0] = {Side::inflow, Side::outflow};
-    params.side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.1 ? 2 : 0, 0); };
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
+    params.boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.1 ? 2 : 0, 0); };
     params.inflow_water = params.water;
-    GridFluid<2, FreeSurface, Limited, Real, MixingLength> flow(params, {.depth = 0.15});
+    GridFluid<2, FreeSurface, Koren, Real, MixingLength> flow(params, {.depth = 0.15});
     flow.advance(0.5);
     for (int step = 1; step <= 20; ++step) {
         flow.set_wall(worn(0.03 * step / 20));
@@ -185,7 +185,7 @@ TEST_CASE(
     }
     flow.advance(4);
     params.wall = worn(0.03);
-    GridFluid<2, FreeSurface, Limited, Real, MixingLength> built(params, {.depth = 0.15});
+    GridFluid<2, FreeSurface, Koren, Real, MixingLength> built(params, {.depth = 0.15});
     built.advance(4);
     for (const Real x : {0.4, 1.0, 1.8}) {
         CHECK(flow.surface_at({x, 0}) == doctest::Approx(built.surface_at({x, 0})).epsilon(0.02));

@@ -1,6 +1,6 @@
 // Depth-averaged water: rest, conservation, symmetry, threads, what it costs where it is dry, what stones
 // feel, bad input, and what goes wrong.
-#include <abrade/fluid/shallow_water.hpp>
+#include <abrade/fluid/shallow_water/shallow_water.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 
 #include "../message_of.hpp"
@@ -39,10 +39,10 @@ Real fastest(const ShallowWater<Dim>& water) {
 }
 
 template <int Dim>
-void check_rest(Real level, std::array<WaterSide, 2> ends) {
+void check_rest(Real level, std::array<ShallowBoundary, 2> ends) {
     auto p = square_of<Dim>(60);
     p.bed = bumps;
-    p.sides.fill(ends);
+    p.boundaries.fill(ends);
     p.surface = [level](Real, Real) { return level; };
     ShallowWater<Dim> water(p);
     const auto before = water.columns();
@@ -82,13 +82,13 @@ ShallowWater<2> puddle(Index cells) {
 
 TEST_CASE("a lake rests over any bed and shore, in one dimension and in two") {
     for (const Real level : {0.0, 0.25}) {
-        check_rest<1>(level, {WaterSide::wall(), WaterSide::wall()});
-        check_rest<2>(level, {WaterSide::wall(), WaterSide::wall()});
+        check_rest<1>(level, {ShallowBoundary::wall(), ShallowBoundary::wall()});
+        check_rest<2>(level, {ShallowBoundary::wall(), ShallowBoundary::wall()});
     }
     auto p = square_of<2>(60);
     p.bed = [](Real x, Real y) { return 0.3 * std::sin(2 * pi * x) * std::cos(2 * pi * y); };
     p.surface = [](Real, Real) { return 0.1; };
-    p.sides.fill({WaterSide::periodic(), WaterSide::periodic()});
+    p.boundaries.fill({ShallowBoundary::periodic(), ShallowBoundary::periodic()});
     ShallowWater<2> water(p);
     water.advance(5);
     CHECK(fastest(water) < 1e-13);
@@ -134,7 +134,7 @@ TEST_CASE("rows of a plane that are all alike are the one-dimensional flow") {
     auto plane = square_of<2>(100);
     plane.high[1] = 0.05, plane.cells[1] = 5;
     plane.surface = line.surface;
-    plane.sides[1].fill(WaterSide::periodic());
+    plane.boundaries[1].fill(ShallowBoundary::periodic());
     ShallowWater<1> one(line);
     ShallowWater<2> two(plane);
     // The plane's own step is shorter, for waves run across it as well.
@@ -184,7 +184,7 @@ TEST_CASE("where water has been and gone, both copies of the state agree") {
     p.cells = {400, 4}, p.high = {4, 0.04};
     p.bed = [](Real x, Real) { return -0.3 * x; };
     p.surface = [](Real x, Real) { return x < 0.3 ? 0.02 : -10; };
-    p.sides[0][1] = WaterSide::outflow();
+    p.boundaries[0][1] = ShallowBoundary::outflow();
     ShallowWater<2> water(p);
     water.advance(20);
     CHECK(water.volume_in(0, true) < 0);
@@ -209,9 +209,9 @@ TEST_CASE("a single cell of water spreads, a single cell of grid rests") {
             CHECK(water.depth(i, j) == doctest::Approx(water.depth(8 - i, j)).epsilon(1e-10));
             CHECK(water.depth(i, j) == doctest::Approx(water.depth(j, i)).epsilon(1e-10));
         }
-    for (const auto side : {WaterSide::wall(), WaterSide::periodic()}) {
+    for (const auto side : {ShallowBoundary::wall(), ShallowBoundary::periodic()}) {
         auto one = square_of<1>(1);
-        one.sides[0].fill(side);
+        one.boundaries[0].fill(side);
         one.surface = [](Real, Real) { return 1.0; };
         ShallowWater<1> tub(one);
         tub.advance(1);
@@ -224,8 +224,8 @@ TEST_CASE("what comes in and goes out is the change of volume") {
     auto p = square_of<2>(0);
     p.cells = {40, 20}, p.high = {4, 1};
     p.bed = [](Real x, Real y) { return 0.05 * std::cos(3 * x) + 0.2 * square(y - 0.5); };
-    p.sides = {{{WaterSide::inflow(0.3), WaterSide::outflow()},
-                {WaterSide::inflow(0.1, 0.03), WaterSide::outflow()}}};
+    p.boundaries = {{{ShallowBoundary::inflow(0.3), ShallowBoundary::outflow()},
+                     {ShallowBoundary::inflow(0.1, 0.03), ShallowBoundary::outflow()}}};
     p.manning = 0.015;
     ShallowWater<2> water(p);
     water.advance(10);
@@ -237,7 +237,7 @@ TEST_CASE("what comes in and goes out is the change of volume") {
     // The same through the other ends, mirrored.
     auto mirrored = p;
     mirrored.bed = [bed = p.bed](Real x, Real y) { return bed(4 - x, y); };
-    std::swap(mirrored.sides[0][0], mirrored.sides[0][1]);
+    std::swap(mirrored.boundaries[0][0], mirrored.boundaries[0][1]);
     ShallowWater<2> back(mirrored);
     back.advance(10);
     CHECK(back.volume() == doctest::Approx(water.volume()).epsilon(1e-9).scale(0));
@@ -326,7 +326,7 @@ TEST_CASE("over a drop in a dry bed a stream runs no faster than it falls") {
                 const Real discharge = 0.01;
                 ShallowWaterParams<1> p;
                 p.high = {10}, p.cells = {cells}, p.manning = manning;
-                p.sides[0] = {WaterSide::inflow(discharge), WaterSide::outflow()};
+                p.boundaries[0] = {ShallowBoundary::inflow(discharge), ShallowBoundary::outflow()};
                 p.bed = [drop](Real x, Real) { return x < 5 ? drop : 0; };
                 ShallowWater<1> water(p);
                 Real most = 0;
@@ -345,7 +345,7 @@ TEST_CASE("over a drop in a dry bed a stream runs no faster than it falls") {
     // Waves of the bed, up to 1.6 m of rise to 1 m of run, that water runs onto from one end.
     ShallowWaterParams<2> p;
     p.high = {10, 10}, p.cells = {80, 80}, p.manning = 0.03;
-    p.sides[0] = {WaterSide::inflow(2), WaterSide::outflow()};
+    p.boundaries[0] = {ShallowBoundary::inflow(2), ShallowBoundary::outflow()};
     p.bed = [](Real x, Real y) { return 0.2 * std::sin(7.3 * x) * std::cos(5.1 * y) - 0.1 * x; };
     ShallowWater<2> water(p);
     Real most = 0;
@@ -360,13 +360,13 @@ TEST_CASE("what goes wrong stops with the cell, its speed and the cause, and lea
     auto p = square_of<2>(10);
     p.surface = [](Real, Real) { return 1.0; };
     p.gravity = {500, 0, -9.81};
-    p.sides[0].fill(WaterSide::periodic());
-    p.fastest = 20;
+    p.boundaries[0].fill(ShallowBoundary::periodic());
+    p.velocity_limit = 20;
     ShallowWater<2> water(p);
     const std::string said = message_of<FluidError>([&] { water.advance(1); });
     CAPTURE(said);
     CHECK(said.find("cell (") != std::string::npos);
-    CHECK(said.find("is faster than ShallowWater.fastest, 20 m/s") != std::string::npos);
+    CHECK(said.find("is faster than ShallowWater.velocity_limit, 20 m/s") != std::string::npos);
     CHECK(said.find("depth 1 m") != std::string::npos);
     CHECK(fastest(water) <= 20);
     CHECK(fastest(water) > 15);
@@ -412,27 +412,26 @@ TEST_CASE("bad input is named with its value, its unit and what helps") {
               p.dry_depth = 0;
           }).starts_with("ShallowWater.dry_depth must be finite and > 0, got 0 m"));
     CHECK(said([](P& p) {
-              p.sides[0][1] = WaterSide::inflow(0);
-          }).starts_with("ShallowWater.sides.x.high.discharge must be finite and > 0, got 0 m3/s"));
+              p.boundaries[0][1] = ShallowBoundary::inflow(0);
+          }).starts_with("ShallowWater.boundaries.x.high.discharge must be finite and > 0, got 0 m3/s"));
     CHECK(said([](P& p) {
-              p.sides[1][0] = WaterSide::inflow(1, -1);
-          }).starts_with("ShallowWater.sides.y.low.depth must be finite and >= 0, got -1 m"));
-    CHECK(said([](P& p) { p.sides[1][0] = WaterSide::periodic(); })
-              .starts_with("ShallowWater.sides.y must be periodic at both ends or at none, got only low "
+              p.boundaries[1][0] = ShallowBoundary::inflow(1, -1);
+          }).starts_with("ShallowWater.boundaries.y.low.depth must be finite and >= 0, got -1 m"));
+    CHECK(said([](P& p) { p.boundaries[1][0] = ShallowBoundary::periodic(); })
+              .starts_with("ShallowWater.boundaries.y must be periodic at both ends or at none, got only low "
                            "periodic; water"));
     CHECK(said([](P& p) {
-              p.sides[1][0].discharge = 1;
-          }).starts_with("ShallowWater.sides.y.low.discharge must be 0 but at an inflow, got 1 m3/s"));
+              p.boundaries[1][0].discharge = 1;
+          }).starts_with("ShallowWater.boundaries.y.low.discharge must be 0 but at an inflow, got 1 m3/s"));
     CHECK(said([](P& p) {
               p.bed = [](Real x, Real) { return x > 0.5 ? std::nan("") : 0; };
           }).starts_with("ShallowWater.bed in cell (2, 0) at (0.625, 0.125) m must be finite, got nan m"));
-    CHECK(
-        said([](P& p) {
-            p.surface = [](Real, Real) { return 1.0; };
-            p.speed[0] = [](Real, Real) { return 1e3; };
-        })
-            .starts_with(
-                "ShallowWater.speed in cell (0, 0) at (0.125, 0.125) m must be within ShallowWater.fastest"));
+    CHECK(said([](P& p) {
+              p.surface = [](Real, Real) { return 1.0; };
+              p.speed[0] = [](Real, Real) { return 1e3; };
+          })
+              .starts_with("ShallowWater.speed in cell (0, 0) at (0.125, 0.125) m must be within "
+                           "ShallowWater.velocity_limit"));
     CHECK(said([](P& p) {
               p.surface = [](Real, Real) { return 1.0; };
               p.speed[1] = [](Real, Real) { return std::nan(""); };

@@ -1,5 +1,5 @@
 // Depth-averaged water: slopes, flux and friction of one face and one cell, for numbers and for packs.
-#include <abrade/fluid/shallow_water_kernel.hpp>
+#include <abrade/fluid/shallow_water/kernel.hpp>
 
 #include <doctest/doctest.h>
 

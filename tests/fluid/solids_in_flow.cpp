@@ -1,5 +1,5 @@
 // The seam for solids that move in water, with solids that are none: a fan and a piston.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,8 @@ namespace {
 /// What does nothing: the seam's least.
 struct Idle {
     static constexpr bool present = true;
-    void place(const Grid<3>&, const Sides<3>&, std::span<const FlowBody>, const FaceField<3>*, Real) {}
+    void place(const Grid<3>&, const BoundaryConditions<3>&, std::span<const FlowBody>, const FaceField<3>*,
+               Real) {}
     void close(Poisson<3>&, std::span<const OpenFace>) {}
     void mix_last(FaceField<3>&) const {}
     void seep(FaceField<3>&) const {}
@@ -65,13 +66,13 @@ struct HalfASolid {
 static_assert(!SolidsInFlow<HalfASolid>);
 
 template <class Solids>
-using Flow = GridFluid<3, FullBox, Limited, Real, NoTurbulence, Solids>;
+using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, Solids>;
 
 constexpr int n = 12;
 
-GridFluidParams<3> box(Side side) {
+GridFluidParams<3> box(Boundary side) {
     return {.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(0.1)},
-            .sides = Sides<3>::all(side),
+            .boundaries = BoundaryConditions<3>::all(side),
             .density = 1000,
             .viscosity = 1,
             .tolerance = 1e-9};
@@ -80,7 +81,7 @@ GridFluidParams<3> box(Side side) {
 }  // namespace
 
 TEST_CASE("solids that do nothing leave the bits of a flow as they were") {
-    auto params = box(Side::wall);
+    auto params = box(Boundary::wall);
     params.velocity = [](const Vec3& x) { return Vec3(std::sin(7 * x[1]), std::sin(5 * x[2]), 0); };
     GridFluid<3, FullBox> plain(params);
     Flow<Idle> idle(params);
@@ -94,7 +95,7 @@ TEST_CASE("solids that do nothing leave the bits of a flow as they were") {
 }
 
 TEST_CASE("a force per volume: in a periodic box all of its impulse stays with the water") {
-    const auto params = box(Side::periodic);
+    const auto params = box(Boundary::periodic);
     const Grid<3> grid(params.grid);
     Fan fan;
     fan.force_per_volume = 300;
@@ -111,8 +112,8 @@ TEST_CASE("a force per volume: in a periodic box all of its impulse stays with t
 
 TEST_CASE(
     "a source of divergence: a piston as wide as the box drives all of the water, a narrower one a jet") {
-    auto params = box(Side::slip);
-    params.sides[0] = {Side::periodic, Side::periodic};
+    auto params = box(Boundary::free_slip);
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
     const Grid<3> grid(params.grid);
     for (const int width : {n, 4}) {
         Piston piston;

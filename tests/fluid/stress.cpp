@@ -31,13 +31,13 @@ TEST_CASE("a brimful box walled off from its outflow is refused before its first
     using P = Point<2>;
     GridFluid<2>::Params params{
         .grid = {.cells = {16, 8}, .spacing = P::Constant(stress::cell)},
-        .sides = Sides<2>::all(Side::wall),
-        .side_velocity = [](const P& x, Real) { return P(x[0] < 0.01 ? 1e-4 : 0, 0); },
+        .boundaries = BoundaryConditions<2>::all(Boundary::wall),
+        .boundary_velocity = [](const P& x, Real) { return P(x[0] < 0.01 ? 1e-4 : 0, 0); },
         .wall = [](const P& x) { return std::abs(x[0] - 0.6) - 0.06; },
         .water = [](const P&) { return 1.0; },
         .inflow_water = [](const P&) { return 1.0; },
         .gravity = {0, -stress::g}};
-    params.sides[0] = {Side::inflow, Side::outflow};
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
     GridFluid<2> flow(params);
     const Real volume = flow.liquid().volume();
     CHECK_THROWS_WITH_AS(flow.step(flow.stable_step().seconds), doctest::Contains("can what flows in reach"),

@@ -1,7 +1,7 @@
 #pragma once
 // Scenes in which thin water meets cut walls: where solvers of free surfaces fail. Coarse on purpose.
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <cmath>
 #include <functional>
@@ -207,8 +207,8 @@ inline std::vector<Scene<2>> plane_scenes() {
     }
     {
         auto& s = add(box<2>("jet on a wedge", {40, 30}));
-        s.params.sides[0][0] = Side::inflow, s.params.sides[0][1] = Side::outflow;
-        s.params.side_velocity = [](const P& x, Real) { return P(x[0] < 0.01 ? 2 : 0, 0); };
+        s.params.boundaries[0][0] = Boundary::inflow, s.params.boundaries[0][1] = Boundary::outflow;
+        s.params.boundary_velocity = [](const P& x, Real) { return P(x[0] < 0.01 ? 2 : 0, 0); };
         s.params.inflow_water = [](const P& x) { return 0.13 - std::abs(x[1] - 0.9); };
         s.params.wall = [](const P& x) { return 0.8 * (x[1] - 0.5) - 0.6 * (x[0] - 1.2); };
         s.end = 3, s.fall = 1.5, s.inflow = 2, s.fronts = true;
@@ -316,13 +316,13 @@ template <class Flow, int Dim>
 void look(const Flow& flow, const Scene<Dim>& scene, Outcome& seen) {
     const auto& grid = flow.grid();
     const auto& f = flow.liquid().fraction();
-    const auto& surplus = flow.liquid().surplus();
+    const auto& volume_defect = flow.liquid().volume_defect();
     const Real unit = std::sqrt(2 * g * scene.fall + square(scene.inflow));
-    const auto open = [&](Offset c) { return flow.walls() ? flow.walls()->open_volume()[c] : Real(1); };
+    const auto open = [&](Offset c) { return flow.walls() ? flow.walls()->open_fraction()[c] : Real(1); };
     constexpr Real carries = 1e-6;  // of a cell
     Real all = 0, fast = 0;
     grid.for_each([&](const CellNumber<Dim>& c, Offset at) {
-        seen.overfull = std::max(seen.overfull, f[at] + surplus[at] - 1);
+        seen.overfull = std::max(seen.overfull, f[at] + volume_defect[at] - 1);
         for (int a = 0; a < Dim; ++a) {
             const Offset back = at - grid.layout().stride[a];
             const Real mass = 0.5 * (f[at] * open(at) + f[back] * open(back));
@@ -356,7 +356,7 @@ Outcome run(const Scene<Dim>& scene) {
         Real volume = flow.liquid().volume();
         bool closed = true;
         for (int a = 0; a < Dim; ++a)
-            for (const Side side : scene.params.sides[a]) closed = closed && side == Side::wall;
+            for (const Boundary side : scene.params.boundaries[a]) closed = closed && side == Boundary::wall;
         // What the water can lose: its fall to a heap on the floor, or what came in with it.
         const Real scale = volume * (g * scene.fall + 0.5 * square(scene.inflow));
         const bool driven = !closed || scene.params.body_force || scene.moved;

@@ -1,6 +1,6 @@
 // Eddy viscosity: what a given shear makes of it, where there is none, what walls let it be, and that the
 // water feels it.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@ using namespace abrade;
 namespace {
 
 template <int Dim, class Model = Smagorinsky, class Surface = FullBox>
-using Flow = GridFluid<Dim, Surface, Limited, Real, Model>;
+using Flow = GridFluid<Dim, Surface, Koren, Real, Model>;
 
 /// Velocity on all faces and ghosts, as a function of the place.
 template <int Dim>
@@ -26,9 +26,10 @@ FaceField<Dim> velocity(const Grid<Dim>& grid, auto&& of) {
 /// nu_t of a velocity that no side has touched; sides glide, so there are no walls.
 template <int Dim>
 std::vector<Real> eddies(const Grid<Dim>& grid, const Smagorinsky& model, auto&& of) {
-    GridFluidParams<Dim> params{.grid = grid.params(), .sides = Sides<Dim>::all(Side::slip)};
+    GridFluidParams<Dim> params{.grid = grid.params(),
+                                .boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip)};
     detail::EddyViscosity<Dim, Real> found(grid, params, model, nullptr);
-    found.find(velocity(grid, of), VelocitySides<Dim>(grid, params.sides, {}));
+    found.find(velocity(grid, of), VelocityBoundaries<Dim>(grid, params.boundaries, {}));
     std::vector<Real> values;
     grid.for_each([&](const auto&, Offset c) { values.push_back(found.field()[c]); });
     CHECK(found.largest() == *std::max_element(values.begin(), values.end()));
@@ -80,11 +81,11 @@ TEST_CASE("beside walls, at sides and inside, eddies are no larger than their di
     // Flat cells: C_s Delta = 0.1 m, the first six levels are nearer than 0.1 / kappa.
     const auto shear = [](const Point<2>& x) { return Point<2>(4 * x[1], 0); };
     const Smagorinsky model{.constant = 0.1};
-    Sides<2> sides;
-    sides[0] = {Side::periodic, Side::periodic};
-    sides[1] = {Side::wall, Side::slip};
+    BoundaryConditions<2> boundaries;
+    boundaries[0] = {Boundary::periodic, Boundary::periodic};
+    boundaries[1] = {Boundary::wall, Boundary::free_slip};
     GridFluidParams<2> params{.grid = {.cells = {4, 40}, .spacing = {25, 0.04}},
-                              .sides = sides,
+                              .boundaries = boundaries,
                               .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
                               .velocity = shear};
     const Flow<2> box(params, model);
@@ -109,17 +110,17 @@ TEST_CASE("beside walls, at sides and inside, eddies are no larger than their di
     }
 
     // A bed inside, which cuts the second level in the middle: what is open of it lies 0.01 m above the bed.
-    params.sides[0] = {Side::slip, Side::slip};
-    params.sides[1] = {Side::slip, Side::slip};
+    params.boundaries[0] = {Boundary::free_slip, Boundary::free_slip};
+    params.boundaries[1] = {Boundary::free_slip, Boundary::free_slip};
     params.wall = [](const Point<2>& x) { return x[1] - 0.06; };
     params.water = [](const Point<2>&) { return 1.0; };
     params.velocity = {};
     const Grid<2> grid(params.grid);
-    const Walls<2> walls(grid, params.wall);
+    const EmbeddedBoundary<2> walls(grid, params.wall);
     detail::EddyViscosity<2, Real> cut(grid, params, model, &walls);
     auto u = velocity(grid, shear);
     grid.for_each([&](const auto& cell, Offset c) { u[0][c] *= cell[1] > 0; });  // the solid's is 0
-    cut.find(u, VelocitySides<2>(grid, params.sides, {}));
+    cut.find(u, VelocityBoundaries<2>(grid, params.boundaries, {}));
     const auto at = [&](int k) { return cut.field()[grid.layout().at({2, k})]; };
     CHECK(at(0) == 0);
     CHECK(at(1) == doctest::Approx(square(0.41 * 0.01) * 4).epsilon(1e-12).scale(0));
@@ -128,17 +129,18 @@ TEST_CASE("beside walls, at sides and inside, eddies are no larger than their di
 
 TEST_CASE("beside what bodies cover of cells eddies are those that a cell does not resolve") {
     const Grid<3> grid({.cells = {6, 7, 8}, .spacing = {0.1, 0.2, 0.3}});
-    GridFluidParams<3> params{.grid = grid.params(), .sides = Sides<3>::all(Side::slip)};
-    params.sides[0] = {Side::periodic, Side::periodic}, params.sides[2][0] = Side::wall;
+    GridFluidParams<3> params{.grid = grid.params(),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip)};
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic}, params.boundaries[2][0] = Boundary::wall;
     const MixingLength model{.depth = 2.5, .friction_velocity = 1e3, .beside_bodies = 0.05};
     detail::EddyViscosity<3, Real> found(grid, params, model, nullptr, true);
     const auto u = velocity(grid, [](const Vec3& x) { return Vec3(4 * x.z(), 0, 0); });
-    const VelocitySides<3> sides(grid, params.sides, {});
+    const VelocityBoundaries<3> boundaries(grid, params.boundaries, {});
     const auto look = [&](std::initializer_list<CellNumber<3>> covered) {
         std::vector<SolidPart> parts;
         for (const auto& cell : covered) parts.push_back({grid.layout().at(cell), 1e-3});
-        found.make_way(grid, params.sides, parts);
-        found.find(u, sides);
+        found.make_way(grid, params.boundaries, parts);
+        found.find(u, boundaries);
         int near = 0;
         grid.for_each([&](const CellNumber<3>& at, Offset c) {
             const Real free = square(model.length(0, grid.centre(at).z())) * 4;
@@ -170,11 +172,11 @@ TEST_CASE("beside what bodies cover of cells eddies are those that a cell does n
 TEST_CASE("a step that eddies allow, and parameters that make none") {
     GridFluidParams<2> params{
         .grid = {.cells = {8, 8}, .spacing = {0.1, 0.1}},
-        .sides = Sides<2>::all(Side::slip),
+        .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
         .velocity = [](const Point<2>& x) { return Point<2>(std::sin(pi * x[1] / 0.1), 0); },
         .viscosity = 0,
         .courant = 1};
-    params.sides[0] = {Side::periodic, Side::periodic};
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
     const Flow<2> flow(params, {.constant = 0.5});
     Real most = 0;
     flow.grid().for_each([&](const auto&, Offset c) { most = std::max(most, flow.eddy_viscosity()[c]); });
@@ -194,11 +196,11 @@ TEST_CASE("eddies of slow water do not shorten the step of fast water beside it"
     // The lower half shears to and fro, the upper one goes as a whole.
     const auto speed = [](Real z) { return z < 0.8 ? 0.6 * std::sin(pi * z / 0.1) : 1.0; };
     GridFluidParams<2> params{.grid = {.cells = {16, 16}, .spacing = {0.1, 0.1}},
-                              .sides = Sides<2>::all(Side::slip),
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                               .velocity = [&](const Point<2>& x) { return Point<2>(speed(x[1]), 0); },
                               .viscosity = 0,
                               .courant = 1};
-    params.sides[0] = {Side::periodic, Side::periodic};
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
     Flow<2> flow(params, {.constant = 0.5});
     const Layout<2>& layout = flow.grid().layout();
     const auto nu = [&](int i, int k) { return flow.eddy_viscosity()[layout.at({i, std::clamp(k, 0, 15)})]; };
@@ -224,13 +226,13 @@ TEST_CASE("eddies of slow water do not shorten the step of fast water beside it"
 
 TEST_CASE("shear and weight are in balance: the water feels just nu + nu_t") {
     // Between a bed that holds it and a lid, periodic: what the bed takes is what the weight gives.
-    Sides<3> sides;
-    sides[0] = {Side::periodic, Side::periodic};
-    sides[1] = {Side::periodic, Side::periodic};
-    sides[2] = {Side::wall, Side::slip};
+    BoundaryConditions<3> boundaries;
+    boundaries[0] = {Boundary::periodic, Boundary::periodic};
+    boundaries[1] = {Boundary::periodic, Boundary::periodic};
+    boundaries[2] = {Boundary::wall, Boundary::free_slip};
     const int n = 8;
     Flow<3> flow({.grid = {.cells = {4, 4, n}, .spacing = {1, 1, 1.0 / n}},
-                  .sides = sides,
+                  .boundaries = boundaries,
                   .gravity = {1, 0, 0},
                   .density = 1,
                   .viscosity = 0.1,
@@ -251,7 +253,7 @@ TEST_CASE("eddies at a surface: none in the air, the same bits for one thread an
         set_thread_count(threads);
         Flow<3, Smagorinsky, FreeSurface> flow(
             {.grid = {.cells = {40, 12, 24}, .spacing = Point<3>::Constant(0.05)},
-             .sides = Sides<3>::all(Side::wall),
+             .boundaries = BoundaryConditions<3>::all(Boundary::wall),
              .wall = [](const Point<3>& x) { return (x - Point<3>(1, 0.3, 0)).norm() - 0.2; },
              .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
              .water = [](const Point<3>& x) { return std::min(0.6 - x[0], 0.8 - x[2]); },
@@ -278,15 +280,15 @@ TEST_CASE("eddies at a surface: none in the air, the same bits for one thread an
 }
 
 TEST_CASE("single precision, and a full box along a logarithmic bed that goes wrong and is left as it was") {
-    Sides<2> sides;
-    sides[0] = {Side::periodic, Side::periodic};
-    sides[1] = {Side::wall, Side::slip};
+    BoundaryConditions<2> boundaries;
+    boundaries[0] = {Boundary::periodic, Boundary::periodic};
+    boundaries[1] = {Boundary::wall, Boundary::free_slip};
     GridFluidParams<2> params{.grid = {.cells = {8, 16}, .spacing = {0.1, 0.05}},
-                              .sides = sides,
+                              .boundaries = boundaries,
                               .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
                               .velocity = [](const Point<2>&) { return Point<2>(1, 0); },
                               .fastest = 2};
-    GridFluid<2, FullBox, Limited, float, Smagorinsky> single(params);
+    GridFluid<2, FullBox, Koren, float, Smagorinsky> single(params);
     Flow<2> flow(params);
     flow.advance(0.5), single.advance(0.5);
     const Offset low = flow.grid().layout().at({0, 0}), high = flow.grid().layout().at({0, 15});

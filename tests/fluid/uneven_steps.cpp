@@ -55,7 +55,7 @@ namespace {
 GridFluidParams<2> block_params(Real speed = 0) {
     return {
         .grid = {.cells = {20, 60}, .spacing = {0.02, 0.02}},
-        .sides = Sides<2>::all(Side::slip),
+        .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
         .water = [](const Point<2>& x) { return 0.1 - std::max(std::abs(x[0] - 0.2), std::abs(x[1] - 1.0)); },
         .velocity = [speed](const Point<2>&) { return Point<2>(0, -speed); },
         .gravity = {0, -9.81},
@@ -77,7 +77,7 @@ TEST_CASE("where water has left nothing moves any more") {
         CAPTURE(around);
         auto params = block_params();
         params.velocity = [](const Point<2>&) { return Point<2>(0.3, -1); };
-        if (around) params.sides[0] = {Side::periodic, Side::periodic};
+        if (around) params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
         GridFluid<2> flow(params);
         flow.advance(0.25);
         const Real above = 1.1 - fallen(flow) + 6 * 0.02;  // its upper side, what is carried on outward
@@ -135,9 +135,9 @@ TEST_CASE("an equal step that goes wrong, then shorter ones: the velocity still 
 TEST_CASE("steps that grow, over and over: a stream through an outflow") {
     const auto run = [](Real least, Real by) {
         GridFluidParams<2> params{.grid = {.cells = {50, 20}, .spacing = {0.02, 0.02}},
-                                  .sides = Sides<2>::all(Side::slip),
+                                  .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                                   .gravity = {0.49, -9.8}};
-        params.sides[0][1] = Side::outflow;
+        params.boundaries[0][1] = Boundary::outflow;
         Inflow<2>({.discharge = 0.6, .depth = 0.18}).give_to(params);
         GridFluid<2> flow(params);
         grow(flow, 0.5, least, by);
@@ -156,7 +156,8 @@ TEST_CASE("full boxes: a cavity, a channel with an outflow") {
     const auto cavity = [](Real more) {
         GridFluid<2, FullBox> flow(
             {.grid = {.cells = {32, 32}, .spacing = Point<2>::Constant(1.0 / 32)},
-             .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
+             .boundary_velocity = [](const Point<2>& x,
+                                     Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
              .density = 1,
              .viscosity = 1e-2,
              .tolerance = 1e-6});
@@ -166,12 +167,12 @@ TEST_CASE("full boxes: a cavity, a channel with an outflow") {
     const auto duct = [](auto&& steps) {
         GridFluidParams<2> params{
             .grid = {.cells = {40, 20}, .spacing = {0.05, 0.05}},
-            .sides = Sides<2>::all(Side::wall),
-            .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[0] < 1e-9 ? 1 : 0, 0); },
+            .boundaries = BoundaryConditions<2>::all(Boundary::wall),
+            .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[0] < 1e-9 ? 1 : 0, 0); },
             .density = 1,
             .viscosity = 1e-2,
             .tolerance = 1e-9};
-        params.sides[0] = {Side::inflow, Side::outflow};
+        params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
         GridFluid<2, FullBox> flow(params);
         steps(flow);
         return flow.kinetic_energy();

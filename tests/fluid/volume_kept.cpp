@@ -15,10 +15,10 @@ TEST_CASE("dams that run around, down a slope: traces of air where the ends meet
     for (int k = 0; k < 40; ++k) {  // traces come to the ends in one of ten or so
         GridFluidParams<2> params{
             .grid = {.cells = {11, 22}, .spacing = {0.1, 0.05}},
-            .sides = Sides<2>::all(Side::slip),
+            .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
             .water = [=](const Point<2>& x) { return std::min(0.3 + 0.014 * k - x[0], 0.62 - x[1]); },
             .gravity = {1.25, -g}};
-        params.sides[0] = {Side::periodic, Side::periodic};
+        params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
         GridFluid<2> flow(params);
         const Held before = held_by<2>(flow.liquid(), nullptr);
         flow.advance(3);
@@ -28,5 +28,5 @@ TEST_CASE("dams that run around, down a slope: traces of air where the ends meet
 }
 
 TEST_CASE("traces of air beside the bulk, to round-off") {
-    for (const Side side : {Side::wall, Side::periodic}) volume_kept::carry_traces<2>(side);
+    for (const Boundary side : {Boundary::wall, Boundary::periodic}) volume_kept::carry_traces<2>(side);
 }

@@ -1,6 +1,6 @@
 #pragma once
 // What volume_kept and volume_kept_3d run: dams, jets, walls that cut cells, traces of air beside the bulk.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -14,18 +14,18 @@ constexpr Real g = 9.81;
 
 /// What the cells hold, fractions and surplus; sums of doubles would round to 1e-13 or so.
 struct Held {
-    long double volume = 0, surplus = 0;  ///< [m3]; surplus without its sign
+    long double volume = 0, volume_defect = 0;  ///< [m3]; surplus without its sign
     bool in_bounds = true;
 };
 template <int Dim>
 Held held_by(const VolumeOfFluid<Dim>& water, const Field<Real>* open) {
     Held held;
-    const Field<Real>&f = water.fraction(), &s = water.surplus();
+    const Field<Real>&f = water.fraction(), &s = water.volume_defect();
     water.grid().for_each([&](const CellNumber<Dim>& cell, Offset c) {
         const long double room =
             (open ? (*open)[c] : 1) * static_cast<long double>(water.grid().volume(cell));
         held.volume += room * (static_cast<long double>(f[c]) + static_cast<long double>(s[c]));
-        held.surplus += room * std::abs(s[c]);
+        held.volume_defect += room * std::abs(s[c]);
         held.in_bounds = held.in_bounds && f[c] >= 0 && f[c] <= 1;
     });
     return held;
@@ -35,7 +35,7 @@ Held held_by(const VolumeOfFluid<Dim>& water, const Field<Real>* open) {
 template <int Dim>
 void run(const GridFluidParams<Dim>& params, const std::string& name, int steps) {
     GridFluid<Dim> flow(params);
-    const Field<Real>* open = flow.walls() ? &flow.walls()->open_volume() : nullptr;
+    const Field<Real>* open = flow.walls() ? &flow.walls()->open_fraction() : nullptr;
     const Held before = held_by(flow.liquid(), open);
     REQUIRE(before.volume > 0);
     long double worst = 0, most = 0;
@@ -44,7 +44,7 @@ void run(const GridFluidParams<Dim>& params, const std::string& name, int steps)
         flow.step(flow.stable_step().seconds);
         const Held now = held_by(flow.liquid(), open);
         worst = std::max(worst, std::abs(now.volume / before.volume - 1));
-        most = std::max(most, now.surplus / before.volume);
+        most = std::max(most, now.volume_defect / before.volume);
         in_bounds = in_bounds && now.in_bounds;
     }
     MESSAGE(name << ": volume off by " << static_cast<Real>(worst) << " at most, beyond the bounds "
@@ -62,7 +62,7 @@ typename GridFluid<Dim>::Params tank(PlaceFunction<Dim> water) {
     params.grid.cells.fill(n);
     if (Dim == 3) params.grid.cells[1] = 16;
     params.grid.spacing = Point<Dim>::Constant(1.0 / n);
-    params.sides = Sides<Dim>::all(Side::slip);
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
     params.water = std::move(water);
     params.gravity[Dim - 1] = -g;
     return params;
@@ -95,7 +95,7 @@ void run_in_invert(int steps) {
     params.grid.cells[Dim - 1] = 14;
     params.grid.spacing = Point<Dim>::Constant(0.04);
     params.grid.low[Dim - 2] = -0.5;
-    params.sides = Sides<Dim>::all(Side::slip);
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
     params.wall = InvertWall({.length = 1, .width = 1, .arc_radius = 1, .slope = 0});
     params.water = [](const Point<Dim>& x) { return std::min(0.1 - x[0], 0.4 - x[Dim - 1]); };
     params.gravity[Dim - 1] = -g;
@@ -105,11 +105,11 @@ void run_in_invert(int steps) {
 /// A box full of cells that lack traces, too small to be a surface, and a void; a velocity that converges in
 /// some cells and diverges in others.
 template <int Dim>
-void carry_traces(Side side) {
+void carry_traces(Boundary side) {
     CellNumber<Dim> cells;
     cells.fill(12);
     const Grid<Dim> grid({.cells = cells, .spacing = Point<Dim>::Constant(1.0 / 12)});
-    VolumeOfFluid<Dim> water(grid, Sides<Dim>::all(side));
+    VolumeOfFluid<Dim> water(grid, BoundaryConditions<Dim>::all(side));
     std::mt19937 random(4);
     std::uniform_real_distribution<Real> exponent(-13, -6.1), uniform(-1, 1);
     grid.for_each([&](const CellNumber<Dim>&, Offset c) {
@@ -122,10 +122,10 @@ void carry_traces(Side side) {
     auto u = face_field<Dim>(grid.layout());
     grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
         for (int a = 0; a < Dim; ++a)
-            if (side == Side::periodic || cell[a] > 0) u[a][c] = 0.1 * uniform(random);
+            if (side == Boundary::periodic || cell[a] > 0) u[a][c] = 0.1 * uniform(random);
     });
-    if (side == Side::periodic)
-        for (int a = 0; a < Dim; ++a) fill_periodic(u[a], grid.layout(), water.sides());
+    if (side == Boundary::periodic)
+        for (int a = 0; a < Dim; ++a) fill_periodic(u[a], grid.layout(), water.boundaries());
     const Held before = held_by<Dim>(water, nullptr);
     long double worst = 0;
     for (int k = 0; k < 20; ++k) {

@@ -1,9 +1,9 @@
 // Force and moment of water on walls: of water at rest by Archimedes and Stevin, of films by their weight.
-#include <abrade/fluid/flow_queries.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/turbulence.hpp>
-#include <abrade/fluid/wall_loads.hpp>
-#include <abrade/fluid/wall_solids.hpp>
+#include <abrade/fluid/embedded_boundary/solid_shapes.hpp>
+#include <abrade/fluid/momentum/turbulence.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/queries/flow_queries.hpp>
+#include <abrade/fluid/queries/wall_loads.hpp>
 
 #include <doctest/doctest.h>
 
@@ -24,7 +24,7 @@ GridFluidParams<Dim> tank(int cells, Real level) {
     GridFluidParams<Dim> params;
     params.grid.cells.fill(cells);
     params.grid.spacing = Point<Dim>::Constant(1.0 / cells);
-    params.sides = Sides<Dim>::all(Side::slip);
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
     params.water = [level](const Point<Dim>& x) { return level - x[Dim - 1]; };
     params.gravity[Dim - 1] = -g;
     return params;
@@ -240,7 +240,7 @@ TEST_CASE("films and plates: shear carries what drives the water") {
                               .density = 1,
                               .viscosity = 1,
                               .tolerance = 1e-10};
-    params.sides[0] = {Side::periodic, Side::periodic};
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
     params.water = [](const Point<2>& x) { return 1.03 - x[1]; };
     SUBCASE("on the floor") {
         const auto flow = steady(GridFluid<2>(params));
@@ -286,7 +286,7 @@ TEST_CASE("films and plates: shear carries what drives the water") {
             params.wall_law = {WallLaw::Kind::logarithmic, 0.05};
             params.velocity = [](const Point<2>&) { return Point<2>(4, 0); };
             params.viscosity = 1e-5;
-            GridFluid<2, FreeSurface, Limited, Real, MixingLength> flow(params, {.depth = 1.03});
+            GridFluid<2, FreeSurface, Koren, Real, MixingLength> flow(params, {.depth = 1.03});
             flow.advance(3);
             const auto momentum = [&] { return section(flow, 0, 0.2).mass * 0.4; };
             const Real before = momentum(), first = wall_load(flow, {0, bed}).shear.force[0];
@@ -301,8 +301,8 @@ TEST_CASE("films and plates: shear carries what drives the water") {
     SUBCASE("between plates, one of which moves") {
         params.water = {};
         params.gravity = {0.5, 0};
-        params.sides[1] = {Side::wall, Side::wall};
-        params.side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 ? 3 : 0, 0); };
+        params.boundaries[1] = {Boundary::wall, Boundary::wall};
+        params.boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 ? 3 : 0, 0); };
         GridFluid<2, FullBox> flow(params);
         flow.advance(8);
         const Real low = side_load(flow, {.axis = 1, .high = false}, {0, 0}).shear.force[0];
@@ -316,14 +316,14 @@ TEST_CASE(
     "a dam breaks, also about a pillar: what walls and sides push is what the water gains in momentum") {
     for (const bool pillar : {false, true}) {
         GridFluidParams<2> params{.grid = {.cells = {48, 24}, .spacing = {1.0 / 24, 1.0 / 24}},
-                                  .sides = Sides<2>::all(Side::slip),
+                                  .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                                   .gravity = {0, -g}};
         if (pillar) params.wall = BallWall<2>({1.31, 0.2}, 0.13);
         params.water = [](const Point<2>& x) { return std::min(0.5 - x[0], 0.6 - x[1]); };
         GridFluid<2> flow(params);
         const Grid<2>& grid = flow.grid();
         const auto held = [&](Offset c) {
-            return flow.liquid().fraction()[c] * (flow.walls() ? flow.walls()->open_volume()[c] : 1);
+            return flow.liquid().fraction()[c] * (flow.walls() ? flow.walls()->open_fraction()[c] : 1);
         };
         const auto momentum = [&] {
             Point<2> sum = Point<2>::Zero();
@@ -368,12 +368,12 @@ TEST_CASE(
 TEST_CASE("a round pipe, full and not quite: shear carries what drives the water") {
     for (const bool full : {true, false}) {
         GridFluidParams<3> params{.grid = {.cells = {3, 12, 12}, .spacing = Vec3::Constant(1.0 / 12)},
-                                  .sides = Sides<3>::all(Side::slip),
+                                  .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                                   .gravity = {0.5, 0, full ? 0.0 : -10.0},
                                   .density = 1,
                                   .viscosity = 1,
                                   .tolerance = 1e-9};
-        params.sides[0] = {Side::periodic, Side::periodic};
+        params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
         params.wall = InsideOut(CylinderWall({-9, 0.513, 0.5}, {9, 0.513, 0.5}, 0.4));
         params.water = [full](const Point<3>& x) { return full ? 1 : 0.61 - x[2]; };
         GridFluid<3> flow(params);
@@ -400,7 +400,7 @@ TEST_CASE("bad questions are refused") {
               side_load(flow, {.axis = 0}, {0, nan});
           }).starts_with("side_load: about.z must be finite"));
     auto params = tank<2>(8, 0.5);
-    params.sides[0] = {Side::periodic, Side::periodic};
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
     CHECK(message_of([&] {
               side_load(GridFluid<2>(params), {.axis = 0}, {0, 0});
           }) ==

@@ -1,5 +1,5 @@
 // Walls on a grid: planes exactly, curved walls to second order, and what closes.
-#include <abrade/fluid/walls.hpp>
+#include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
 
 #include <abrade/geometry/sphere_union.hpp>
 
@@ -63,7 +63,7 @@ Grid<Dim> flat_cells() {
 
 /// Nothing is closed for being small.
 template <int Dim>
-typename Walls<Dim>::Params all_of_it(int levels = 0) {
+typename EmbeddedBoundary<Dim>::Params all_of_it(int levels = 0) {
     return {.closed_below = 0, .levels = levels};
 }
 
@@ -73,7 +73,7 @@ struct Surface {
 };
 
 template <int Dim>
-Surface surface_of(const Walls<Dim>& walls) {
+Surface surface_of(const EmbeddedBoundary<Dim>& walls) {
     const Grid<Dim>& grid = walls.grid();
     Surface sum;
     std::size_t found = 0;
@@ -82,18 +82,18 @@ Surface surface_of(const Walls<Dim>& walls) {
         Real largest = 0;
         for (int a = 0; a < Dim; ++a) {
             const Real face = grid.volume(c) / grid.size(a, c[a]);
-            const Field<Real>& share = walls.open_area()[a];
+            const Field<Real>& share = walls.aperture()[a];
             left[a] = face * (share[cell + grid.layout().stride[a]] - share[cell]);
             largest = std::max(largest, face);
         }
-        for (const WallCell<Dim>& wall : walls.wall_cells(cell, 1)) {
+        for (const CutCell<Dim>& wall : walls.cut_cells(cell, 1)) {
             left -= wall.area * wall.normal;
             sum.area += wall.area;
             ++found;
         }
         sum.gap = std::max(sum.gap, left.norm() / largest);
     });
-    CHECK(found == walls.wall_cells().size());
+    CHECK(found == walls.cut_cells().size());
     return sum;
 }
 
@@ -126,7 +126,7 @@ std::pair<Real, Real> share_above(std::vector<Real> n, Real d) {
 
 /// Largest error of volumes and areas, less what the closed form loses itself.
 template <int Dim>
-Real error_of_plane(const Walls<Dim>& walls, const Point<Dim>& p, const Point<Dim>& n) {
+Real error_of_plane(const EmbeddedBoundary<Dim>& walls, const Point<Dim>& p, const Point<Dim>& n) {
     const Grid<Dim>& grid = walls.grid();
     Real worst = 0;
     grid.for_each([&](const CellNumber<Dim>& c, Offset cell) {
@@ -139,8 +139,8 @@ Real error_of_plane(const Walls<Dim>& walls, const Point<Dim>& p, const Point<Di
             const auto [expected, magnified] = share_above(along, n.dot(low - p));
             worst = std::max(worst, std::abs(share - expected) / magnified);
         };
-        compare(-1, walls.open_volume()[cell]);
-        for (int a = 0; a < Dim; ++a) compare(a, walls.open_area()[a][cell]);
+        compare(-1, walls.open_fraction()[cell]);
+        for (int a = 0; a < Dim; ++a) compare(a, walls.aperture()[a][cell]);
     });
     return worst;
 }
@@ -152,15 +152,14 @@ bool same(const Field<Real>& a, const Field<Real>& b) {
 
 /// The same bits.
 template <int Dim>
-bool same(const Walls<Dim>& a, const Walls<Dim>& b) {
-    bool equal = same<Dim>(a.open_volume(), b.open_volume()) && a.open_cells() == b.open_cells();
-    for (int axis = 0; axis < Dim; ++axis)
-        equal = equal && same<Dim>(a.open_area()[axis], b.open_area()[axis]);
-    const auto as_one = [](const WallCell<Dim>& x, const WallCell<Dim>& y) {
+bool same(const EmbeddedBoundary<Dim>& a, const EmbeddedBoundary<Dim>& b) {
+    bool equal = same<Dim>(a.open_fraction(), b.open_fraction()) && a.open_cells() == b.open_cells();
+    for (int axis = 0; axis < Dim; ++axis) equal = equal && same<Dim>(a.aperture()[axis], b.aperture()[axis]);
+    const auto as_one = [](const CutCell<Dim>& x, const CutCell<Dim>& y) {
         return x.cell == y.cell && x.area == y.area && x.normal == y.normal && x.point == y.point;
     };
-    return equal && std::equal(a.wall_cells().begin(), a.wall_cells().end(), b.wall_cells().begin(),
-                               b.wall_cells().end(), as_one);
+    return equal && std::equal(a.cut_cells().begin(), a.cut_cells().end(), b.cut_cells().begin(),
+                               b.cut_cells().end(), as_one);
 }
 
 /// Spheres that overlap, about the middle of the unit box.
@@ -193,10 +192,10 @@ TEST_CASE_TEMPLATE("planes at any angle are exact", D, Two, Three) {
             }
             n.normalize();
             const Shape<Dim> plane = PlaneWall<Dim>(p, n);
-            const Walls<Dim> walls(grid, plane, all_of_it<Dim>(levels));
+            const EmbeddedBoundary<Dim> walls(grid, plane, all_of_it<Dim>(levels));
             CHECK(error_of_plane(walls, p, n) < 1e-13);
             CHECK(surface_of(walls).gap < 1e-14);
-            for (const WallCell<Dim>& c : walls.wall_cells()) {
+            for (const CutCell<Dim>& c : walls.cut_cells()) {
                 const Real largest = Dim == 2 ? 0.2 : 0.04;  // face of any cell here
                 const Real round_off = 1e-15 * largest / c.area;
                 CHECK((c.normal - n).norm() < 10 * round_off);
@@ -211,11 +210,11 @@ TEST_CASE("a wall on a plane of the grid closes what is below it, however round-
         const Shape<3> floor = [&](const Point<3>& x) {
             return x[2] - 0.25 + off * std::sin(1e5 * x[0] + 7e4 * x[1]);
         };
-        const Walls<3> walls(grid, floor);
+        const EmbeddedBoundary<3> walls(grid, floor);
         CHECK(walls.total_volume() == doctest::Approx(0.75).epsilon(1e-14));
         CHECK(walls.open_cells() == 8 * 8 * 6);
-        REQUIRE(walls.wall_cells().size() == 64);
-        for (const WallCell<3>& c : walls.wall_cells()) {
+        REQUIRE(walls.cut_cells().size() == 64);
+        for (const CutCell<3>& c : walls.cut_cells()) {
             CHECK(c.area == doctest::Approx(1.0 / 64).epsilon(1e-13));
             CHECK((c.normal - Vec3::UnitZ()).norm() < 1e-13);
             CHECK(c.point.z() == doctest::Approx(0.25).epsilon(1e-13));
@@ -239,7 +238,7 @@ TEST_CASE_TEMPLATE("a circle and a sphere, full and hollow: volume and area of s
                 const Shape<Dim> ball = [&](const Point<Dim>& x) {
                     return (hollow ? -1 : 1) * ((x - centre).norm() - r);
                 };
-                const Walls<Dim> walls(unit_box<Dim>(12 << k), ball, all_of_it<Dim>());
+                const EmbeddedBoundary<Dim> walls(unit_box<Dim>(12 << k), ball, all_of_it<Dim>());
                 const Surface surface = surface_of(walls);
                 const Real water = hollow ? solid : 1 - solid;
                 volume_error[k] += std::abs(walls.total_volume() - water) / solid / places;
@@ -263,10 +262,10 @@ TEST_CASE("the invert's bed: volume below the edges and area, in a section and i
     std::array<Real, 2> error{};
     for (std::size_t k = 0; k < 2; ++k) {
         const int across = 30 << k;
-        const Walls<2> section(Grid<2>({.cells = {across, across / 2},
-                                        .low = {-0.55, -0.05},
-                                        .spacing = {1.1 / across, 0.35 / (across / 2)}}),
-                               across_it, all_of_it<2>());
+        const EmbeddedBoundary<2> section(Grid<2>({.cells = {across, across / 2},
+                                                   .low = {-0.55, -0.05},
+                                                   .spacing = {1.1 / across, 0.35 / (across / 2)}}),
+                                          across_it, all_of_it<2>());
         error[k] = std::abs(section.total_volume() - invert.flow_area(depth));
         const Real round = invert.wetted_perimeter(depth);
         CHECK(std::abs(surface_of(section).area - round) < 0.01 * round);
@@ -274,10 +273,10 @@ TEST_CASE("the invert's bed: volume below the edges and area, in a section and i
     }
     CHECK(error[1] < 2e-4 * invert.flow_area(depth));
     CHECK(error[0] / error[1] > std::pow(2, 1.8));
-    const Walls<3> channel(
+    const EmbeddedBoundary<3> channel(
         Grid<3>({.cells = {5, 30, 15}, .low = {0, -0.55, -0.05}, .spacing = {0.2, 1.1 / 30, 0.35 / 15}}),
         along_it, all_of_it<3>());
-    const Walls<2> section(
+    const EmbeddedBoundary<2> section(
         Grid<2>({.cells = {30, 15}, .low = {-0.55, -0.05}, .spacing = {1.1 / 30, 0.35 / 15}}), across_it,
         all_of_it<2>());
     CHECK(channel.total_volume() == doctest::Approx(section.total_volume()).epsilon(1e-13));
@@ -290,7 +289,7 @@ TEST_CASE("a packing of spheres: halved cells find edges and gaps that corners d
     const Shape<3> packing = SpherePacking(spheres);
     std::array<Real, 4> error{};
     for (int levels = 0; levels < 4; ++levels) {
-        const Walls<3> walls(unit_box<3>(20), packing, all_of_it<3>(levels));
+        const EmbeddedBoundary<3> walls(unit_box<3>(20), packing, all_of_it<3>(levels));
         error[static_cast<std::size_t>(levels)] = std::abs(1 - solid - walls.total_volume()) / solid;
         CHECK(surface_of(walls).gap < 1e-14);
     }
@@ -340,9 +339,9 @@ TEST_CASE("cells far from a wall need no look inside: the same bits with and wit
     for (const int levels : {0, 2})
         for (const Grid<3>& grid : {unit_box<3>(23), flat_cells<3>()}) {
             auto params = all_of_it<3>(levels);
-            const Walls<3> skipping(grid, packing, params);
+            const EmbeddedBoundary<3> skipping(grid, packing, params);
             params.bounded_slope = false;
-            CHECK(same(skipping, Walls<3>(grid, packing, params)));
+            CHECK(same(skipping, EmbeddedBoundary<3>(grid, packing, params)));
         }
 }
 
@@ -369,14 +368,14 @@ TEST_CASE_TEMPLATE("functions steeper than a distance are found out: all cells a
     for (const Shape<Dim>& shape : shapes) {
         const Grid<Dim> grid = unit_box<Dim>(23);
         params.bounded_slope = true;
-        const Walls<Dim> found(grid, shape, params);
+        const EmbeddedBoundary<Dim> found(grid, shape, params);
         params.bounded_slope = false;
-        CHECK(same(found, Walls<Dim>(grid, shape, params)));
+        CHECK(same(found, EmbeddedBoundary<Dim>(grid, shape, params)));
         CHECK_FALSE(found.params().bounded_slope);
     }
     const Grid<Dim> grid = unit_box<Dim>(40);
     const Shape<Dim> floor = PlaneWall<Dim>(P::Constant(0.1), P::Unit(Dim - 1));
-    Walls<Dim> walls(grid, floor);
+    EmbeddedBoundary<Dim> walls(grid, floor);
     CHECK(walls.params().bounded_slope);
     const Shape<Dim> steeper = [&](const P& x) {  // the same floor
         return floor(x) * (1 + 50 * std::max(0.0, 0.15 - off_centre(x, 0.1).norm()));
@@ -384,7 +383,7 @@ TEST_CASE_TEMPLATE("functions steeper than a distance are found out: all cells a
     P low = P::Constant(0.3);
     low[Dim - 1] = -0.1;
     walls.update(steeper, low, P::Constant(0.7));
-    CHECK(same(walls, Walls<Dim>(grid, steeper)));
+    CHECK(same(walls, EmbeddedBoundary<Dim>(grid, steeper)));
     CHECK_FALSE(walls.params().bounded_slope);
 }
 
@@ -399,7 +398,7 @@ TEST_CASE_TEMPLATE("an update is what building anew gives, bit by bit, and takes
     SUBCASE("flat cells") { grid = flat_cells<Dim>(); }
     SpherePacking packing(spheres);
     const Shape<Dim> shape = [&](const Point<Dim>& x) { return packing(x); };
-    Walls<Dim> walls(grid, shape);
+    EmbeddedBoundary<Dim> walls(grid, shape);
     const auto place = [](const Vec3& x) {
         if constexpr (Dim == 2) {
             return Point<2>(x.x(), x.z());
@@ -407,9 +406,9 @@ TEST_CASE_TEMPLATE("an update is what building anew gives, bit by bit, and takes
             return x;
         }
     };
-    const Real* const volume = walls.open_volume().data();
-    const Real* const area = walls.open_area()[0].data();
-    std::array<const WallCell<Dim>*, 2> lists{};
+    const Real* const volume = walls.open_fraction().data();
+    const Real* const area = walls.aperture()[0].data();
+    std::array<const CutCell<Dim>*, 2> lists{};
     for (std::size_t n = 0; n < 12; ++n) {
         const auto [centre, radius] = spheres[n];
         if (n % 3)
@@ -417,31 +416,31 @@ TEST_CASE_TEMPLATE("an update is what building anew gives, bit by bit, and takes
         else
             packing.set_radius(n, 0.7 * radius);
         walls.update(shape, place(centre - Vec3::Constant(radius)), place(centre + Vec3::Constant(radius)));
-        CHECK(same(walls, Walls<Dim>(grid, shape)));
-        CHECK(walls.open_volume().data() == volume);
-        CHECK(walls.open_area()[0].data() == area);
-        if (n == 8 || n == 9) lists[n % 2] = walls.wall_cells().data();
-        if (n > 9) CHECK(walls.wall_cells().data() == lists[n % 2]);  // two lists that take turns
+        CHECK(same(walls, EmbeddedBoundary<Dim>(grid, shape)));
+        CHECK(walls.open_fraction().data() == volume);
+        CHECK(walls.aperture()[0].data() == area);
+        if (n == 8 || n == 9) lists[n % 2] = walls.cut_cells().data();
+        if (n > 9) CHECK(walls.cut_cells().data() == lists[n % 2]);  // two lists that take turns
     }
-    const Walls<Dim> before = walls;
+    const EmbeddedBoundary<Dim> before = walls;
     walls.update(shape, Point<Dim>::Constant(3), Point<Dim>::Constant(4));
     CHECK(same(walls, before));
 }
 
 TEST_CASE("small cells and faces are closed together") {
     const Shape<3> packing = SpherePacking(heap(40, 8));
-    const Walls<3> walls(unit_box<3>(24), packing, {.closed_below = 0.05});
+    const EmbeddedBoundary<3> walls(unit_box<3>(24), packing, {.closed_below = 0.05});
     const Grid<3>& grid = walls.grid();
     int closed = 0, small = 0;
     grid.for_each([&](const CellNumber<3>&, Offset cell) {
         Real largest = 0;
         for (int a = 0; a < 3; ++a)
             for (const Offset next : {Offset{0}, grid.layout().stride[a]}) {
-                const Real share = walls.open_area()[a][cell + next];
+                const Real share = walls.aperture()[a][cell + next];
                 largest = std::max(largest, share);
                 small += share > 0 && share < 0.05;
             }
-        const Real volume = walls.open_volume()[cell];
+        const Real volume = walls.open_fraction()[cell];
         small += volume > 0 && volume < 0.05;
         closed += volume == 0;
         CHECK((volume > 0) == (largest > 0));
@@ -455,23 +454,23 @@ TEST_CASE("several walls in one, and none") {
     const Grid<2> grid = unit_box<2>(20);
     const Shape<2> both = WallUnion(PlaneWall<2>({0, 0.2}, {0, 1}),
                                     [](const Point<2>& x) { return (x - Point<2>(0.5, 0.6)).norm() - 0.2; });
-    const Walls<2> walls(grid, both);
+    const EmbeddedBoundary<2> walls(grid, both);
     CHECK(walls.total_volume() == doctest::Approx(0.8 - pi * 0.04).epsilon(1e-3));
-    const Walls<2> open(grid);
+    const EmbeddedBoundary<2> open(grid);
     CHECK(open.total_volume() == doctest::Approx(1).epsilon(1e-14));
-    CHECK(open.wall_cells().empty());
+    CHECK(open.cut_cells().empty());
     CHECK(open.open_cells() == 400);
     const Shape<2> nowhere = [](const Point<2>&) { return std::numeric_limits<Real>::infinity(); };
-    CHECK(same(Walls<2>(grid, nowhere), open));
+    CHECK(same(EmbeddedBoundary<2>(grid, nowhere), open));
 }
 
 TEST_CASE("the same bits with one thread and with two") {
     const Shape<3> packing = SpherePacking(heap(60, 9));
     const int threads = thread_count();
     set_thread_count(1);
-    const Walls<3> one(unit_box<3>(30), packing);
+    const EmbeddedBoundary<3> one(unit_box<3>(30), packing);
     set_thread_count(2);
-    const Walls<3> two(unit_box<3>(30), packing);
+    const EmbeddedBoundary<3> two(unit_box<3>(30), packing);
     CHECK(one.total_volume() == two.total_volume());
     set_thread_count(threads);
     CHECK(same(one, two));
@@ -480,38 +479,46 @@ TEST_CASE("the same bits with one thread and with two") {
 TEST_CASE("what cannot be used is named") {
     const Grid<3> grid = unit_box<3>(10);
     const Shape<3> root = [](const Point<3>& x) { return std::sqrt(x[0] - 0.35); };
-    CHECK(message_of([&] { Walls<3>(grid, root); }).starts_with("Walls: distance at x = "));
+    CHECK(message_of([&] {
+              EmbeddedBoundary<3>(grid, root);
+          }).starts_with("EmbeddedBoundary: distance at x = "));
     const Shape<3> seldom = [](const Point<3>& x) {
         return std::abs(x[0] - 0.325) < 0.01 ? std::numeric_limits<Real>::quiet_NaN() : 1.0;
     };
     CHECK(message_of([&] {  // where only halves of halves of cells are asked, of what is near
-              Walls<3>(grid, WallUnion(SpherePacking(heap(30, 6)), seldom), {.levels = 2});
+              EmbeddedBoundary<3>(grid, WallUnion(SpherePacking(heap(30, 6)), seldom), {.levels = 2});
           })
-              .starts_with("Walls: distance at x = 0.325 m"));
+              .starts_with("EmbeddedBoundary: distance at x = 0.325 m"));
     const Shape<3> throws = [](const Point<3>& x) -> Real {
         throw std::domain_error("no map at x = " + std::to_string(x[0]));
     };
-    CHECK(message_of<std::domain_error>([&] { Walls<3>(grid, throws); }).starts_with("no map at x = "));
     CHECK(message_of<std::domain_error>([&] {
-              Walls<3>(grid, WallUnion(SpherePacking(heap(30, 6)), throws));
+              EmbeddedBoundary<3>(grid, throws);
+          }).starts_with("no map at x = "));
+    CHECK(message_of<std::domain_error>([&] {
+              EmbeddedBoundary<3>(grid, WallUnion(SpherePacking(heap(30, 6)), throws));
           }).starts_with("no map at x = "));
     const Shape<3> solid = [](const Point<3>&) { return -1.0; };
-    CHECK(message_of([&] { Walls<3>(grid, solid); }) ==
-          "Walls: distance, cells of the grid that it leaves open must be at least 1, got 0 cells; is the "
+    CHECK(message_of([&] { EmbeddedBoundary<3>(grid, solid); }) ==
+          "EmbeddedBoundary: distance, cells of the grid that it leaves open must be at least 1, got 0 "
+          "cells; is the "
           "distance above 0 in the water, and does the grid cover some of it?");
-    CHECK(message_of([&] { Walls<3>(grid, solid, {.closed_below = 0.5}); }) ==
-          "Walls.closed_below must be from 0 to 0.1, got 0.5; 1e-3 costs no accuracy: few cells are that "
+    CHECK(message_of([&] { EmbeddedBoundary<3>(grid, solid, {.closed_below = 0.5}); }) ==
+          "EmbeddedBoundary.closed_below must be from 0 to 0.1, got 0.5; 1e-3 costs no accuracy: few cells "
+          "are that "
           "small");
     CHECK(message_of([&] {
-              Walls<3>(grid, solid, {.levels = 9});
-          }).starts_with("Walls.levels must be from 0 to 6"));
+              EmbeddedBoundary<3>(grid, solid, {.levels = 9});
+          }).starts_with("EmbeddedBoundary.levels must be from 0 to 6"));
     CHECK(message_of([&] {
-              Walls<3>(grid).update(solid, Vec3::Zero(), Vec3::Ones());
-          }).starts_with("Walls.update must be called on walls"));
-    CHECK(message_of([&] {
-              Walls<3> walls(grid, Shape<3>(PlaneWall<3>({0, 0, 0.3}, Vec3::UnitZ())));
-              walls.update(solid, {0, 1, 0}, {1, 0, 1});
-          }) == "Walls.update: high.y must be at least low (1 m), got 0 m; give lower corner, then upper");
+              EmbeddedBoundary<3>(grid).update(solid, Vec3::Zero(), Vec3::Ones());
+          }).starts_with("EmbeddedBoundary.update must be called on walls"));
+    CHECK(
+        message_of([&] {
+            EmbeddedBoundary<3> walls(grid, Shape<3>(PlaneWall<3>({0, 0, 0.3}, Vec3::UnitZ())));
+            walls.update(solid, {0, 1, 0}, {1, 0, 1});
+        }) ==
+        "EmbeddedBoundary.update: high.y must be at least low (1 m), got 0 m; give lower corner, then upper");
     CHECK(message_of([] {
               PlaneWall<3>(Vec3::Zero(), Vec3::Zero());
           }).starts_with("PlaneWall.normal: length must be finite and > 0, got 0"));

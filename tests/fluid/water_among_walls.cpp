@@ -1,6 +1,6 @@
 // Water in cells that walls cut: closed forms, and what lies on both sides of a surface.
-#include <abrade/fluid/walls.hpp>
-#include <abrade/fluid/water_among_walls.hpp>
+#include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
+#include <abrade/fluid/vof/liquid_in_cut_cells.hpp>
 
 #include <doctest/doctest.h>
 
@@ -15,10 +15,10 @@ Real share(const auto& wall, const auto& water) {
     typename Grid<Dim>::Params params;
     params.cells.fill(1), params.spacing = Point<Dim>::Ones();
     const Grid<Dim> grid(params);
-    const Walls<Dim> walls(grid, wall, {.closed_below = 0, .bounded_slope = false});
+    const EmbeddedBoundary<Dim> walls(grid, wall, {.closed_below = 0, .bounded_slope = false});
     const Offset cell = grid.layout().at({});
-    return detail::WaterAmongWalls<Dim>::share(walls.open_area(), grid.layout().stride, cell,
-                                               walls.open_volume()[cell], water);
+    return detail::WaterAmongWalls<Dim>::share(walls.aperture(), grid.layout().stride, cell,
+                                               walls.open_fraction()[cell], water);
 }
 
 }  // namespace

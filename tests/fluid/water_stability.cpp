@@ -1,6 +1,6 @@
 // Where water on a grid fails, and how: steps that are too long, too much speed, deep tolerance, and water
 // that has next to nothing of what methods ask for.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@ constexpr Real g = 9.81;
 /// A basin of 32 x 32 cells of 1 m in all.
 GridFluid<2>::Params basin(PlaceFunction<2> water) {
     return {.grid = {.cells = {32, 32}, .spacing = Point<2>::Constant(1.0 / 32)},
-            .sides = Sides<2>::all(Side::slip),
+            .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
             .water = std::move(water),
             .gravity = {0, -g}};
 }
@@ -117,11 +117,11 @@ TEST_CASE("within the viscous limit velocities decay, beyond it a step is refuse
 
 TEST_CASE("too fast: the error names step, time, cell, speed and remedy") {
     auto params = basin(column);
-    params.fastest = 1.5;
+    params.velocity_limit = 1.5;
     GridFluid<2> flow(params);
     const std::string message = push(flow, 1, 1000);
-    CHECK(names(message,
-                {"step ", "t = ", "dt = ", "beyond GridFluid.fastest", "cell [", "m/s along", "courant"}));
+    CHECK(names(message, {"step ", "t = ", "dt = ", "beyond GridFluid.velocity_limit", "cell [", "m/s along",
+                          "courant"}));
 }
 
 TEST_CASE("a tolerance of 1e-12 is reached, in single-precision solves") {
@@ -209,8 +209,8 @@ TEST_CASE("water that lands all at once: its impact's pressure lasts one step, t
 
 TEST_CASE("no water, then some: a dry bed that water flows onto") {
     auto params = basin({});
-    params.sides[0] = {Side::inflow, Side::outflow};
-    params.side_velocity = [](const Point<2>&, Real) { return Point<2>(1, 0); };
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
+    params.boundary_velocity = [](const Point<2>&, Real) { return Point<2>(1, 0); };
     GridFluid<2> dry(params);
     dry.advance(0.1);
     CHECK(dry.wet_cells() == 0);
@@ -297,7 +297,7 @@ TEST_CASE(
             const Real height = 0.6 + 1e-7 * k;
             GridFluid<2> flow(
                 {.grid = {.cells = {40, 40}, .spacing = {0.025, 0.025}},
-                 .sides = Sides<2>::all(Side::slip),
+                 .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                  .wall = wall,
                  .water = [=](const Point<2>& x) { return std::min(0.3 - x[0], height - x[1]); },
                  .gravity = {0, -g}});

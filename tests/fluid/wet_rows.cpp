@@ -1,5 +1,5 @@
 // Hulls of wet cells in rows: found, grown, joined.
-#include <abrade/fluid/wet_rows.hpp>
+#include <abrade/fluid/mesh/wet_rows.hpp>
 
 #include <doctest/doctest.h>
 

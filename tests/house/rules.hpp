@@ -19,8 +19,48 @@ namespace house {
 /// A room may include itself and the rooms before it.
 inline constexpr std::array<std::string_view, 9> rooms{"core",  "geometry", "dem", "bond", "wear",
                                                        "fluid", "coupling", "sim", "io"};
-inline constexpr int longest_header = 400;
-/// All that dem/stepper.hpp, which every simulation includes, may take from odeint.
+
+/// Folders within rooms, and which folders of the same room each may include beside itself; "fluid" itself
+/// means the headers that stand in the room's own folder. Arrows between neighbours have their reason beside
+/// them.
+inline const std::map<std::string, std::vector<std::string>, std::less<>> inner_rooms{
+    {"dem/laws", {}},
+    {"dem/store", {}},
+    {"dem/contacts", {"dem/laws", "dem/store"}},
+    {"dem/time", {"dem/laws"}},  // a collision alone, for those who write laws
+    {"fluid", {}},
+    {"fluid/shallow_water", {"fluid"}},
+    {"fluid/mesh", {"fluid"}},
+    {"fluid/setup", {"fluid", "fluid/mesh"}},
+    {"fluid/embedded_boundary", {"fluid/mesh"}},
+    {"fluid/vof", {"fluid/mesh"}},
+    // A height is a surface of the same marks and of planes in cells.
+    {"fluid/height", {"fluid/mesh", "fluid/embedded_boundary", "fluid/vof"}},
+    {"fluid/pressure", {"fluid", "fluid/mesh"}},
+    // Eddies are as large as their distance from walls lets them be.
+    {"fluid/momentum", {"fluid/mesh", "fluid/setup", "fluid/embedded_boundary"}},
+    // The work of friction is what the kernel of momentum says of it.
+    {"fluid/energy",
+     {"fluid", "fluid/mesh", "fluid/setup", "fluid/embedded_boundary", "fluid/vof", "fluid/height",
+      "fluid/momentum"}},
+    {"fluid/navier_stokes",
+     {"fluid", "fluid/mesh", "fluid/setup", "fluid/embedded_boundary", "fluid/vof", "fluid/height",
+      "fluid/pressure", "fluid/momentum", "fluid/energy"}},
+    {"fluid/queries", {"fluid/mesh", "fluid/setup", "fluid/embedded_boundary"}},
+    {"coupling/drag", {}},
+    {"coupling/mapping", {"coupling/drag"}},  // small bodies are spread over faces with the drag of many
+    {"coupling/averaging", {"coupling/drag", "coupling/mapping"}},
+    // Of the bodies in a flow the small ones are averaged.
+    {"coupling/exchange", {"coupling/mapping", "coupling/averaging"}},
+    {"sim/scene", {}},
+    {"sim/state", {"sim/scene"}},
+    {"sim/motion", {"sim/state"}},
+    {"sim/rest", {"sim/motion"}},
+    {"sim/guards", {"sim/state", "sim/motion"}},
+    {"sim/engine", {"sim/scene", "sim/motion", "sim/rest", "sim/guards"}},
+    {"sim", {"sim/guards", "sim/engine"}},
+};
+/// All that dem/time/stepper.hpp, which every simulation includes, may take from odeint.
 inline constexpr std::string_view odeint_tag = "boost/numeric/odeint/stepper/stepper_categories.hpp";
 
 struct Header {
@@ -44,6 +84,14 @@ inline int level(std::string_view path) {
     return room == rooms.end() ? -1 : static_cast<int>(room - rooms.begin());
 }
 
+/// The folder of a header, without the first: "fluid/vof".
+inline std::string folder(std::string_view path) {
+    path.remove_prefix(std::string_view("abrade/").size());
+    const std::size_t slash = path.rfind('/');
+    return std::string(slash == std::string_view::npos ? "" : path.substr(0, slash));
+}
+inline std::string room(std::string_view folder) { return std::string(folder.substr(0, folder.find('/'))); }
+
 inline Header read(const std::filesystem::path& file, std::string path) {
     static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
     Header header{std::move(path), {}, 0, {}};
@@ -57,14 +105,31 @@ inline Header read(const std::filesystem::path& file, std::string path) {
     return header;
 }
 
-/// All offences against the rules in the headers below `include_dir`/abrade, in order of path.
-inline std::vector<std::string> offences(const std::filesystem::path& include_dir) {
+inline std::map<std::string, Header> all_headers(const std::filesystem::path& include_dir) {
     std::map<std::string, Header> headers;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(include_dir / "abrade")) {
         if (!entry.is_regular_file()) continue;
         const std::string path = entry.path().lexically_relative(include_dir).generic_string();
         headers.emplace(path, read(entry.path(), path));
     }
+    return headers;
+}
+
+/// What `inner_rooms` allows and no header below `include_dir`/abrade does: "fluid/vof -> fluid/mesh".
+inline std::vector<std::string> needless_arrows(const std::filesystem::path& include_dir) {
+    std::set<std::string> needless;
+    for (const auto& [from, others] : inner_rooms)
+        for (const std::string& to : others) needless.insert(from + " -> " + to);
+    for (const auto& [path, header] : all_headers(include_dir))
+        for (const auto& include : header.includes)
+            if (include.path.starts_with("abrade/"))
+                needless.erase(folder(path) + " -> " + folder(include.path));
+    return {needless.begin(), needless.end()};
+}
+
+/// All offences against the rules in the headers below `include_dir`/abrade, in order of path.
+inline std::vector<std::string> offences(const std::filesystem::path& include_dir) {
+    const std::map<std::string, Header> headers = all_headers(include_dir);
 
     std::vector<std::string> found;
     const auto offence = [&](const Header& header, int line, const std::string& what) {
@@ -77,8 +142,10 @@ inline std::vector<std::string> offences(const std::filesystem::path& include_di
             offence(header, 1, "only abrade.hpp stands outside the rooms");
         if (!path.ends_with(".hpp")) offence(header, 1, "is not a .hpp");
         if (header.first_line != "#pragma once") offence(header, 1, "must begin with #pragma once");
-        if (header.lines > longest_header)
-            offence(header, header.lines, "is longer than " + std::to_string(longest_header) + " lines");
+        const std::string own_folder = folder(path);
+        const auto inner = inner_rooms.find(own_folder);
+        if (own_level >= 0 && own_folder.find('/') != std::string::npos && inner == inner_rooms.end())
+            offence(header, 1, "stands in no known folder of its room");
 
         for (const auto& [line, target, quoted] : header.includes) {
             if (target.starts_with("abrade/")) {
@@ -86,6 +153,10 @@ inline std::vector<std::string> offences(const std::filesystem::path& include_di
                     offence(header, line, "includes " + target + ", which does not exist");
                 if (level(target) > own_level)
                     offence(header, line, "includes " + target + ", which is in a room below its own");
+                const std::string other = folder(target);
+                if (inner != inner_rooms.end() && other != own_folder && room(other) == room(own_folder) &&
+                    std::find(inner->second.begin(), inner->second.end(), other) == inner->second.end())
+                    offence(header, line, "includes " + target + ", which " + own_folder + " may not");
                 if (target == "abrade/abrade.hpp") offence(header, line, "includes the whole house");
             } else if (quoted) {
                 offence(header, line, "includes \"" + target + "\", must be <abrade/ROOM/HEADER.hpp>");
@@ -96,10 +167,11 @@ inline std::vector<std::string> offences(const std::filesystem::path& include_di
                 offence(header, line, "includes <iostream>, must be <ostream> or <iosfwd>");
             if (target == "boost/numeric/odeint.hpp") offence(header, line, "includes all of odeint");
             // One of its steppers takes as long to compile as a room of ours: only where a user asks for it.
-            if (target.starts_with("boost/numeric/odeint/") && path != "abrade/dem/odeint_steppers.hpp" &&
-                !(path == "abrade/dem/stepper.hpp" && target == odeint_tag))
-                offence(header, line, "includes odeint, which only dem/odeint_steppers.hpp may");
-            if (target == "abrade/dem/odeint_steppers.hpp")
+            if (target.starts_with("boost/numeric/odeint/") &&
+                path != "abrade/dem/time/odeint_steppers.hpp" &&
+                !(path == "abrade/dem/time/stepper.hpp" && target == odeint_tag))
+                offence(header, line, "includes odeint, which only dem/time/odeint_steppers.hpp may");
+            if (target == "abrade/dem/time/odeint_steppers.hpp")
                 offence(header, line, "includes odeint's steppers, which only users may");
         }
     }

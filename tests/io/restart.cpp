@@ -2,7 +2,7 @@
 #include "../verification/ledger_scenes.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/fluid/shallow_water.hpp>
+#include <abrade/fluid/shallow_water/shallow_water.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/io/restart.hpp>
 #include <abrade/wear/sub_particle.hpp>
@@ -113,7 +113,7 @@ TEST_CASE("stones that are fed, roll in a stream over standing concrete, wear it
                                                .classes = {{0.04, 0.5}, {0.05, 0.5, StoneShape::angular}},
                                                .region = {{-0.3, -0.1, 0.05}, {-0.1, 0.1, 0.15}},
                                                .velocity = {1, 0, 0}};
-                       scene.outlet = 0.3, scene.gauge = 0.0;
+                       scene.outlet = 0.3, scene.flow_counter = 0.0;
                        UniformFlow flow({.section = {.width = 1, .slope = 0.05}, .discharge = 0.3});
                        return simulate(scene)
                            .contact(linear)

@@ -1,7 +1,7 @@
 // Water that was saved between two steps goes on to the same bits, with any number of threads.
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/shallow_water.hpp>
-#include <abrade/fluid/turbulence.hpp>
+#include <abrade/fluid/momentum/turbulence.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/shallow_water/shallow_water.hpp>
 #include <abrade/io/restart.hpp>
 
 #include <doctest/doctest.h>
@@ -67,7 +67,7 @@ GridFluidParams<Dim> dam(Real h, Real wall_at) {
     params.grid.cells.fill(4);
     params.grid.cells[0] = 32, params.grid.cells[Dim - 1] = 16;
     params.grid.spacing = Point<Dim>::Constant(h);
-    params.sides = Sides<Dim>::all(Side::slip);
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
     params.wall = [=](const Point<Dim>& x) {
         return std::hypot(x[0] - wall_at, x[Dim - 1] - 2.3 * h) - 2.2 * h;
     };
@@ -92,15 +92,15 @@ TEST_CASE("a surface that is a height, eddies by a mixing length, water in and o
     const auto make = [] {
         auto params = dam<3>(0.05, 0.8);
         params.wall = [](const Point<3>& x) { return x[2] - 0.12 * std::exp(-square(x[0] - 0.8) / 0.02); };
-        params.sides[0] = {Side::inflow, Side::outflow};
+        params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
         params.wall_law = {WallLaw::Kind::logarithmic, 1e-3};
-        params.side_velocity = [](const Point<3>&, Real t) {
+        params.boundary_velocity = [](const Point<3>&, Real t) {
             return Point<3>(1 + 0.5 * std::sin(9 * t), 0, 0);
         };
         params.inflow_water = [](const Point<3>& x) { return 0.4 - x[2]; };
         params.outflow_water = [](const Point<3>& x) { return 0.3 - x[2]; };
-        params.steady_sides = false;
-        return GridFluid<3, HeightSurface, Limited, Real, MixingLength>(params, {.depth = 0.4});
+        params.steady_boundaries = false;
+        return GridFluid<3, HeightSurface, Koren, Real, MixingLength>(params, {.depth = 0.4});
     };
     check_restarts("height", make, {0.05, 0.3, 0.31, 0.8});
 }
@@ -108,8 +108,8 @@ TEST_CASE("a surface that is a height, eddies by a mixing length, water in and o
 TEST_CASE("a full box") {
     const auto make = [] {
         GridFluidParams<2> params{.grid = {.cells = {24, 24}, .spacing = Point<2>::Constant(1.0 / 24)},
-                                  .sides = Sides<2>::all(Side::wall)};
-        params.side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.99 ? 1 : 0, 0); };
+                                  .boundaries = BoundaryConditions<2>::all(Boundary::wall)};
+        params.boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.99 ? 1 : 0, 0); };
         params.viscosity = 2;
         GridFluid<2, FullBox> flow(params);
         flow.open_energy_account();
@@ -122,7 +122,7 @@ TEST_CASE("depth-averaged water that flows in below deep water") {
     const auto make = [] {
         ShallowWaterParams<1> params;
         params.high = {10}, params.cells = {50};
-        params.sides[0][0] = WaterSide::inflow(0.5);
+        params.boundaries[0][0] = ShallowBoundary::inflow(0.5);
         params.surface = [](Real x, Real) { return 1 + 0.2 * std::exp(-square(x - 3)); };
         return ShallowWater<1>(params);
     };

@@ -2,8 +2,8 @@
 // differs.
 #include "../message_of.hpp"
 
-#include <abrade/dem/material_pairs.hpp>
-#include <abrade/fluid/shallow_water.hpp>
+#include <abrade/dem/laws/material_pairs.hpp>
+#include <abrade/fluid/shallow_water/shallow_water.hpp>
 #include <abrade/io/restart.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
@@ -21,7 +21,7 @@ Scene scene() {
     Scene all;
     all.bounds = {{-2, -0.5, -1}, {3, 0.5, 2}};
     all.periodic_along = {false, true, false};
-    all.outlet = 2, all.gauge = 1;
+    all.outlet = 2, all.flow_counter = 1;
     all.add_wall({0, 0, -0.2}, {0, 0, 1}), all.add_wall({-1, 0, 0}, {1, 0, 0});
     all.add_sphere(0.05, {.position = {0.5, 0, -0.151}}), all.add_sphere(0.04, {.position = {0.8, 0.1, 0}});
     all.concrete = ConcreteBlock{flat_lattice(0.2, 0.2, {.sphere_diameter = 0.02, .layers = 3})};
@@ -86,7 +86,8 @@ TEST_CASE("what stays as it is in a scene must be as it was") {
         {"Scene.bounds.high.x must be 3 m", [](Scene& s) { s.bounds.high.x() = 4; }},
         {"Scene.periodic_along[1] must be 1", [](Scene& s) { s.periodic_along[1] = false; }},
         {"Scene.outlet must be 2 m as in the checkpoint, got none", [](Scene& s) { s.outlet.reset(); }},
-        {"Scene.gauge must be 1 m as in the checkpoint, got 0.5 m", [](Scene& s) { s.gauge = 0.5; }},
+        {"Scene.flow_counter must be 1 m as in the checkpoint, got 0.5 m",
+         [](Scene& s) { s.flow_counter = 0.5; }},
         {"Scene.stones must be 2 as in the checkpoint, got 1", [](Scene& s) { s.stones.pop_back(); }},
         {"Scene.stones that are fixed must be 0", [](Scene& s) { s.stones[0].fixed = true; }},
         {"Scene.stones: mass must be", [](Scene& s) { s.stones[0].density = 2700; }},

@@ -1,9 +1,9 @@
 // Stones in water that resolves them, saved between two steps: the same bits afterwards, with any number of
 // threads.
 #include <abrade/abrade.hpp>
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/coupling/one_fluid.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 #include <abrade/io/restart.hpp>
 
 #include <doctest/doctest.h>
@@ -16,9 +16,9 @@ namespace {
 
 template <class Surface, class Solids>
 auto stones_in_water() {
-    using Water = GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>;
+    using Water = GridFluid<3, Surface, Koren, Real, NoTurbulence, Solids>;
     GridFluidParams<3> params{.grid = {.cells = {14, 12, 14}, .spacing = Vec3::Constant(0.05)},
-                              .sides = Sides<3>::all(Side::slip),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .gravity = {0, 0, -9.81}};
     if constexpr (!std::same_as<Surface, FullBox>)
         params.water = [](const Vec3& x) { return 0.41 + 0.05 * x.x() - x.z(); };

@@ -3,7 +3,7 @@
 
 #include <abrade/bond/elastic_brittle.hpp>
 #include <abrade/bond/parallel_bond.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/sim/simulation.hpp>
 
 using namespace same_bits;

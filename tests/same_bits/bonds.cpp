@@ -4,7 +4,7 @@
 
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/twist_resistance.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/sim/simulation.hpp>
 
 using namespace same_bits;

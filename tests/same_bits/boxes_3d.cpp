@@ -1,7 +1,7 @@
 // Water that fills a box of three dimensions: in double and in single precision, with eddies.
 #include "states.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 using namespace same_bits;
 using namespace abrade;
@@ -13,7 +13,7 @@ Numbers cavity(const Turbulence& turbulence, int along = 14) {
     GridFluidParams<3> params{.grid = {.cells = {along, 12, 16}, .spacing = {1.0 / 14, 1.0 / 12, 1.0 / 16}},
                               .density = 1,
                               .viscosity = 2e-3};
-    params.side_velocity = [](const Vec3& x, Real) {
+    params.boundary_velocity = [](const Vec3& x, Real) {
         return Vec3(x.z() >= 1 ? 1 : 0, x.z() >= 1 ? 0.3 : 0, 0);
     };
     GridFluid<3, FullBox, Scheme, State, Turbulence> flow(params, turbulence);
@@ -22,12 +22,12 @@ Numbers cavity(const Turbulence& turbulence, int along = 14) {
     return state_of_water(flow).with({"fastest water", "water viscous", "water numerical"});
 }
 
-const Register box{"water3.cavity", [] { return cavity<Limited, Real>(NoTurbulence{}); }};
+const Register box{"water3.cavity", [] { return cavity<Koren, Real>(NoTurbulence{}); }};
 /// So long that threads share it.
-const Register longer{"water3.cavity_long", [] { return cavity<Limited, Real>(NoTurbulence{}, 80); }};
+const Register longer{"water3.cavity_long", [] { return cavity<Koren, Real>(NoTurbulence{}, 80); }};
 /// Between programs of other instruction sets single precision keeps six digits.
 const Register single{"water3.cavity_float", [] { return cavity<Central, float>(NoTurbulence{}); }, 1e-4};
 const Register eddies{"water3.cavity_smagorinsky",
-                      [] { return cavity<Limited, Real>(Smagorinsky{.constant = 0.17}).with({"eddies"}); }};
+                      [] { return cavity<Koren, Real>(Smagorinsky{.constant = 0.17}).with({"eddies"}); }};
 
 }  // namespace

@@ -1,8 +1,8 @@
 // A reach of the invert channel: logarithmic inflow, rough walls, a mixing length, outflow.
 #include "states.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 
 using namespace same_bits;
@@ -17,12 +17,12 @@ GridFluidParams<3> channel(const UniformFlow& uniform) {
     const Real depth = uniform.depth();
     GridFluidParams<3> params{
         .grid = {.cells = {16, 20, 10}, .low = {0, -0.5, 0}, .spacing = Vec3::Constant(h)},
-        .sides = Sides<3>::all(Side::slip),
+        .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
         .wall = InvertWall(invert),
         .wall_law = {WallLaw::Kind::logarithmic, 3.5e-3},
         .gravity = invert.gravity(),
         .tolerance = 1e-5};
-    params.sides[0][1] = Side::outflow;
+    params.boundaries[0][1] = Boundary::outflow;
     Inflow<3>({.discharge = uniform.params().discharge,
                .depth = depth,
                .section = invert,
@@ -38,7 +38,7 @@ GridFluidParams<3> channel(const UniformFlow& uniform) {
 template <class Surface>
 Numbers run() {
     const UniformFlow uniform{{.section = {.length = 0.8}, .discharge = 0.5}};
-    GridFluid<3, Surface, Limited, Real, MixingLength> flow(
+    GridFluid<3, Surface, Koren, Real, MixingLength> flow(
         channel(uniform), {.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()});
     flow.open_energy_account();
     flow.advance(0.2);

@@ -2,7 +2,7 @@
 #include "../verification/ledger_scenes.hpp"
 #include "states.hpp"
 
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/geometry/gravel.hpp>
 #include <abrade/geometry/sphere_filling.hpp>
 

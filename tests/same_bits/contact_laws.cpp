@@ -2,9 +2,9 @@
 #include "../verification/ledger_scenes.hpp"
 #include "states.hpp"
 
-#include <abrade/dem/elastic_plastic_hertz.hpp>
-#include <abrade/dem/hertz_mindlin.hpp>
-#include <abrade/dem/material_pairs.hpp>
+#include <abrade/dem/laws/elastic_plastic_hertz.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
+#include <abrade/dem/laws/material_pairs.hpp>
 
 using namespace same_bits;
 using namespace ledger_scenes;

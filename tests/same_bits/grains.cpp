@@ -2,8 +2,8 @@
 #include "../verification/ledger_scenes.hpp"
 #include "states.hpp"
 
-#include <abrade/dem/linear_hysteretic.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 
 using namespace same_bits;
 using namespace ledger_scenes;

@@ -1,8 +1,8 @@
 // Water in three dimensions below a height: pools that sway, over beds and against walls; with eddies.
 #include "states.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/wall_solids.hpp>
+#include <abrade/fluid/embedded_boundary/solid_shapes.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 using namespace same_bits;
 using namespace abrade;
@@ -11,7 +11,7 @@ namespace {
 
 GridFluidParams<3> tank(int along = 24) {
     GridFluidParams<3> params{.grid = {.cells = {along, 14, 12}, .spacing = Vec3::Constant(0.05)},
-                              .sides = Sides<3>::all(Side::slip),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .gravity = {0, 0, -9.81}};
     params.water = [](const Vec3& x) {
         return 0.22 + 0.18 / (1 + std::exp(10 * (x.x() - 0.5 + 0.2 * x.y()))) - x.z();
@@ -20,7 +20,7 @@ GridFluidParams<3> tank(int along = 24) {
 }
 template <class Turbulence>
 Numbers run(const GridFluidParams<3>& params, const Turbulence& turbulence) {
-    GridFluid<3, HeightSurface, Limited, Real, Turbulence> flow(params, turbulence);
+    GridFluid<3, HeightSurface, Koren, Real, Turbulence> flow(params, turbulence);
     flow.open_energy_account();
     flow.advance(0.5);
     return state_of_water(flow).with({"fastest water", "water numerical"});

@@ -1,8 +1,8 @@
 // Water in two dimensions below a surface that is a height.
 #include "states.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 
 using namespace same_bits;
 using namespace abrade;
@@ -14,7 +14,7 @@ using Flow = GridFluid<2, HeightSurface>;
 
 GridFluidParams<2> tank(int along, int up) {
     GridFluidParams<2> params{.grid = {.cells = {along, up}, .spacing = {0.05, 0.05}},
-                              .sides = Sides<2>::all(Side::slip)};
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip)};
     params.gravity = {0, -9.81};
     return params;
 }
@@ -42,7 +42,7 @@ Numbers onto_dry() {
 /// A stream faster than its waves, over a hump.
 Numbers stream() {
     auto params = tank(40, 12);
-    params.sides[0][1] = Side::outflow;
+    params.boundaries[0][1] = Boundary::outflow;
     params.wall = [](const P& x) { return (x[1] - 0.05 * std::exp(-20 * (x[0] - 1) * (x[0] - 1))) / 1.03; };
     Inflow<2>({.discharge = 0.6, .depth = 0.22}).give_to(params);
     params.water = [](const P& x) { return 0.22 - x[1]; };

@@ -1,7 +1,7 @@
 // Stones and water as one fluid: with the density of the mixture, and with that of the water.
 #include "stones_in_water.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 using namespace same_bits;
 
@@ -9,7 +9,7 @@ namespace {
 
 template <class Surface, class Solids>
 Numbers run() {
-    return fall_in(GridFluid<3, Surface, Limited, Real, NoTurbulence, Solids>(stone_tank<Surface>()),
+    return fall_in(GridFluid<3, Surface, Koren, Real, NoTurbulence, Solids>(stone_tank<Surface>()),
                    stones_above_floor(0), 0.2)
         .with({"flow_work"});
 }

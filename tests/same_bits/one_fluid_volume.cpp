@@ -1,7 +1,7 @@
 // The same in a volume of fluid.
 #include "stones_in_water.hpp"
 
-#include <abrade/coupling/one_fluid.hpp>
+#include <abrade/coupling/exchange/one_fluid.hpp>
 
 using namespace same_bits;
 
@@ -9,7 +9,7 @@ namespace {
 
 template <class Solids>
 Numbers run() {
-    return fall_in(GridFluid<3, FreeSurface, Limited, Real, NoTurbulence, Solids>(stone_tank<FreeSurface>()),
+    return fall_in(GridFluid<3, FreeSurface, Koren, Real, NoTurbulence, Solids>(stone_tank<FreeSurface>()),
                    stones_above_floor(0), 0.2)
         .with({"flow_work"});
 }

@@ -2,9 +2,9 @@
 #include "../verification/ledger_scenes.hpp"
 #include "states.hpp"
 
-#include <abrade/dem/linear_spring.hpp>
-#include <abrade/dem/lubrication.hpp>
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
+#include <abrade/dem/laws/lubrication.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 
 using namespace same_bits;
 using namespace ledger_scenes;

@@ -1,8 +1,8 @@
 // Depth-averaged water: dams that break over beds with dry ground, streams, and stones that it feels or not.
 #include "states.hpp"
 
-#include <abrade/coupling/two_way_shallow.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/coupling/averaging/two_way_shallow.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/sim/simulation.hpp>
 
 using namespace same_bits;
@@ -16,7 +16,7 @@ Numbers dam_1d() {
     ShallowWater<1> water({.low = {0},
                            .high = {4},
                            .cells = {160},
-                           .sides = {{{WaterSide::wall(), WaterSide::outflow()}}},
+                           .boundaries = {{{ShallowBoundary::wall(), ShallowBoundary::outflow()}}},
                            .bed = hump,
                            .surface = [](Real x, Real) { return x < 1.5   ? 0.5
                                                                 : x > 3.2 ? 0.02
@@ -29,7 +29,7 @@ Numbers stream_1d() {
     ShallowWater<1> water({.low = {0},
                            .high = {4},
                            .cells = {120},
-                           .sides = {{{WaterSide::inflow(0.4, 0.15), WaterSide::outflow()}}},
+                           .boundaries = {{{ShallowBoundary::inflow(0.4, 0.15), ShallowBoundary::outflow()}}},
                            .bed = [](Real x, Real) { return 0.4 * hump(x, 0); },
                            .gravity = {0.3, 0, -9.8},
                            .manning = 0.02});
@@ -41,7 +41,8 @@ ShallowWaterParams<2> basin() {
     return {.low = {0, -0.6},
             .high = {4, 0.6},
             .cells = {160, 48},  // threads share it
-            .sides = {{{WaterSide::wall(), WaterSide::outflow()}, {WaterSide::wall(), WaterSide::wall()}}},
+            .boundaries = {{{ShallowBoundary::wall(), ShallowBoundary::outflow()},
+                            {ShallowBoundary::wall(), ShallowBoundary::wall()}}},
             .bed = [](Real x, Real y) { return hump(x, y) + 0.1 * y * y; },
             .surface = [](Real x, Real y) { return x < 1.2 + 0.3 * y ? 0.5 : -1; },
             .gravity = {0, 0, -9.81},

@@ -1,9 +1,9 @@
 // One collision alone, by our stepper and by odeint's.
 #include "scene_list.hpp"
 
-#include <abrade/dem/collision.hpp>
-#include <abrade/dem/hertz_mindlin.hpp>
-#include <abrade/dem/odeint_steppers.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
+#include <abrade/dem/time/collision.hpp>
+#include <abrade/dem/time/odeint_steppers.hpp>
 
 using namespace same_bits;
 using namespace abrade;

@@ -3,8 +3,8 @@
 
 #include "states.hpp"
 
-#include <abrade/dem/linear_spring.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 #include <abrade/sim/simulation.hpp>
 
 namespace same_bits {
@@ -15,7 +15,7 @@ using namespace abrade;
 template <class Surface>
 GridFluidParams<3> stone_tank(int along = 14) {
     GridFluidParams<3> params{.grid = {.cells = {along, 12, 14}, .spacing = Vec3::Constant(0.05)},
-                              .sides = Sides<3>::all(Side::slip),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .gravity = {0, 0, -9.81}};
     if constexpr (!std::same_as<Surface, FullBox>)
         params.water = [](const Vec3& x) { return 0.41 + 0.05 * x.x() - x.z(); };

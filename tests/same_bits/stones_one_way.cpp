@@ -1,7 +1,7 @@
 // Stones in water on a grid that does not feel them: drag and buoyancy, and what unsteady water does beside.
 #include "stones_in_water.hpp"
 
-#include <abrade/coupling/drag.hpp>
+#include <abrade/coupling/drag/drag.hpp>
 
 using namespace same_bits;
 

@@ -2,13 +2,13 @@
 // size, all averaged.
 #include "stones_in_water.hpp"
 
-#include <abrade/coupling/monolithic.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
 
 using namespace same_bits;
 
 namespace {
 
-using Flow = GridFluid<3, FreeSurface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+using Flow = GridFluid<3, FreeSurface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
 
 Flow tank(MonolithicSolids<>::Params solids, int along = 14) {
     return Flow(stone_tank<FreeSurface>(along), {}, MonolithicSolids<>(solids));

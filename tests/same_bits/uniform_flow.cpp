@@ -2,7 +2,7 @@
 #include "states.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
@@ -26,7 +26,7 @@ abrade::Scene channel() {
                             .region = {{0, -0.3, 0.02}, {0.15, 0.3, 0.15}},
                             .bed = [](Real, Real y) { return invert.bed_height(y); },
                             .velocity = {1.5, 0, 0}};
-    scene.gauge = 0.4, scene.outlet = 0.8;
+    scene.flow_counter = 0.4, scene.outlet = 0.8;
     return scene;
 }
 template <class Drag>

@@ -1,10 +1,10 @@
 // Water in three dimensions by volume of fluid: a dam that breaks onto walls.
 #include "states.hpp"
 
-#include <abrade/fluid/flow_queries.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/wall_loads.hpp>
-#include <abrade/fluid/wall_solids.hpp>
+#include <abrade/fluid/embedded_boundary/solid_shapes.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/queries/flow_queries.hpp>
+#include <abrade/fluid/queries/wall_loads.hpp>
 
 using namespace same_bits;
 using namespace abrade;
@@ -15,7 +15,7 @@ constexpr Real h = 0.05;
 
 GridFluidParams<3> tank(int along = 26) {
     GridFluidParams<3> params{.grid = {.cells = {along, 12, 16}, .spacing = Vec3::Constant(h)},
-                              .sides = Sides<3>::all(Side::slip),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .gravity = {0, 0, -9.81}};
     params.water = [](const Vec3& x) { return std::min(0.5 - x.x(), 0.6 + 0.1 * x.y() - x.z()); };
     return params;

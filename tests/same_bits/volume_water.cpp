@@ -2,11 +2,11 @@
 // waves in a tank that moves, levels of uneven height, what leaves and what flows in.
 #include "states.hpp"
 
-#include <abrade/fluid/flow_queries.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
-#include <abrade/fluid/wall_loads.hpp>
-#include <abrade/fluid/wall_solids.hpp>
+#include <abrade/fluid/embedded_boundary/solid_shapes.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/queries/flow_queries.hpp>
+#include <abrade/fluid/queries/wall_loads.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 
 using namespace same_bits;
 using namespace abrade;
@@ -18,7 +18,7 @@ constexpr Real h = 0.05;
 
 GridFluidParams<2> tank(int along, int up) {
     GridFluidParams<2> params{.grid = {.cells = {along, up}, .spacing = {h, h}},
-                              .sides = Sides<2>::all(Side::slip)};
+                              .boundaries = BoundaryConditions<2>::all(Boundary::free_slip)};
     params.gravity = {0, -9.81};
     return params;
 }
@@ -26,7 +26,7 @@ GridFluidParams<2> tank(int along, int up) {
 /// A dam that breaks onto a disc and a step, held by walls as the law says; then what walls and gauges feel.
 Numbers dam_on_walls(const WallLaw& law) {
     auto params = tank(40, 24);
-    params.sides = Sides<2>::all(Side::wall);
+    params.boundaries = BoundaryConditions<2>::all(Boundary::wall);
     params.wall = WallUnion(BallWall<2>({1.1, 0.2}, 0.22), BoxWall<2>({1.53, -1}, {1.9, 0.17}));
     params.wall_law = law;
     params.water = [](const P& x) { return std::min(0.6 - x[0], 0.9 - x[1]); };
@@ -62,7 +62,7 @@ Numbers shaken() {
 /// A stream over a hump, faster than its waves.
 Numbers stream() {
     auto params = tank(40, 16);
-    params.sides[0][1] = Side::outflow;
+    params.boundaries[0][1] = Boundary::outflow;
     params.wall = BallWall<2>({1.0, -0.5}, 0.58);
     Inflow<2>({.discharge = 0.6, .depth = 0.22, .profile = InflowProfile::logarithmic, .roughness = 0.01})
         .give_to(params);
@@ -75,7 +75,7 @@ Numbers stream() {
 /// A slower one that leaves at a level, by periodic weight along the bed.
 Numbers level_beyond() {
     auto params = tank(30, 16);
-    params.sides[0][1] = Side::outflow;
+    params.boundaries[0][1] = Boundary::outflow;
     Inflow<2>({.discharge = 0.2, .depth = 0.5}).give_to(params);
     params.water = params.outflow_water = [](const P& x) { return 0.48 - x[1]; };
     GridFluid<2> flow(params);
@@ -85,7 +85,7 @@ Numbers level_beyond() {
 /// A drop falls into a pool that goes on beyond its sides.
 Numbers drop() {
     auto params = tank(28, 28);
-    params.sides[0] = {Side::periodic, Side::periodic};
+    params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
     params.gravity = {0.5, -9.81};
     params.water = [](const P& x) { return std::max(0.4 - x[1], 0.15 - (x - P(0.7, 0.9)).norm()); };
     GridFluid<2> flow(params);

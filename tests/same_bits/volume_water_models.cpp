@@ -1,8 +1,8 @@
 // Volume of fluid in two dimensions by other advection schemes, and with eddies.
 #include "states.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/wall_solids.hpp>
+#include <abrade/fluid/embedded_boundary/solid_shapes.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 using namespace same_bits;
 using namespace abrade;
@@ -24,7 +24,7 @@ Numbers dam(const Turbulence& turbulence) {
 
 const Register upwind{"water2.volume_upwind", [] { return dam<Upwind>(NoTurbulence{}); }};
 const Register mixing{"water2.volume_mixing_length", [] {
-                          return dam<Limited>(MixingLength{.depth = 0.5}).with({"eddies", "water turbulent"});
+                          return dam<Koren>(MixingLength{.depth = 0.5}).with({"eddies", "water turbulent"});
                       }};
 
 }  // namespace

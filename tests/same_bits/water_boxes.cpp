@@ -1,7 +1,7 @@
 // Water that fills a box of two dimensions: a cavity by each advection scheme, and what flows through.
 #include "states.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 using namespace same_bits;
 using namespace abrade;
@@ -13,7 +13,7 @@ template <class Scheme>
 Numbers cavity() {
     GridFluid<2, FullBox, Scheme> flow(
         {.grid = {.cells = {24, 24}, .spacing = {1.0 / 24, 1.0 / 24}},
-         .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] >= 1 ? 1 : 0, 0); },
+         .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] >= 1 ? 1 : 0, 0); },
          .density = 1,
          .viscosity = 5e-3});
     flow.open_energy_account();
@@ -25,11 +25,11 @@ Numbers cavity() {
 Numbers through_flow() {
     GridFluidParams<2> params{
         .grid = {.cells = {30, 16}, .spacing = {0.1, 0.1}}, .density = 1000, .viscosity = 5};
-    params.sides[0] = {Side::inflow, Side::outflow};
-    params.side_velocity = [](const Point<2>& x, Real t) {
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
+    params.boundary_velocity = [](const Point<2>& x, Real t) {
         return Point<2>(x[0] < 0.05 ? x[1] * (1.6 - x[1]) * (1 + 0.3 * std::sin(8 * t)) : 0, 0);
     };
-    params.steady_sides = false;
+    params.steady_boundaries = false;
     params.body_force = [](Real t) { return Point<2>(0.1 * std::sin(5 * t), 0.05); };
     GridFluid<2, FullBox> flow(params);
     flow.open_energy_account();
@@ -39,7 +39,7 @@ Numbers through_flow() {
 
 const Register upwind{"water2.cavity_upwind", cavity<Upwind>};
 const Register central{"water2.cavity_central", cavity<Central>};
-const Register limited{"water2.cavity_limited", cavity<Limited>};
+const Register limited{"water2.cavity_limited", cavity<Koren>};
 const Register through{"water2.through_flow", through_flow};
 
 }  // namespace

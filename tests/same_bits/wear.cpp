@@ -3,7 +3,7 @@
 #include "states.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/geometry/surface_lattice.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>

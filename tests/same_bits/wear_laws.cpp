@@ -1,7 +1,7 @@
 // The other wear laws, on a rigid floor that stones bounce and slide on.
 #include "states.hpp"
 
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/archard.hpp>
 #include <abrade/wear/finnie.hpp>

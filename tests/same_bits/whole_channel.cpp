@@ -3,10 +3,10 @@
 #include "states.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
@@ -16,7 +16,7 @@ using namespace abrade;
 
 namespace {
 
-using Flow = GridFluid<3, HeightSurface, Limited, Real, MixingLength, MonolithicSolids<>>;
+using Flow = GridFluid<3, HeightSurface, Koren, Real, MixingLength, MonolithicSolids<>>;
 
 const Invert invert{.length = 1};
 
@@ -25,12 +25,12 @@ Flow water() {
     const Real depth = uniform.depth();
     GridFluidParams<3> params{
         .grid = {.cells = {20, 20, 12}, .low = {0, -0.5, 0}, .spacing = {0.05, 0.05, 0.04}},
-        .sides = Sides<3>::all(Side::slip),
+        .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
         .wall = InvertWall(invert),
         .wall_law = {WallLaw::Kind::logarithmic, 3.5e-3},
         .gravity = invert.gravity(),
         .tolerance = 1e-5};
-    params.sides[0][1] = Side::outflow;
+    params.boundaries[0][1] = Boundary::outflow;
     Inflow<3>({.discharge = 0.5,
                .depth = depth,
                .section = invert,
@@ -56,7 +56,7 @@ Numbers run() {
                             .region = {{0.1, -0.3, 0.01}, {0.35, 0.3, 0.2}},
                             .bed = [](Real, Real y) { return invert.bed_height(y); },
                             .velocity = {2, 0, -1}};
-    scene.gauge = 0.45, scene.outlet = 0.65;
+    scene.flow_counter = 0.45, scene.outlet = 0.65;
     Flow flow = water();
     flow.open_energy_account();
     auto sim = simulate(scene)

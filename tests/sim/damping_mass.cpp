@@ -3,10 +3,10 @@
 #include "../message_of.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/hertz_mindlin.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
-#include <abrade/dem/material_pairs.hpp>
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
+#include <abrade/dem/laws/material_pairs.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 
@@ -120,7 +120,7 @@ TEST_CASE("who counts: bonded spheres are held, grains are not; two that are hel
     expect(DampingMass::free, true, Kind::grain, stone + sphere);
 
     // The kernel's own rule, lane by lane; offsets in units of a place.
-    SphereLines lines;
+    HotArrays lines;
     lines.resize(2);
     lines.motion[0].inverse_mass = 3, lines.motion[1].inverse_mass = 5;
     struct {

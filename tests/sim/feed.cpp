@@ -145,7 +145,7 @@ TEST_CASE("through the engine: what was fed is there, has passed the gauge, or h
                             .classes = {{0.03, 0.5, StoneShape::sphere}, {0.04, 0.5, StoneShape::angular}},
                             .region = {{0, -0.2, 0.1}, {0.1, 0.2, 0.4}},
                             .velocity = {2, 0, 0}};
-    scene.gauge = 0.5;
+    scene.flow_counter = 0.5;
     scene.outlet = 1.0;
     scene.add_wall({0, 0, 0}, {0, 0, 1});
     auto sim = simulate(scene).contact(LinearSpring{{.stiffness = 1e6, .restitution = 0.5, .friction = 0.1}});
@@ -173,7 +173,7 @@ TEST_CASE("through the engine: what was fed is there, has passed the gauge, or h
 TEST_CASE("the gauge counts net: a stone that comes back is taken off again") {
     Scene scene;
     scene.gravity = {-10, 0, 0};
-    scene.gauge = 0.5;
+    scene.flow_counter = 0.5;
     scene.add_sphere(0.02, {.position = {0, 0, 0}, .velocity = {4, 0, 0}});  // turns at 0.8 m after 0.4 s
     auto sim = simulate(scene).contact(law);
     sim.run({.end_time = 0.4});

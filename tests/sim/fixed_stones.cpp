@@ -1,5 +1,5 @@
 // Stones that never move: beds and obstacles.
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 #include <abrade/sim/simulation.hpp>
 

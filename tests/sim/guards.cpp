@@ -1,7 +1,7 @@
 // Runs that go wrong are stopped in the step in which they do, with the id, the place and the last good
 // state.
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 // What cannot be run is refused before the first step, with field, rule, value and remedy.
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include "../message_of.hpp"
@@ -310,8 +310,8 @@ TEST_CASE("bounds, outlet and gauge are checked") {
     scene.outlet = nan_;
     CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.outlet must be finite"));
     scene.outlet.reset();
-    scene.gauge = nan_;
-    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.gauge must be finite"));
+    scene.flow_counter = nan_;
+    CHECK(has(run(scene, {.end_time = 1e-3}), "Scene.flow_counter must be finite"));
     scene = one_stone();
     scene.stones.clear();
     scene.bounds = {{1, 1, 1}, {-1, -1, -1}};

@@ -1,6 +1,6 @@
 // A law for each pair of materials.
-#include <abrade/dem/material_pairs.hpp>
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/material_pairs.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 

@@ -119,9 +119,9 @@ TEST_CASE("at the smallest period near pairs are those that all images give, one
         const Real period = 2 * (sorted[0] + sorted[1] + skin);
         for (Vec3& x : centre) x.x() -= period * std::floor(x.x() / period);
         const std::vector<Seeks> seeks(12, Seeks::all);
-        auto pairs = near_pairs({centre, radius, body, seeks, skin, {period, 0, 0}});
+        auto pairs = verlet_pairs({centre, radius, body, seeks, skin, {period, 0, 0}});
         std::sort(pairs.begin(), pairs.end());
-        std::vector<NearPair> expected;
+        std::vector<VerletPair> expected;
         for (Index i = 0; i < 12; ++i)
             for (Index j = i + 1; j < 12; ++j) {
                 int images = 0;

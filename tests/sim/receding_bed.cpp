@@ -1,7 +1,7 @@
 // Concrete whose worn spheres sink: the surface that stones meet follows the record, between collisions.
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/core/parallel.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>
 

@@ -73,7 +73,7 @@ Run watch(Sim sim, const RunOptions& options) {
     sim.run(options, [&](const auto& now) {
         out.residual = std::max(out.residual, now.ledger().residual_relative());
         out.asleep.push_back(now.world().state().sleep.count);
-        out.evaluated.push_back(now.world().contacts().census().candidates);
+        out.evaluated.push_back(now.world().contacts().census().inner_pairs);
         for (Index b = 0; b < now.particles().bodies(); ++b)
             if (now.world().state().sleep.asleep(b)) {
                 REQUIRE(now.particles().velocity[static_cast<std::size_t>(b)].isZero(0));

@@ -2,7 +2,7 @@
 #include "stable_limits.hpp"
 
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 
 #include <doctest/doctest.h>
 

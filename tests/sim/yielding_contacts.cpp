@@ -1,8 +1,8 @@
 // Contacts that lose by yielding, in the engine: concrete of small spheres loses as that of large ones, and a
 // heap comes to rest.
 #include <abrade/bond/mohr_coulomb.hpp>
-#include <abrade/dem/elastic_plastic_hertz.hpp>
-#include <abrade/dem/linear_hysteretic.hpp>
+#include <abrade/dem/laws/elastic_plastic_hertz.hpp>
+#include <abrade/dem/laws/linear_hysteretic.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>

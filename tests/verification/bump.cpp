@@ -21,7 +21,7 @@ Real head(const Bump& flow, Real x) {
 
 template <class Surface>
 void check(const std::string& surface, int cells, Real most) {
-    const Bump flow = bump<Surface, Limited>(cells, {});
+    const Bump flow = bump<Surface, Koren>(cells, {});
     const Real before = head(flow, -1), behind = head(flow, 0.9);
     MESSAGE(surface << ", " << cells << " cells: head " << before << " m before, " << behind << " m behind, "
                     << 100 * (behind / before - 1) << " %");

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 TEST_CASE("lid-driven cavity at Re 100: the centre lines of Ghia et al.") {
-    const cavity::Errors e = cavity::errors<abrade::Limited>(64, 100, 15);
+    const cavity::Errors e = cavity::errors<abrade::Koren>(64, 100, 15);
     MESSAGE("64 x 64: largest error " << 100 * e.along_z << " % in u, " << 100 * e.along_x << " % in v");
     // The gate is 1 % on 128 x 128.
     CHECK(e.along_z < 0.01);

@@ -3,7 +3,7 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 namespace cavity {
 
@@ -18,7 +18,7 @@ template <AdvectionScheme Scheme>
 Errors errors(int n, int reynolds, Real end_time) {
     GridFluid<2, FullBox, Scheme> flow(
         {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)},
-         .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
+         .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
          .density = 1,
          .viscosity = 1.0 / reynolds});
     flow.advance(end_time);

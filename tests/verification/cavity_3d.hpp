@@ -4,7 +4,7 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 namespace cavity_3d {
 
@@ -16,12 +16,12 @@ constexpr Real reynolds = 1000;
 /// the cube, before a side that glides, is all of it.
 template <AdvectionScheme Scheme>
 GridFluid<3, FullBox, Scheme> half_cube(int n) {
-    Sides<3> sides;
-    sides[1][1] = Side::slip;
+    BoundaryConditions<3> boundaries;
+    boundaries[1][1] = Boundary::free_slip;
     return GridFluid<3, FullBox, Scheme>(
         {.grid = {.cells = {n, n / 2, n}, .spacing = Point<3>::Constant(1.0 / n)},
-         .sides = sides,
-         .side_velocity = [](const Point<3>& x, Real) { return Point<3>(x[2] > 1 - 1e-9 ? 1 : 0, 0, 0); },
+         .boundaries = boundaries,
+         .boundary_velocity = [](const Point<3>& x, Real) { return Point<3>(x[2] > 1 - 1e-9 ? 1 : 0, 0, 0); },
          .density = 1,
          .viscosity = 1 / reynolds});
 }

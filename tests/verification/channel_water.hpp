@@ -2,8 +2,8 @@
 // Clear water in the channel of the validation: an arc of rough concrete at 1:20 that takes 0.5 m3/s, in
 // cells of 0.02 m. Uniform flow by Manning's formula and the logarithmic law is let in, and should stay.
 
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 #include <abrade/fluid/uniform_flow.hpp>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace channel_water {
 using namespace abrade;
 
 template <class Turbulence = MixingLength>
-using Channel = GridFluid<3, FreeSurface, Limited, Real, Turbulence>;
+using Channel = GridFluid<3, FreeSurface, Koren, Real, Turbulence>;
 
 constexpr Real spacing = 0.02, discharge = 0.5, manning = 0.015;  ///< [m], [m3/s], [s/m^(1/3)]
 
@@ -38,12 +38,12 @@ inline GridFluidParams<3> channel(Real length, bool full = false) {
     GridFluidParams<3> params{.grid = {.cells = {cells(length), cells(invert.width), 19},
                                        .low = {0, -0.5 * invert.width, 0},
                                        .spacing = Vec3::Constant(spacing)},
-                              .sides = Sides<3>::all(Side::slip),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .wall = InvertWall(invert),
                               .wall_law = {WallLaw::Kind::logarithmic, roughness},
                               .gravity = invert.gravity(),
                               .tolerance = 1e-5};
-    params.sides[0][1] = Side::outflow;
+    params.boundaries[0][1] = Boundary::outflow;
     Inflow<3>({.discharge = discharge,
                .depth = depth,
                .section = invert,
@@ -71,7 +71,7 @@ Section section(const Fluid& flow, int i) {
     for (int j = 0; j < grid.cells(1); ++j)
         for (int k = 0; k < grid.cells(2); ++k) {
             const Offset c = grid.layout().at({i, j, k}), next = c + grid.layout().stride[0];
-            const Real wet = square(spacing) * flow.liquid().fraction()[c] * flow.walls()->open_volume()[c];
+            const Real wet = square(spacing) * flow.liquid().fraction()[c] * flow.walls()->open_fraction()[c];
             s.area += wet;
             s.discharge += wet * 0.5 * (flow.velocity()[0][c] + flow.velocity()[0][next]);
         }

@@ -4,7 +4,7 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
 namespace chung_ooi {
@@ -100,7 +100,7 @@ public:
         const Real kept = params_.spring == Spring::total      ? 1
                           : params_.spring == Spring::unscaled ? softer
                                                                : std::min(1.0, softer);
-        const Vec3 way = c.travel - c.travel.dot(c.normal) * c.normal;
+        const Vec3 way = c.displacement - c.displacement.dot(c.normal) * c.normal;
         Vec3 spring = kept * turn_into_plane(memory.spring, c.normal) + begun * way;
         Vec3 force = -kt * spring - root * std::sqrt(kt) * slip;
         const Real limit = law.params().friction * (params_.limit_by_push ? push : normal);

@@ -2,8 +2,8 @@
 // one grain. docs/verification/column_collapse.md has the table.
 #include "column_collapse.hpp"
 
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -13,16 +13,16 @@ namespace {
 
 /// A closed box of water over the bed, its catching floor included, half as high again as the column.
 auto still_water(const Column& column) {
-    using Water = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+    using Water = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
     const int along = static_cast<int>(std::ceil(reach_of(column))) + 2,
               across = static_cast<int>(std::lround(column.width)),
               up = static_cast<int>(std::ceil(1.5 * column.height())) + 2;
-    auto sides = Sides<3>::all(Side::slip);
-    sides[1] = {Side::periodic, Side::periodic};
+    auto boundaries = BoundaryConditions<3>::all(Boundary::free_slip);
+    boundaries[1] = {Boundary::periodic, Boundary::periodic};
     return Water({.grid = {.cells = {along, across, up},
                            .low = {0, 0, -diameter},
                            .spacing = Vec3::Constant(diameter)},
-                  .sides = sides,
+                  .boundaries = boundaries,
                   .gravity = {0, 0, -g},
                   .courant = 0.9});
 }

@@ -4,7 +4,7 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <algorithm>
 #include <string>
@@ -71,7 +71,7 @@ GridFluid<Dim> dam(const Tank& tank, int n) {
     params.grid.cells[Dim - 1] = tank.roof * n;
     params.grid.spacing = Point<Dim>::Constant(h);
     params.grid.spacing[0] = tank.length / params.grid.cells[0];
-    params.sides = Sides<Dim>::all(Side::slip);
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
     params.water = [tank](const Point<Dim>& x) {
         return std::min(tank.column - x[0], tank.height - x[Dim - 1]);
     };
@@ -83,7 +83,7 @@ GridFluid<Dim> dam(const Tank& tank, int n) {
 /// The same between walls that hold the water: no slip at roughness 0, else a rough wall's logarithmic law.
 inline GridFluid<2> dam_between_holding_walls(const Tank& tank, int n, Real roughness) {
     auto params = dam<2>(tank, n).params();
-    params.sides = Sides<2>::all(Side::wall);
+    params.boundaries = BoundaryConditions<2>::all(Boundary::wall);
     if (roughness > 0) params.wall_law = {WallLaw::Kind::logarithmic, roughness};
     return GridFluid<2>(params);
 }
@@ -121,8 +121,8 @@ std::vector<Sample> run(const Tank& tank, GridFluid<Dim>& flow, Real end) {
         while (wet < up && is_wet(wet)) ++wet;
         while (front > 0 && f[at(front - 1, 0)] < 0.5) --front;
         const Real felt = (1 - share) * p[at(across - 1, below)] + share * p[at(across - 1, below + 1)];
-        seen.push_back({flow.time() * tank.times_per_second(), felt / (gravity * tank.height), wet * h / tank.height,
-                        front * grid.size(0, 0) / tank.height});
+        seen.push_back({flow.time() * tank.times_per_second(), felt / (gravity * tank.height),
+                        wet * h / tank.height, front * grid.size(0, 0) / tank.height});
     }
     return seen;
 }

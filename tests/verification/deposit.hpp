@@ -4,7 +4,7 @@
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/parallel_bond.hpp>
 #include <abrade/bond/twist_resistance.hpp>
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 #include <abrade/geometry/sphere_union.hpp>
 #include <abrade/sim/simulation.hpp>
 #include <abrade/wear/sub_particle.hpp>

@@ -3,8 +3,8 @@
 // wake of the lower one (drafting), touches it (kissing), and they turn over and part (tumbling).
 
 #include <abrade/abrade.hpp>
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -26,11 +26,11 @@ struct Events {
 /// Spheres of 1/6 cm and 1.14 times the water's density in a box of 1 cm x 1 cm x 4 cm, as R. Glowinski et
 /// al. 2001, doi:10.1006/jcph.2000.6542, have them; frictionless contacts. Re 70 to 90.
 inline Events events_of(Real cells, Real end) {
-    using Flow = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+    using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
     const Real diameter = 0.01 / 6, h = diameter / cells;
     const int n = static_cast<int>(std::round(0.01 / h)), up = static_cast<int>(std::round(0.04 / h));
     const Flow water({.grid = {.cells = {n, n, up}, .spacing = Vec3(0.01 / n, 0.01 / n, 0.04 / up)},
-                      .sides = Sides<3>::all(Side::wall),
+                      .boundaries = BoundaryConditions<3>::all(Boundary::wall),
                       .gravity = {0, 0, -9.81},
                       .density = 1000,
                       .viscosity = 1e-3});

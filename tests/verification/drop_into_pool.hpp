@@ -8,7 +8,7 @@ namespace drop_into_pool {
 using namespace resolved;
 
 template <class Surface>
-using Pool = GridFluid<3, Surface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+using Pool = GridFluid<3, Surface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
 
 constexpr Real diameter = 0.1, density = 2650, rho = 1000, g = 9.81;  // [m], [kg/m3], [m/s2]
 constexpr Real volume = pi / 6 * diameter * diameter * diameter, radius = 0.5 * diameter;
@@ -84,7 +84,7 @@ Fall fall(const Drop& d) {
     const Real h = diameter / d.cells, level = 8 * diameter + d.off.z() * h;
     const int n = static_cast<int>(std::round(6 * d.cells)), up = static_cast<int>(std::round(10 * d.cells));
     Pool<Surface> water({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(h)},
-                         .sides = Sides<3>::all(Side::slip),
+                         .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                          .water = [level](const Vec3& x) { return level - x.z(); },
                          .gravity = {0, 0, -g},
                          .density = rho,

@@ -8,7 +8,7 @@ namespace heave {
 
 using namespace resolved;
 
-using Pool = GridFluid<3, HeightSurface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+using Pool = GridFluid<3, HeightSurface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
 
 /// Added mass of a floating hemisphere as it heaves, over the water in its place: 0.83 for long waves, 0.5
 /// for short ones, some 0.42 at its own frequency (A. Hulme 1982, doi:10.1017/S0022112082001980).
@@ -31,7 +31,7 @@ inline Heave heave_of(Real ratio, Real cells, Real off, Real step_of = 0.025) {
     const Real h = 2 * radius / cells, level = 6 * radius + off * h;
     const int n = static_cast<int>(std::round(6 * cells)), up = static_cast<int>(std::round(4.5 * cells));
     Pool water({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(h)},
-                .sides = Sides<3>::all(Side::slip),
+                .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                 .water = [level](const Vec3& x) { return level - x.z(); },
                 .gravity = {0, 0, -g},
                 .density = 1000,

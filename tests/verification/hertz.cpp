@@ -1,7 +1,7 @@
 // Hertz-Mindlin impacts through the engine against closed forms and published tables.
 #include "reference_table.hpp"
 
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -5,8 +5,8 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 
 #include <doctest/doctest.h>
 
@@ -49,8 +49,8 @@ struct Jump {
         GridFluidParams<2> p;
         p.grid = {.cells = {static_cast<int>(length * n), static_cast<int>(std::ceil(2 * y * n))},
                   .spacing = {h, h}};
-        p.sides = Sides<2>::all(Side::slip);
-        p.sides[0][1] = Side::outflow;
+        p.boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
+        p.boundaries[0][1] = Boundary::outflow;
         Inflow<2>({.discharge = stream() * depth, .depth = depth}).give_to(p);
         p.outflow_water = [*this, y](const Point<2>& x) { return y * depth - x[1]; };
         const auto deep = [*this, y](Real x) { return x < toe * depth ? depth : y * depth; };

@@ -2,7 +2,7 @@
 // A sphere on a plane, level or inclined, that slides or rolls. Shared by incline.cpp and by
 // bench/charts/incline.cpp; docs/verification/incline.md tells what is compared.
 
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 // The scenes of docs/verification/ledger.md, and a law that counts the contacts that begin.
 
-#include <abrade/dem/hertz_mindlin.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <atomic>

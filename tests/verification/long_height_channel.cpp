@@ -1,6 +1,6 @@
 // 4.5 m of the channel of the validation below a surface that is a height, beside volume of fluid: depth,
 // speed and what a step costs. Begun with uniform flow, 3 s.
-#include <abrade/fluid/turbulence.hpp>
+#include <abrade/fluid/momentum/turbulence.hpp>
 
 #include <doctest/doctest.h>
 
@@ -24,7 +24,7 @@ Ran run(Real courant) {
     constexpr Real length = 4.5;
     GridFluidParams<3> params = channel(length, true);
     params.courant = courant;
-    GridFluid<3, Surface, Limited, Real, MixingLength> flow(params, {.depth = uniform_flow().depth()});
+    GridFluid<3, Surface, Koren, Real, MixingLength> flow(params, {.depth = uniform_flow().depth()});
     const auto begin = std::chrono::steady_clock::now();
     flow.advance(3);
     const std::chrono::duration<Real> took = std::chrono::steady_clock::now() - begin;

@@ -28,7 +28,7 @@ GridFluid<Dim> pool(Real depth, Real slope, bool curved) {
     params.grid.cells.fill(static_cast<int>(std::lround(1 / h)));
     params.grid.cells[Dim - 1] /= 2;
     params.grid.low[Dim - 2] = -0.5;
-    params.sides = Sides<Dim>::all(Side::slip);
+    params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
     if (curved) params.wall = InvertWall({.length = 1, .width = 1, .arc_radius = 1, .slope = 0});
     params.gravity = tilted<Dim>(slope);
     const Real middle = params.grid.low[0] + 0.5;

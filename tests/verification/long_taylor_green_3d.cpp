@@ -24,4 +24,4 @@ void check(Real root_mean_square) {
 }  // namespace
 
 TEST_CASE("128 cells to the period, central fluxes") { check<Central>(0.0535); }
-TEST_CASE("128 cells to the period, limited fluxes") { check<Limited>(0.0835); }
+TEST_CASE("128 cells to the period, limited fluxes") { check<Koren>(0.0835); }

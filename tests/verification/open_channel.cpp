@@ -5,7 +5,7 @@
 //   cell.
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -43,21 +43,22 @@ struct Found {
 
 Found found(const RoughBed& bed) {
     const int length = std::max(16, 4 * bed.cells);
-    Sides<2> sides = Sides<2>::all(Side::slip);
-    sides[0] = {Side::inflow, Side::outflow};
-    sides[1][0] = Side::wall;
+    BoundaryConditions<2> boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
+    boundaries[0] = {Boundary::inflow, Boundary::outflow};
+    boundaries[1][0] = Boundary::wall;
     const auto everywhere = [](const Point<2>&) { return 1.0; };
-    GridFluid<2> flow({.grid = {.cells = {length, bed.cells}, .spacing = {bed.size(), bed.size()}},
-                       .sides = sides,
-                       .side_velocity = [bed](const Point<2>& x,
-                                              Real) { return Point<2>(x[0] > 0 ? 0 : bed.speed(x[1]), 0); },
-                       .wall_law = {WallLaw::Kind::logarithmic, bed.roughness()},
-                       .water = everywhere,
-                       .inflow_water = everywhere,
-                       .velocity = [bed](const Point<2>& x) { return Point<2>(bed.speed(x[1]), 0); },
-                       .gravity = {g * bed.slope, 0},
-                       .viscosity = 1000 * bed.eddy_viscosity(),
-                       .tolerance = 1e-9});
+    GridFluid<2> flow(
+        {.grid = {.cells = {length, bed.cells}, .spacing = {bed.size(), bed.size()}},
+         .boundaries = boundaries,
+         .boundary_velocity = [bed](const Point<2>& x,
+                                    Real) { return Point<2>(x[0] > 0 ? 0 : bed.speed(x[1]), 0); },
+         .wall_law = {WallLaw::Kind::logarithmic, bed.roughness()},
+         .water = everywhere,
+         .inflow_water = everywhere,
+         .velocity = [bed](const Point<2>& x) { return Point<2>(bed.speed(x[1]), 0); },
+         .gravity = {g * bed.slope, 0},
+         .viscosity = 1000 * bed.eddy_viscosity(),
+         .tolerance = 1e-9});
     flow.advance(10);  // 50 depths and more flow by
     const auto at = [&](int i, int k) { return flow.grid().layout().at({i, k}); };
     const auto pressure = [&](int i) { return flow.pressure()[at(i, bed.cells / 2)]; };

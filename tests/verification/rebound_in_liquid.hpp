@@ -2,9 +2,9 @@
 // A sphere falls onto a floor in a liquid and comes back, through the whole engine.
 
 #include <abrade/abrade.hpp>
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/dem/lubrication.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/dem/laws/lubrication.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ struct Rebound {
 /// From 3 diameters above the floor, at the speed at which its weight and its drag are equal, in a box 5
 /// diameters wide whose sides let the liquid glide. The contact gives way by a hundredth of a diameter.
 inline Rebound rebound(const Fall& fall) {
-    using Flow = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+    using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
     constexpr Real diameter = 0.01, rho = 1000, g = 9.81, dry = 0.97, above = 0.7 * diameter;
     const Real reynolds = 9 * fall.stokes / fall.ratio;
     const Real drag = reynolds > 1000 ? 0.44 : 24 / reynolds * (1 + 0.15 * std::pow(reynolds, 0.687));
@@ -49,10 +49,10 @@ inline Rebound rebound(const Fall& fall) {
     const Real stiffness = mass * square(speed / (0.01 * diameter));
     const int n = static_cast<int>(std::round(5 * fall.cells)),
               up = static_cast<int>(std::round(6 * fall.cells));
-    auto sides = Sides<3>::all(Side::slip);
-    sides[2][0] = Side::wall;
+    auto boundaries = BoundaryConditions<3>::all(Boundary::free_slip);
+    boundaries[2][0] = Boundary::wall;
     const Flow liquid({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(h)},
-                       .sides = sides,
+                       .boundaries = boundaries,
                        .gravity = {0, 0, -g},
                        .density = rho,
                        .viscosity = rho * speed * diameter / reynolds,

@@ -1,6 +1,6 @@
 // Resistance to rolling against closed forms; docs/verification/sandpile.md explains them.
-#include <abrade/dem/hertz_mindlin.hpp>
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>

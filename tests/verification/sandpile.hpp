@@ -4,8 +4,8 @@
 // Set-up: example "2d-sandpile-formation" of Lethe (chaos-polymtl/lethe), after J. Ai, J.-F. Chen,
 // J. M. Rotter, J. Y. Ooi, Powder Technol. 206 (2011) 269, doi:10.1016/j.powtec.2010.09.030.
 
-#include <abrade/dem/hertz_mindlin.hpp>
-#include <abrade/dem/rolling_resistance.hpp>
+#include <abrade/dem/laws/hertz_mindlin.hpp>
+#include <abrade/dem/laws/rolling_resistance.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <algorithm>

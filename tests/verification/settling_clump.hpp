@@ -3,8 +3,8 @@
 // its volume.
 
 #include <abrade/abrade.hpp>
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -51,11 +51,11 @@ struct Settled {
 /// In a box 6 diameters wide, from rest through 15.5 diameters, whose sides let the water glide. `tilt`: of
 /// the clump's axis off the horizontal at the start [degree]; `clump`: or the sphere of its volume.
 inline Settled settle(bool clump, Real cells, Real tilt) {
-    using Flow = GridFluid<3, FullBox, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+    using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
     const Real h = diameter / cells;
     const int n = static_cast<int>(std::round(6 * cells)), up = static_cast<int>(std::round(20 * cells));
     const Flow water({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(h)},
-                      .sides = Sides<3>::all(Side::slip),
+                      .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                       .gravity = {0, 0, -g},
                       .density = 1000,
                       .viscosity = 1000 * nu},

@@ -20,7 +20,7 @@ inline Settled settle(const ReferenceRow& row, Real cells) {
     const Real diameter = row.at("d_m"), h = diameter / cells;
     const int n = static_cast<int>(std::round(8 * cells)), up = static_cast<int>(std::round(20 * cells));
     Water water({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(h)},
-                 .sides = Sides<3>::all(Side::slip),
+                 .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                  .gravity = {0, 0, -9.81},
                  .density = 1000,
                  .viscosity = 1000 * row.at("nu_m2s")},

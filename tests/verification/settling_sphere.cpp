@@ -3,7 +3,7 @@
 // the table.
 #include "settling_sphere.hpp"
 
-#include <abrade/coupling/monolithic.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
 
 #include <doctest/doctest.h>
 

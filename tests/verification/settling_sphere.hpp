@@ -5,7 +5,7 @@
 #include "reference_table.hpp"
 
 #include <abrade/abrade.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,12 +20,12 @@ constexpr Real diameter = 0.015;  // [m]
 /// At rest; `cells`: to the sphere's diameter.
 template <class Solids>
 auto oil(const ReferenceRow& row, Real cells, Solids solids) {
-    using Oil = GridFluid<3, FullBox, Limited, Real, NoTurbulence, Solids>;
+    using Oil = GridFluid<3, FullBox, Koren, Real, NoTurbulence, Solids>;
     const Real h = diameter / cells;
     const int across = static_cast<int>(std::ceil(0.1 / h)), up = static_cast<int>(std::ceil(0.16 / h));
     return Oil(
         {.grid = {.cells = {across, across, up}, .spacing = Vec3(0.1 / across, 0.1 / across, 0.16 / up)},
-         .sides = Sides<3>::all(Side::wall),
+         .boundaries = BoundaryConditions<3>::all(Boundary::wall),
          .gravity = {0, 0, -9.81},
          .density = row.at("rho_f"),
          .viscosity = row.at("mu_f")},

@@ -126,7 +126,7 @@ TEST_CASE("friction and slope bring water to Manning's uniform flow, which then 
         return ShallowWater<1>{{.low = {0},
                                 .high = {10},
                                 .cells = {50},
-                                .sides = {{{WaterSide::periodic(), WaterSide::periodic()}}},
+                                .boundaries = {{{ShallowBoundary::periodic(), ShallowBoundary::periodic()}}},
                                 .surface = [&](Real, Real) { return depth; },
                                 .speed = {PlaneFunction([&](Real, Real) { return start * speed; })},
                                 .gravity = {g * slope, 0, -g * std::sqrt(1 - square(slope))},
@@ -163,12 +163,13 @@ TEST_CASE("friction and slope bring water to Manning's uniform flow, which then 
 TEST_CASE("down a channel water comes to the depth at which Manning's formula carries the discharge") {
     const Real slope = 0.01, manning = 0.02, discharge = 0.5, g = standard_gravity;
     const Real depth = std::pow(discharge * manning / std::sqrt(slope), 0.6);
-    ShallowWater<1> water{{.low = {0},
-                           .high = {20},
-                           .cells = {100},
-                           .sides = {{{WaterSide::inflow(discharge, 0.8 * depth), WaterSide::outflow()}}},
-                           .gravity = {g * slope, 0, -g * std::sqrt(1 - square(slope))},
-                           .manning = manning}};
+    ShallowWater<1> water{
+        {.low = {0},
+         .high = {20},
+         .cells = {100},
+         .boundaries = {{{ShallowBoundary::inflow(discharge, 0.8 * depth), ShallowBoundary::outflow()}}},
+         .gravity = {g * slope, 0, -g * std::sqrt(1 - square(slope))},
+         .manning = manning}};
     water.advance(200);
     CHECK(water.depth(99) == doctest::Approx(depth).epsilon(0.02).scale(0));
     CHECK(water.discharge(50) == doctest::Approx(discharge).epsilon(1e-6).scale(0));

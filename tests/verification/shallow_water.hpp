@@ -2,7 +2,7 @@
 // Closed solutions of depth-averaged water, and the runs that are held against them. Tests and charts share
 // them.
 
-#include <abrade/fluid/shallow_water.hpp>
+#include <abrade/fluid/shallow_water/shallow_water.hpp>
 
 #include <cmath>
 #include <functional>
@@ -62,7 +62,7 @@ struct DamBreak {
         return ShallowWater<1>{{.low = {-half_length},
                                 .high = {half_length},
                                 .cells = {cells},
-                                .sides = {{{WaterSide::outflow(), WaterSide::outflow()}}},
+                                .boundaries = {{{ShallowBoundary::outflow(), ShallowBoundary::outflow()}}},
                                 .surface = [*this](Real x, Real) { return x < 0 ? left : right; },
                                 .gravity = {0, 0, -gravity}}};
     }
@@ -155,7 +155,7 @@ struct SimpleWave {
             {.low = {0},
              .high = {1},
              .cells = {cells},
-             .sides = {{{WaterSide::periodic(), WaterSide::periodic()}}},
+             .boundaries = {{{ShallowBoundary::periodic(), ShallowBoundary::periodic()}}},
              .surface = [*this, dx](Real x, Real) { return cell_depth(x - 0.5 * dx, dx, 0); },
              .speed = {PlaneFunction([*this](Real x, Real) { return 2 * (start(x) - mean); })},
              .gravity = {0, 0, -gravity},
@@ -185,13 +185,14 @@ struct Jump {
     /// Behind it water rests, so the stream's speed is F (1 - 1/y) where the jump runs at F/y.
     ShallowWater<1> bore(Index cells) const {
         const Real speed = froude * (1 - 1 / sequent());
-        return ShallowWater<1>{{.low = {0},
-                                .high = {40},
-                                .cells = {cells},
-                                .sides = {{{WaterSide::inflow(speed, 1), WaterSide::wall()}}},
-                                .surface = [](Real, Real) { return 1.0; },
-                                .speed = {PlaneFunction([speed](Real, Real) { return speed; })},
-                                .gravity = {0, 0, -1}}};
+        return ShallowWater<1>{
+            {.low = {0},
+             .high = {40},
+             .cells = {cells},
+             .boundaries = {{{ShallowBoundary::inflow(speed, 1), ShallowBoundary::wall()}}},
+             .surface = [](Real, Real) { return 1.0; },
+             .speed = {PlaneFunction([speed](Real, Real) { return speed; })},
+             .gravity = {0, 0, -1}}};
     }
 
     /// On a rough bed, before a weir: friction slows the stream down, so there is one place where the jump
@@ -202,7 +203,7 @@ struct Jump {
             {.low = {0},
              .high = {length},
              .cells = {cells},
-             .sides = {{{WaterSide::inflow(froude, 1), WaterSide::outflow()}}},
+             .boundaries = {{{ShallowBoundary::inflow(froude, 1), ShallowBoundary::outflow()}}},
              .bed =
                  [weir](Real x, Real) {
                      const Real way = (x - weir_at) / weir_width;

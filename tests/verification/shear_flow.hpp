@@ -51,14 +51,14 @@ struct Shear {
     Water water() const {
         const int up = static_cast<int>(std::round(box * cells));
         const int n = static_cast<int>(std::round(width * cells));
-        auto sides = Sides<3>::all(Side::periodic);
-        sides[2] = {Side::wall, Side::wall};
+        auto boundaries = BoundaryConditions<3>::all(Boundary::periodic);
+        boundaries[2] = {Boundary::wall, Boundary::wall};
         const auto shear = [g = rate, zero = place().z()](const Vec3& x) {
             return Vec3(g * (x.z() - zero), 0, 0);
         };
         return Water({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(1 / cells)},
-                      .sides = sides,
-                      .side_velocity = [shear](const Vec3& x, Real) { return shear(x); },
+                      .boundaries = boundaries,
+                      .boundary_velocity = [shear](const Vec3& x, Real) { return shear(x); },
                       .velocity = shear,
                       .density = 1,
                       .viscosity = 1,

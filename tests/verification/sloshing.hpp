@@ -3,7 +3,7 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -36,7 +36,7 @@ struct SmallSway {
         const Real h = length / n, turns = pace * frequency(), b = push;
         return GridFluid<2>(
             {.grid = {.cells = {n, static_cast<int>(1.2 * depth / h)}, .spacing = {h, h}},
-             .sides = Sides<2>::all(Side::slip),
+             .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
              .water = [*this](const Point<2>& x) { return depth - x[1]; },
              .gravity = {0, -gravity},
              .body_force = [b, turns](Real t) { return Point<2>(b * std::cos(turns * t), 0); },
@@ -74,7 +74,7 @@ struct WideSway {
         GridFluidParams<2> p;
         p.grid = {.cells = {static_cast<int>(std::lround(length / h)), static_cast<int>(std::ceil(roof / h))},
                   .spacing = {length / std::round(length / h), h}};
-        p.sides = Sides<2>::all(Side::slip);
+        p.boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
         p.water = [d = depth](const Point<2>& x) { return d - x[1]; };
         p.velocity = [passes](const Point<2>&) { return Point<2>(passes, 0); };
         p.gravity = {0, -gravity};

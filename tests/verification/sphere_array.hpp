@@ -32,7 +32,7 @@ inline ArrayDrag drag_in(const Array& array) {
                of_water = (1 - array.solid_fraction) * volume;
     const auto force = std::make_shared<Real>(0);
     Water water({.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(h)},
-                 .sides = Sides<3>::all(Side::periodic),
+                 .boundaries = BoundaryConditions<3>::all(Boundary::periodic),
                  .velocity = [&](const Vec3&) { return Vec3(speed, 0, 0); },
                  .body_force = [force](Real) { return Vec3(*force, 0, 0); },
                  .density = 1,

@@ -2,8 +2,8 @@
 // A stone that stands in a stream faster than its waves, half out of it: the force that the exchange hands
 // out against the balance of momentum of the water around it.
 
-#include <abrade/coupling/monolithic.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace stone_in_stream {
 
 using namespace abrade;
 
-using Flow = GridFluid<3, HeightSurface, Limited, Real, NoTurbulence, MonolithicSolids<>>;
+using Flow = GridFluid<3, HeightSurface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
 
 constexpr Real diameter = 0.2, length = 1.6, g = 9.81, density = 1000;  // [m], [m/s2], [kg/m3]
 
@@ -92,9 +92,9 @@ inline Force force_on_stone(const Stream& s, Real from, Real to) {
     const auto count = [h](Real x) { return static_cast<int>(std::round(x / h)); };
     GridFluidParams<3> p{.grid = {.cells = {count(length), count(s.width), count(s.depth + 0.35)},
                                   .spacing = Vec3::Constant(h)},
-                         .sides = Sides<3>::all(Side::slip)};
-    p.sides[0] = {Side::inflow, Side::outflow};
-    p.side_velocity = [speed](const Vec3&, Real) { return speed; };
+                         .boundaries = BoundaryConditions<3>::all(Boundary::free_slip)};
+    p.boundaries[0] = {Boundary::inflow, Boundary::outflow};
+    p.boundary_velocity = [speed](const Vec3&, Real) { return speed; };
     p.velocity = [speed](const Vec3&) { return speed; };
     p.water = p.inflow_water = [depth = s.depth](const Vec3& x) { return depth - x.z(); };
     p.gravity = g * cosine * Vec3(s.slope, 0, -1);

@@ -1,7 +1,7 @@
 // The decaying vortices of G. Taylor and A. Green 1937, doi 10.1098/rspa.1937.0036, in two dimensions:
 //   u = sin x cos z exp(-2 nu t), w = -cos x sin z exp(-2 nu t): orders in space and in time, decay of
 //   energy.
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -22,7 +22,7 @@ GridFluid<2, FullBox, Scheme, State> vortices(int n, Real shift = 0) {
     return GridFluid<2, FullBox, Scheme, State>({.grid = {.cells = {n, n},
                                                           .low = Point<2>::Constant(shift),
                                                           .spacing = Point<2>::Constant(2 * pi / n)},
-                                                 .sides = Sides<2>::all(Side::periodic),
+                                                 .boundaries = BoundaryConditions<2>::all(Boundary::periodic),
                                                  .velocity = [](const Point<2>& x) { return exact(x, 0); },
                                                  .density = 1,
                                                  .viscosity = nu,
@@ -56,7 +56,7 @@ TEST_CASE("second order in space") {
     const Real coarse = error_of<Central>(32, 32), fine = error_of<Central>(64, 64);
     MESSAGE("central: " << coarse << " and " << fine << ", order " << std::log2(coarse / fine));
     CHECK(std::log2(coarse / fine) > 1.9);
-    const Real limited_coarse = error_of<Limited>(32, 32), limited_fine = error_of<Limited>(64, 64);
+    const Real limited_coarse = error_of<Koren>(32, 32), limited_fine = error_of<Koren>(64, 64);
     MESSAGE("limited: " << limited_coarse << " and " << limited_fine << ", order "
                         << std::log2(limited_coarse / limited_fine));
     CHECK(std::log2(limited_coarse / limited_fine) > 1.9);

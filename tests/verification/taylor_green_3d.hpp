@@ -7,7 +7,7 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 namespace taylor_green_3d {
 
@@ -23,7 +23,8 @@ GridFluid<3, FullBox, Scheme> vortices(int n, Part part = Part::eighth) {
     const int cells = part == Part::whole ? n : n / 2;
     return GridFluid<3, FullBox, Scheme>(
         {.grid = {.cells = {cells, cells, cells}, .spacing = Point<3>::Constant(2 * pi / n)},
-         .sides = Sides<3>::all(part == Part::whole ? Side::periodic : Side::slip),
+         .boundaries =
+             BoundaryConditions<3>::all(part == Part::whole ? Boundary::periodic : Boundary::free_slip),
          .velocity =
              [](const Point<3>& x) {
                  return Point<3>(std::sin(x[0]) * std::cos(x[1]) * std::cos(x[2]),

@@ -3,7 +3,7 @@
 // bed and a lid that the water glides along, driven by its weight g S.
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -33,12 +33,12 @@ struct Found {
 template <class Model>
 Found found(const Bed& bed, int cells, Real length, Model model) {
     const Real h = bed.depth / cells;
-    Sides<2> sides;
-    sides[0] = {Side::periodic, Side::periodic};
-    sides[1] = {Side::wall, Side::slip};
-    GridFluid<2, FullBox, Limited, Real, Model> flow(
+    BoundaryConditions<2> boundaries;
+    boundaries[0] = {Boundary::periodic, Boundary::periodic};
+    boundaries[1] = {Boundary::wall, Boundary::free_slip};
+    GridFluid<2, FullBox, Koren, Real, Model> flow(
         {.grid = {.cells = {4, cells}, .spacing = {length, h}},
-         .sides = sides,
+         .boundaries = boundaries,
          .wall_law = {WallLaw::Kind::logarithmic, bed.roughness()},
          .velocity = [&](const Point<2>& x) { return Point<2>(bed.log_law(std::max(x[1], h / 2)), 0); },
          .gravity = {g * bed.slope, 0},

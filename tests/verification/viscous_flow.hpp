@@ -2,7 +2,7 @@
 // Laminar flow of a viscous liquid between two plates (Poiseuille) and down an incline (Nusselt), with walls
 // at sides of the box, off the grid planes and at an angle to them.
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 namespace viscous {
 
@@ -41,10 +41,10 @@ private:
 /// g = 8, nu = 1. It starts at rest.
 inline Errors between_sides(int cells) {
     const Real h = 1.0 / cells;
-    Sides<2> sides;
-    sides[0] = {Side::periodic, Side::periodic};
+    BoundaryConditions<2> boundaries;
+    boundaries[0] = {Boundary::periodic, Boundary::periodic};
     GridFluid<2, FullBox> flow({.grid = {.cells = {4, cells}, .spacing = {h, h}},
-                                .sides = sides,
+                                .boundaries = boundaries,
                                 .gravity = {8, 0},
                                 .density = 1,
                                 .viscosity = 1,
@@ -87,12 +87,12 @@ struct Channel {
         const Real h = size();
         const int columns = static_cast<int>(length / h);
         const int rise = static_cast<int>(std::ceil((1 / along()[0] + length * std::tan(angle)) / h));
-        Sides<2> sides = Sides<2>::all(Side::slip);
-        sides[0] = {Side::inflow, Side::outflow};
+        BoundaryConditions<2> boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
+        boundaries[0] = {Boundary::inflow, Boundary::outflow};
         const Channel c = *this;
         return GridFluid<2>({.grid = {.cells = {columns, rise + 3}, .spacing = {h, h}},
-                             .sides = sides,
-                             .side_velocity = [c](const Point<2>& x, Real) { return c.exact(x); },
+                             .boundaries = boundaries,
+                             .boundary_velocity = [c](const Point<2>& x, Real) { return c.exact(x); },
                              .wall =
                                  [c](const Point<2>& x) {
                                      const Real z = c.height(x);
@@ -138,7 +138,7 @@ struct Channel {
         Real discharge = 0;
         grid.for_each([&](const CellNumber<2>& cell, Offset c) {
             if (cell[0] < first || cell[0] >= last) return;
-            const auto& open = water.walls()->open_area();
+            const auto& open = water.walls()->aperture();
             discharge += open[0][c] * water.velocity()[0][c] * size() / (last - first);
             for (int a = 0; a < 2; ++a) {
                 const Point<2> x = grid.face_centre(a, cell);
@@ -172,16 +172,16 @@ struct Film {
     }
     GridFluid<2> flow() const {
         const Real h = size();
-        Sides<2> sides = Sides<2>::all(Side::slip);
-        sides[0] = {Side::inflow, Side::outflow};
-        if (share == 0) sides[1][0] = Side::wall;
+        BoundaryConditions<2> boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
+        boundaries[0] = {Boundary::inflow, Boundary::outflow};
+        if (share == 0) boundaries[1][0] = Boundary::wall;
         const Film f = *this;
         const auto below = [f](const Point<2>& x) { return f.bed() + 1 - x[1]; };
         GridFluid<2>::Params params{
             .grid = {.cells = {static_cast<int>(std::lround(4 / h)), cells + 4}, .spacing = {h, h}},
-            .sides = sides,
-            .side_velocity = [f](const Point<2>& x,
-                                 Real) { return x[0] > 0 ? Point<2>::Zero().eval() : f.exact(x); },
+            .boundaries = boundaries,
+            .boundary_velocity = [f](const Point<2>& x,
+                                     Real) { return x[0] > 0 ? Point<2>::Zero().eval() : f.exact(x); },
             .water = below,
             .inflow_water = below,
             .velocity = [f](const Point<2>& x) { return f.exact(x); },
@@ -201,7 +201,7 @@ struct Film {
         const Grid<2>& grid = water.grid();
         const auto held = [&](int i, int k) {
             const Offset c = grid.layout().at({i, k});
-            return water.liquid().fraction()[c] * (water.walls() ? water.walls()->open_volume()[c] : 1);
+            return water.liquid().fraction()[c] * (water.walls() ? water.walls()->open_fraction()[c] : 1);
         };
         const auto depth = [&](int i) {
             Real sum = 0;

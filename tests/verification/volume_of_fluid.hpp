@@ -1,8 +1,8 @@
 #pragma once
 // Flows that carry a shape somewhere and back again: what is left of it, for volume of fluid.
 
-#include <abrade/fluid/fill_below.hpp>
-#include <abrade/fluid/volume_of_fluid.hpp>
+#include <abrade/fluid/vof/fill_below.hpp>
+#include <abrade/fluid/vof/volume_of_fluid.hpp>
 
 #include <chrono>
 
@@ -87,7 +87,7 @@ inline FaceField<2> from_stream(const Grid<2>& grid, const auto& stream) {
 inline Returned single_vortex(int cells, Real period, Real courant,
                               const VolumeOfFluid<2>::Params& params = {}, Real until = 1) {
     const Grid<2> grid = grid_of<2>(cells, 1);
-    VolumeOfFluid<2> water(grid, Sides<2>::all(Side::wall), params);
+    VolumeOfFluid<2> water(grid, BoundaryConditions<2>::all(Boundary::wall), params);
     fill_below<2>(
         water.fraction(), grid, [](const Point<2>& x) { return (x - Point<2>(0.5, 0.75)).norm() - 0.15; }, 5);
     water.prepare();
@@ -109,7 +109,7 @@ inline Real slotted_disc(const Point<2>& x) {
 }
 inline Returned zalesak(int cells, const VolumeOfFluid<2>::Params& params = {}, Real until = 1) {
     const Grid<2> grid = grid_of<2>(cells, 4);
-    VolumeOfFluid<2> water(grid, Sides<2>::all(Side::outflow), params);
+    VolumeOfFluid<2> water(grid, BoundaryConditions<2>::all(Boundary::outflow), params);
     fill_below<2>(water.fraction(), grid, slotted_disc, 5);
     water.prepare();
     const auto u = from_stream(grid, [](Real x, Real z) { return -0.25 * (square(x - 2) + square(z - 2)); });
@@ -123,7 +123,7 @@ inline Returned zalesak(int cells, const VolumeOfFluid<2>::Params& params = {}, 
 /// divergence to round-off.
 inline Returned deformation(int cells, Real courant, const VolumeOfFluid<3>::Params& params = {}) {
     const Grid<3> grid = grid_of<3>(cells, 1);
-    VolumeOfFluid<3> water(grid, Sides<3>::all(Side::wall), params);
+    VolumeOfFluid<3> water(grid, BoundaryConditions<3>::all(Boundary::wall), params);
     fill_below<3>(
         water.fraction(), grid,
         [](const Point<3>& x) { return (x - Point<3>::Constant(0.35)).norm() - 0.15; }, 3);

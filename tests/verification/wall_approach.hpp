@@ -5,8 +5,8 @@
 #include "../coupling/resolved_bodies.hpp"
 #include "reference_table.hpp"
 
-#include <abrade/dem/linear_spring.hpp>
-#include <abrade/dem/lubrication.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
+#include <abrade/dem/laws/lubrication.hpp>
 
 namespace wall_approach {
 
@@ -29,10 +29,10 @@ struct ApproachDrag {
 inline ApproachDrag drag_in(const Approach& approach) {
     const Real h = 1 / approach.cells, speed = 0.02;
     const int n = static_cast<int>(std::round(approach.box * approach.cells));
-    auto sides = Sides<3>::all(Side::slip);
-    sides[2][0] = Side::wall;
+    auto boundaries = BoundaryConditions<3>::all(Boundary::free_slip);
+    boundaries[2][0] = Boundary::wall;
     Water water({.grid = {.cells = {n, n, n}, .spacing = Vec3::Constant(h)},
-                 .sides = sides,
+                 .boundaries = boundaries,
                  .density = 1,
                  .viscosity = 1,
                  .courant = 1,

@@ -4,7 +4,7 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -43,7 +43,7 @@ inline GridFluid<2> column(int n, Real width, Real length) {
     const Real h = width / n;
     return GridFluid<2>(
         {.grid = {.cells = {static_cast<int>(length * n), 5 * n / 2}, .spacing = {h, h}},
-         .sides = Sides<2>::all(Side::slip),
+         .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
          .water = [width](const Point<2>& x) { return std::min(width - x[0], 2 * width - x[1]); },
          .gravity = {0, -9.81},
          .viscosity = 1e-3});

@@ -3,8 +3,8 @@
 // vortices, a column that collapses, a channel over a bump. Each runs to its end and gives what errors are
 // computed from.
 
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/inflow.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/setup/inflow.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ using namespace abrade;
 /// What a user may choose beside grid, scheme, state and surface.
 struct Choice {
     Real tolerance = 1e-6, courant = 0.5;
-    Side walls = Side::wall;  ///< of the column that collapses
+    Boundary walls = Boundary::wall;  ///< of the column that collapses
 };
 
 struct Cost {
@@ -55,7 +55,7 @@ template <AdvectionScheme Scheme, class State = Real>
 CentreLines cavity(int n, const Choice& choice) {
     GridFluid<2, FullBox, Scheme, State> flow(
         {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)},
-         .side_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
+         .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
          .density = 1,
          .viscosity = 1e-3,
          .courant = choice.courant,
@@ -87,7 +87,7 @@ template <AdvectionScheme Scheme, class State = Real>
 Vortices taylor_green(int n, const Choice& choice) {
     GridFluid<2, FullBox, Scheme, State> flow(
         {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(2 * pi / n)},
-         .sides = Sides<2>::all(Side::periodic),
+         .boundaries = BoundaryConditions<2>::all(Boundary::periodic),
          .velocity = [](const Point<2>& x) { return Vortices::exact(x, 0); },
          .density = 1,
          .viscosity = Vortices::viscosity,
@@ -128,7 +128,7 @@ Collapse dam_break(int n, const Choice& choice) {
     constexpr Real width = Collapse::width;
     GridFluid<2, FreeSurface, Scheme> flow(
         {.grid = {.cells = {8 * n, 3 * n}, .spacing = Point<2>::Constant(width / n)},
-         .sides = Sides<2>::all(choice.walls),
+         .boundaries = BoundaryConditions<2>::all(choice.walls),
          .water = [](const Point<2>& x) { return std::min(width - x[0], 2 * width - x[1]); },
          .gravity = {0, -9.81},
          .viscosity = 1e-3,
@@ -175,7 +175,7 @@ Bump bump(int n, const Choice& choice) {
         .grid = {.cells = {n, static_cast<int>(std::lround(Bump::top / spacing))},
                  .low = {Bump::low, 0},
                  .spacing = Point<2>::Constant(spacing)},
-        .sides = Sides<2>::all(Side::slip),
+        .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
         .wall = [](const Point<2>& x) { return x[1] - Bump::bed(x[0]); },
         .wall_law = {WallLaw::Kind::slip},
         .water = [](const Point<2>& x) { return Bump::bed(x[0]) + Bump::hydrostatic_depth(x[0]) - x[1]; },
@@ -185,7 +185,7 @@ Bump bump(int n, const Choice& choice) {
         .viscosity = 1e-3,
         .courant = choice.courant,
         .tolerance = choice.tolerance};
-    params.sides[0][1] = Side::outflow;
+    params.boundaries[0][1] = Boundary::outflow;
     Inflow<2>({.discharge = Bump::discharge, .depth = Bump::level}).give_to(params);
     GridFluid<2, Surface, Scheme> flow(std::move(params));
     flow.advance(Bump::end);
@@ -194,7 +194,7 @@ Bump bump(int n, const Choice& choice) {
         Real air = 0;
         for (int k = 0; k < flow.grid().cells(1); ++k) {
             const Offset c = flow.grid().layout().at({i, k});
-            air += (1 - flow.liquid().fraction()[c]) * flow.walls()->open_volume()[c] * spacing;
+            air += (1 - flow.liquid().fraction()[c]) * flow.walls()->open_fraction()[c] * spacing;
         }
         found.x.push_back(flow.grid().centre(0, i)), found.surface.push_back(Bump::top - air);
     }

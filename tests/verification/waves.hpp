@@ -2,7 +2,7 @@
 // Waves on grid water with closed solutions: standing waves in tanks, a solitary wave, bores. Tests and
 // charts share them.
 
-#include <abrade/fluid/grid_fluid.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
 
 #include <cmath>
 #include <vector>
@@ -46,8 +46,8 @@ struct RunningWave {
         GridFluidParams<2> params;
         params.grid = {.cells = {n, static_cast<int>(std::ceil((depth + 4 * amplitude) / h)) + 2},
                        .spacing = {h, h}};
-        params.sides = Sides<2>::all(Side::slip);
-        params.sides[0] = {Side::periodic, Side::periodic};
+        params.boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
+        params.boundaries[0] = {Boundary::periodic, Boundary::periodic};
         params.water = [*this, k](const Point<2>& x) {
             return depth + amplitude * std::cos(k * x[0]) - x[1];
         };
@@ -97,7 +97,7 @@ struct StandingWave {
         params.grid.cells.fill(n);
         params.grid.cells[Dim - 1] = static_cast<int>(std::ceil((depth + 4 * amplitude) / h)) + 2;
         params.grid.spacing = Point<Dim>::Constant(h);
-        params.sides = Sides<Dim>::all(Side::slip);
+        params.boundaries = BoundaryConditions<Dim>::all(Boundary::free_slip);
         params.water = [*this](const Point<Dim>& x) {
             return depth + amplitude * shape<Dim>(x) - x[Dim - 1];
         };
@@ -202,7 +202,7 @@ struct SolitaryWave {
         const Real h = depth / n;
         const int levels = static_cast<int>(std::ceil((depth + 1.5 * height) / h)) + 2;
         return GridFluid<2>({.grid = {.cells = {static_cast<int>(end) * n, levels}, .spacing = {h, h}},
-                             .sides = Sides<2>::all(Side::slip),
+                             .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
                              .water = [*this](const Point<2>& x) { return depth + elevation(x[0]) - x[1]; },
                              .velocity = [*this](const Point<2>& x) { return velocity(x); },
                              .gravity = {0, -gravity},
@@ -264,17 +264,18 @@ struct Bore {
     GridFluid<2> channel(int n, int length) const {
         const Real h = depth / n;
         const int levels = static_cast<int>(std::ceil(3 * sequent() * n));
-        Sides<2> sides = Sides<2>::all(Side::slip);
-        sides[0][0] = Side::inflow;
+        BoundaryConditions<2> boundaries = BoundaryConditions<2>::all(Boundary::free_slip);
+        boundaries[0][0] = Boundary::inflow;
         const Real enters = stream();
         const auto below = [*this](const Point<2>& x) { return depth - x[1]; };
-        return GridFluid<2>({.grid = {.cells = {length * n, levels}, .spacing = {h, h}},
-                             .sides = sides,
-                             .side_velocity = [enters](const Point<2>&, Real) { return Point<2>(enters, 0); },
-                             .water = below,
-                             .inflow_water = below,
-                             .velocity = [enters](const Point<2>&) { return Point<2>(enters, 0); },
-                             .gravity = {0, -gravity}});
+        return GridFluid<2>(
+            {.grid = {.cells = {length * n, levels}, .spacing = {h, h}},
+             .boundaries = boundaries,
+             .boundary_velocity = [enters](const Point<2>&, Real) { return Point<2>(enters, 0); },
+             .water = below,
+             .inflow_water = below,
+             .velocity = [enters](const Point<2>&) { return Point<2>(enters, 0); },
+             .gravity = {0, -gravity}});
     }
     /// Where the surface first comes half way up, from the inlet [m].
     Real front(const GridFluid<2>& flow) const {
@@ -321,7 +322,7 @@ struct DamBreak {
         const Real h = left / n, middle = 0.5 * length;
         return GridFluid<2>(
             {.grid = {.cells = {length * n, 5 * n / 4}, .spacing = {h, h}},
-             .sides = Sides<2>::all(Side::slip),
+             .boundaries = BoundaryConditions<2>::all(Boundary::free_slip),
              .water = [*this,
                        middle](const Point<2>& x) { return x[0] < middle ? left - x[1] : right - x[1]; },
              .gravity = {0, -gravity}});

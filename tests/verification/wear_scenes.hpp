@@ -4,7 +4,7 @@
 
 #include "../../examples/common/chosen_wear.hpp"
 
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/sim/simulation.hpp>
 
 #include <utility>
@@ -85,7 +85,7 @@ public:
             open_.push_back({contact.normal, Vec3::Zero(), 0});
             open = open_.end() - 1;
         }
-        const Real flows = -0.5 * (open->force + load.force).dot(contact.travel);
+        const Real flows = -0.5 * (open->force + load.force).dot(contact.displacement);
         open->owed += flows, open->force = load.force, open->normal = contact.normal;
         sums_.running += flows;
         sums_.never_back += std::max(flows, 0.0);

@@ -35,7 +35,7 @@ struct Case {
     ContactLoad<Real> load{Vec3::Zero(), 0, 0, 0};
     Case(Real approach, Real across, Real push) {
         contact.velocity = {0.6 * across, 0.8 * across, -approach};
-        contact.travel = contact.time_step * contact.velocity;
+        contact.displacement = contact.time_step * contact.velocity;
         load.force = {0, 0, push};
     }
 };
@@ -123,7 +123,7 @@ TEST_CASE("whatever the contact does, no increment is negative, and packs answer
                         Case& c = cases[static_cast<std::size_t>(lane)];
                         c.contact.normal = anything().normalized();
                         c.contact.velocity = anything();
-                        c.contact.travel = 1e-5 * anything();
+                        c.contact.displacement = 1e-5 * anything();
                         c.contact.overlap = 1e-5 * u(random);
                         c.contact.touched = u(random) > 0;
                         const bool touches = c.contact.overlap > 0;  // else laws answer without force
@@ -132,7 +132,7 @@ TEST_CASE("whatever the contact does, no increment is negative, and packs answer
                         for (int a = 0; a < 3; ++a) {
                             all.normal[a].set(lane, c.contact.normal[a]);
                             all.velocity[a].set(lane, c.contact.velocity[a]);
-                            all.travel[a].set(lane, c.contact.travel[a]);
+                            all.displacement[a].set(lane, c.contact.displacement[a]);
                             loads.force[a].set(lane, c.load.force[a]);
                         }
                         all.overlap.set(lane, c.contact.overlap), all.inverse_mass.set(lane, 4);

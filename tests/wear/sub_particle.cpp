@@ -1,5 +1,5 @@
 // The sub-particle abrasion law against its closed forms.
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/wear/sub_particle.hpp>
 
 #include <doctest/doctest.h>

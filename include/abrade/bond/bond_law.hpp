@@ -1,14 +1,14 @@
 #pragma once
 // What a bond law sees and answers, its concept, and the null policy.
 
-#include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/laws/contact_law.hpp>
 
 namespace abrade {
 
-enum class Fate : std::uint8_t { intact, tension, shear };
+enum class FailureMode : std::uint8_t { intact, tension, shear };
 
 /// The fates of a pack of bonds.
-struct PackFate {
+struct PackFailureMode {
     PackMask tension{}, shear{};
 };
 
@@ -22,12 +22,13 @@ struct BondKinematicsOf {
     Number length = Number(0);                         ///< between their centres, unloaded [m]
     Number effective_mass = Number(0);                 ///< [kg]
     Real time_step = 0;                                ///< [s]
-    Vec3Of<Number> travel = Vec3Of<Number>::Zero();  ///< of i relative to j, over the step that led here [m]
+    Vec3Of<Number> displacement =
+        Vec3Of<Number>::Zero();  ///< of i relative to j, over the step that led here [m]
 
     // What laws that carry moments see beside (`CarriesMoments`); nobody fills it in for the others.
-    Vec3Of<Number> spin = Vec3Of<Number>::Zero();  ///< angular velocity of i relative to j [rad/s]
-    Vec3Of<Number> turn = Vec3Of<Number>::Zero();  ///< over the step that led here [rad]
-    Number effective_inertia = Number(0);          ///< 1/(1/I_i + 1/I_j) [kg m2]
+    Vec3Of<Number> spin = Vec3Of<Number>::Zero();      ///< angular velocity of i relative to j [rad/s]
+    Vec3Of<Number> rotation = Vec3Of<Number>::Zero();  ///< over the step that led here [rad]
+    Number effective_inertia = Number(0);              ///< 1/(1/I_i + 1/I_j) [kg m2]
 };
 using BondKinematics = BondKinematicsOf<Real>;
 
@@ -58,7 +59,7 @@ struct BondResponseOf {
     BondLoadOf<Number> load;
     Memory memory;
     /// Other than intact in the step in which the bond breaks.
-    std::conditional_t<std::same_as<Number, Pack>, PackFate, Fate> fate{};
+    std::conditional_t<std::same_as<Number, Pack>, PackFailureMode, FailureMode> failure{};
 };
 template <class Memory>
 using BondResponse = BondResponseOf<Real, Memory>;

@@ -2,7 +2,7 @@
 // One pack of bonds: lines in, the law's answer, lines out.
 
 #include <abrade/bond/bond_law.hpp>
-#include <abrade/dem/contact_kernel.hpp>
+#include <abrade/dem/contacts/contact_kernel.hpp>
 
 namespace abrade {
 
@@ -25,9 +25,9 @@ inline BondKinematics lane_of(const BondKinematicsOf<Pack>& b, int lane) noexcep
             b.length[lane],
             b.effective_mass[lane],
             b.time_step,
-            lane_of(b.travel, lane),
+            lane_of(b.displacement, lane),
             lane_of(b.spin, lane),
-            lane_of(b.turn, lane),
+            lane_of(b.rotation, lane),
             b.effective_inertia[lane]};
 }
 
@@ -59,7 +59,7 @@ struct alignas(64) BondPack {
 /// What a law answers to a pack, but for the memory.
 struct BondAnswer {
     BondLoadOf<Pack> load;
-    PackFate fate;
+    PackFailureMode failure;
 };
 
 namespace detail {
@@ -72,7 +72,7 @@ inline void keep_only(PackMask used, BondAnswer& all) noexcept {
     for (Pack* energy :
          {&all.load.stored, &all.load.lost_bond, &all.load.lost_normal, &all.load.lost_tangential})
         *energy = select(used, *energy, Pack(0));
-    all.fate.tension = all.fate.tension & used, all.fate.shear = all.fate.shear & used;
+    all.failure.tension = all.failure.tension & used, all.failure.shear = all.failure.shear & used;
 }
 
 }  // namespace detail
@@ -82,9 +82,9 @@ template <class Law>
 BondAnswer answer(const Law& law, const BondKinematicsOf<Pack>& bond, const Pack& strength_left,
                   BondPack<Law>& pack) noexcept {
     if constexpr (AnswersBondPacks<Law>) {
-        const auto [load, memory, fate] = law.respond(bond, strength_left, pack.memory);
+        const auto [load, memory, failure] = law.respond(bond, strength_left, pack.memory);
         pack.memory = memory;
-        BondAnswer all{load, fate};
+        BondAnswer all{load, failure};
         if (pack.bond.back() < 0) {
             PackMask used{};
             for (int lane = 0; lane < pack_lanes; ++lane)
@@ -97,7 +97,7 @@ BondAnswer answer(const Law& law, const BondKinematicsOf<Pack>& bond, const Pack
         for (int lane = 0; lane < pack_lanes; ++lane) {
             if (pack.bond[static_cast<std::size_t>(lane)] < 0) continue;
             auto& remembered = pack.memory[static_cast<std::size_t>(lane)];
-            const auto [load, memory, fate] =
+            const auto [load, memory, failure] =
                 law.respond(detail::lane_of(bond, lane), strength_left[lane], remembered);
             remembered = memory;
             for (int a = 0; a < 3; ++a)
@@ -105,8 +105,8 @@ BondAnswer answer(const Law& law, const BondKinematicsOf<Pack>& bond, const Pack
             all.load.stored.set(lane, load.stored), all.load.lost_bond.set(lane, load.lost_bond);
             all.load.lost_normal.set(lane, load.lost_normal);
             all.load.lost_tangential.set(lane, load.lost_tangential);
-            if (fate == Fate::tension) all.fate.tension.set(lane);
-            if (fate == Fate::shear) all.fate.shear.set(lane);
+            if (failure == FailureMode::tension) all.failure.tension.set(lane);
+            if (failure == FailureMode::shear) all.failure.shear.set(lane);
         }
         return all;
     }
@@ -131,13 +131,13 @@ BondKinematicsOf<Pack> bonds_between(const LineReader& at, BondPack<Law>& pack, 
     const Vec3Of<Pack> velocity = Vec3Of<Pack>(vx, vy, vz) - Vec3Of<Pack>(rim_x, rim_y, rim_z).cross(arm);
     const Pack ahead(step.ahead), dt(step.time_step);
     bond.velocity = velocity + ahead * (velocity - pack.before.velocity);
-    bond.travel = dt * velocity;
+    bond.displacement = dt * velocity;
     pack.before.velocity = velocity;
     if constexpr (CarriesMoments<Law>) {
         const auto [sx, sy, sz, turning] = detail::gather_spins<false>(pack, at);
         const Vec3Of<Pack> spin(sx, sy, sz);
         bond.spin = spin + ahead * (spin - pack.before.spin);
-        bond.turn = dt * spin;
+        bond.rotation = dt * spin;
         pack.before.spin = spin;
         bond.effective_inertia = pack.effective_inertia;
     }
@@ -151,12 +151,13 @@ template <class Law>
 void add_loads(const LineReader& at, const BondPack<Law>& pack, const BondLoadOf<Pack>& load,
                const Vec3Of<Pack>& arm, const Pack& worn) noexcept {
     constexpr Quad reaction{{-1, -1, -1, 1}};
-    const Vec3Of<Pack> lever = load.force.cross(arm);
+    const Vec3Of<Pack> torque_over_radius = load.force.cross(arm);
     const QuadRows forces = rows({load.force.x(), load.force.y(), load.force.z(), worn});
-    const QuadRows levers = rows({lever.x(), lever.y(), lever.z(), Pack(0)});
+    const QuadRows torques_over_radius =
+        rows({torque_over_radius.x(), torque_over_radius.y(), torque_over_radius.z(), Pack(0)});
     for (std::size_t k = 0; k < forces.size(); ++k) {
-        at.add(pack.first[k], forces[k], levers[k]);
-        at.add(pack.second[k], reaction * forces[k], levers[k]);
+        at.add(pack.first[k], forces[k], torques_over_radius[k]);
+        at.add(pack.second[k], reaction * forces[k], torques_over_radius[k]);
     }
     if constexpr (CarriesMoments<Law>) detail::add_couples<false>(load.couple, pack, at);
 }

@@ -6,10 +6,10 @@
 namespace abrade {
 
 namespace detail {
-inline Fate fate_of(bool tension, bool shear) noexcept {
-    return tension ? Fate::tension : shear ? Fate::shear : Fate::intact;
+inline FailureMode failure_mode_of(bool tension, bool shear) noexcept {
+    return tension ? FailureMode::tension : shear ? FailureMode::shear : FailureMode::intact;
 }
-inline PackFate fate_of(PackMask tension, PackMask shear) noexcept { return {tension, shear}; }
+inline PackFailureMode failure_mode_of(PackMask tension, PackMask shear) noexcept { return {tension, shear}; }
 
 inline void require_friction_angle(Real degrees, std::string_view field) {
     require(degrees >= 0 && degrees < 90, {field, "in [0, 90)", "degrees", "concrete has 30 to 40"}, degrees);
@@ -47,7 +47,8 @@ public:
                 const Vec3Of<Number>& spring) noexcept
         : bond_(bond), k_(k), friction_(friction), approach_(-bond.velocity.dot(bond.normal)),
           slip_(bond.velocity + approach_ * bond.normal), before_(turn_into_plane(spring, bond.normal)),
-          shear_(before_ + bond.travel - bond.travel.dot(bond.normal) * bond.normal), remembered_(spring) {
+          shear_(before_ + bond.displacement - bond.displacement.dot(bond.normal) * bond.normal),
+          remembered_(spring) {
         const Number twice(2 * k.damping_ratio);
         normal_dashpot_ = twice * sqrt(k.normal * bond.effective_mass);
         tangential_dashpot_ = twice * sqrt(k.tangential * bond.effective_mass);
@@ -100,7 +101,7 @@ public:
         load.lost_tangential = select(old, lost_tangential, zero);
         all.memory.spring = select(contact, select(pressed, tangential.spring, none), shear_);
         all.memory.broken = select(contact, Number(1), zero);
-        all.fate = detail::fate_of(tension, shear);
+        all.failure = detail::failure_mode_of(tension, shear);
         return all;
     }
 

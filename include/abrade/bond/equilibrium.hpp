@@ -29,13 +29,13 @@ struct StandingLink {
     Index number = -1;  ///< the caller's
 
     // as solved
-    Vec3 way = Vec3::Zero();   ///< of a relative to b at the contact point [m]
-    Vec3 turn = Vec3::Zero();  ///< likewise [rad]
+    Vec3 displacement = Vec3::Zero();  ///< of a relative to b at the contact point [m]
+    Vec3 rotation = Vec3::Zero();      ///< likewise [rad]
     Grip grip = Grip::sticks;
     Vec3 slip = Vec3::Zero();  ///< friction on a where it slips [N]
 
-    Real compression() const noexcept { return -way.dot(normal); }
-    Vec3 shear() const noexcept { return way + compression() * normal; }
+    Real compression() const noexcept { return -displacement.dot(normal); }
+    Vec3 shear() const noexcept { return displacement + compression() * normal; }
 };
 
 /// K q = Q for members that turn and shift by little: 6 unknowns each, q = (u, r theta), and the springs' way
@@ -79,10 +79,10 @@ public:
             axis == 0 ? respond_to(load) : respond_again(load);
             for (std::size_t l = 0; l < links.size(); ++l) {
                 const StandingLink& link = links[l];
-                const Real twist = link.turn.dot(link.normal);
+                const Real twist = link.rotation.dot(link.normal);
                 compliance_[l][0] += square(link.compression());
                 compliance_[l][1] += link.shear().squaredNorm();
-                compliance_[l][2] += (link.turn - twist * link.normal).squaredNorm();
+                compliance_[l][2] += (link.rotation - twist * link.normal).squaredNorm();
                 compliance_[l][3] += square(twist);
             }
         }
@@ -179,9 +179,9 @@ private:
             for (std::size_t m = i + 1; m < n; ++m) q_[i] -= k(m, i) * q_[m];
         }
         for (StandingLink& link : links) {
-            link.way =
+            link.displacement =
                 way_of(link.a, link.arm_a) - (link.b < 0 ? Vec3(Vec3::Zero()) : way_of(link.b, link.arm_b));
-            link.turn = turn_of(link.a) - (link.b < 0 ? Vec3(Vec3::Zero()) : turn_of(link.b));
+            link.rotation = turn_of(link.a) - (link.b < 0 ? Vec3(Vec3::Zero()) : turn_of(link.b));
         }
     }
     void push(Index member, const Vec3& arm, const Vec3& force) noexcept {
@@ -222,7 +222,7 @@ private:
     }
     Real furthest() const noexcept {
         Real most = 0;
-        for (const Real way : q_) most = std::max(most, std::abs(way));
+        for (const Real displacement : q_) most = std::max(most, std::abs(displacement));
         return std::isfinite(most) ? most : std::numeric_limits<Real>::infinity();
     }
 

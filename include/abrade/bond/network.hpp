@@ -1,9 +1,9 @@
 #pragma once
 // The bonds of a body of concrete: what they answer, what breaks, and what comes loose.
 
+#include <abrade/bond/bond_graph.hpp>
 #include <abrade/bond/bond_pack.hpp>
-#include <abrade/bond/ties.hpp>
-#include <abrade/dem/sphere_store.hpp>
+#include <abrade/dem/store/sphere_store.hpp>
 
 #include <span>
 
@@ -66,7 +66,7 @@ public:
         std::vector<char> held(at(particles.spheres()));
         for (std::size_t s = 0; s < held.size(); ++s)
             held[s] = particles.kind[at(particles.body[s])] == Kind::fixed;
-        ties_.build(bonded, std::move(held));
+        graph_.build(bonded, std::move(held));
         bonds_.clear(), active_.clear();
         for (const BondedPair& pair : bonded) {
             const auto i = at(pair.first), j = at(pair.second);
@@ -144,7 +144,7 @@ public:
     /// `strength_left(body)` is what is left of that body's strength, `wear` is asked for the losses of
     /// broken bonds.
     template <class Wear, class StrengthLeft>
-    BondSums respond(Index slab, const Law& law, const Wear& wear, SphereLines& lines,
+    BondSums respond(Index slab, const Law& law, const Wear& wear, HotArrays& lines,
                      const StrengthLeft& strength_left, const ContactStep& step) noexcept {
         BondSums sums;
         PackBondSums all;
@@ -153,11 +153,11 @@ public:
             BondPack<Law>& pack = packs_[at(p)];
             Vec3Of<Pack> arm;
             const BondKinematicsOf<Pack> bond = bonds_between(reader, pack, step, arm);
-            const auto [load, fate] = answer(law, bond, strengths(law, pack, strength_left), pack);
+            const auto [load, failure] = answer(law, bond, strengths(law, pack, strength_left), pack);
             pack.stored = load.stored;
             all.add(load);
             if (any(bond.compression > Pack(sums.deepest) * bond.radius)) look_deeper(bond, pack, sums);
-            if (any(fate.tension | fate.shear)) note_fates(fate, pack, sums, breaks_[at(slab)]);
+            if (any(failure.tension | failure.shear)) note_fates(failure, pack, sums, breaks_[at(slab)]);
             add_loads(reader, pack, load, arm, worn_off(wear, bond, load, pack, sums));
         }
         return all.into(sums);
@@ -165,17 +165,17 @@ public:
 
     /// Cuts the ties that broke since the last call, in the order of slabs, and finds what that leaves
     /// loose. Piece by piece members in ascending order.
-    std::vector<Ties::Piece> take_loose() {
+    std::vector<BondGraph::Component> take_loose() {
         for (std::vector<Index>& broken : breaks_) {
-            for (const Index number : broken) ties_.cut(number, bonds_[at(number)].members);
+            for (const Index number : broken) graph_.cut(number, bonds_[at(number)].members);
             broken.clear();
         }
-        return ties_.take_loose();
+        return graph_.take_loose();
     }
 
     /// Cuts the ties of a member that is to go.
     void sever(Index member) {
-        for (const Ties::End& end : ties_.of(member)) ties_.cut(end.tie, bonds_[at(end.tie)].members);
+        for (const BondGraph::End& end : graph_.of(member)) graph_.cut(end.tie, bonds_[at(end.tie)].members);
     }
 
     /// Drops broken bonds that are open, as contacts too, and have a loose end: the contact law takes over.
@@ -225,11 +225,11 @@ public:
     std::span<const Index> active() const noexcept { return active_; }  ///< their numbers
     std::span<const Bond> bonds() const noexcept { return bonds_; }     ///< [number] all, dropped ones too
     const Bond& bond(Index number) const noexcept { return bonds_[at(number)]; }
-    const Ties& ties() const noexcept { return ties_; }
+    const BondGraph& graph() const noexcept { return graph_; }
 
     static void fields(auto&& field) {
         field.bytes("bonds", &Network::bonds_), field("active", &Network::active_),
-            field("ties", &Network::ties_), field("breaks", &Network::breaks_),
+            field("graph", &Network::graph_), field("breaks", &Network::breaks_),
             field.bytes("packs", &Network::packs_), field("first_pack", &Network::first_pack_),
             field.bytes("looked_after", &Network::looked_after_), field("first_bond", &Network::first_bond_),
             field("changed", &Network::changed_);
@@ -272,12 +272,12 @@ private:
             if (const Real depth = bond.compression[k] / bond.radius[k]; depth > sums.deepest)
                 sums.deepest = depth, sums.deepest_bond = pack.bond[static_cast<std::size_t>(k)];
     }
-    void note_fates(const PackFate& fate, BondPack<Law>& pack, BondSums& sums,
+    void note_fates(const PackFailureMode& failure, BondPack<Law>& pack, BondSums& sums,
                     std::vector<Index>& broken) noexcept {
         pack.has_broken = true;
         for (int k = 0; k < pack_lanes; ++k) {
-            sums.broken_tension += fate.tension[k], sums.broken_shear += fate.shear[k];
-            if (!fate.tension[k] && !fate.shear[k]) continue;
+            sums.broken_tension += failure.tension[k], sums.broken_shear += failure.shear[k];
+            if (!failure.tension[k] && !failure.shear[k]) continue;
             broken.push_back(pack.bond[static_cast<std::size_t>(k)]);
             bonds_[at(broken.back())].memory.broken = 1;
         }
@@ -297,7 +297,7 @@ private:
                                                   .inverse_mass = 1 / bond.effective_mass[k],
                                                   .curvature = 2 / bond.radius[k],
                                                   .time_step = bond.time_step,
-                                                  .travel = detail::lane_of(bond.travel, k)};
+                                                  .displacement = detail::lane_of(bond.displacement, k)};
             const auto one =
                 wear.increment(contact, ContactLoad<Real>{detail::lane_of(load.force, k), load.stored[k],
                                                           load.lost_normal[k], load.lost_tangential[k]});
@@ -333,7 +333,7 @@ private:
 
     std::vector<Bond> bonds_;    ///< [number] all, for good
     std::vector<Index> active_;  ///< numbers of those not dropped, slab by slab
-    Ties ties_;
+    BondGraph graph_;
     std::vector<std::vector<Index>> breaks_;  ///< [slab] broken since `take_loose`
     std::vector<BondPack<Law>> packs_;
     std::vector<Index> first_pack_{0, 0};   ///< [slab]

@@ -73,8 +73,8 @@ public:
         const auto k = rigidity(bond.radius, bond.length);
         const BondSprings<Number> springs(bond, k, tan_phi_, memory.spring);
         const Vec3Of<Number>& n = bond.normal;
-        const Number twisted = bond.turn.dot(n), twist = memory.twist + twisted;
-        const Vec3Of<Number> bend = turn_into_plane(memory.bend, n) + (bond.turn - twisted * n);
+        const Number twisted = bond.rotation.dot(n), twist = memory.twist + twisted;
+        const Vec3Of<Number> bend = turn_into_plane(memory.bend, n) + (bond.rotation - twisted * n);
         const Number bend2 = bend.dot(bend), half(0.5), zero(0);
         const Number held = half * (k.bending * bend2 + k.twisting * twist * twist);
 

@@ -1,8 +1,8 @@
 #pragma once
 // Concrete that stands: what its bonds hold, checked by equilibrium, and what comes loose.
 
+#include <abrade/bond/bond_graph.hpp>
 #include <abrade/bond/equilibrium.hpp>
-#include <abrade/bond/ties.hpp>
 
 #include <limits>
 #include <optional>
@@ -35,7 +35,7 @@ public:
         : law_(law), centre_(setup.centre.begin(), setup.centre.end()), radius_(setup.radius),
           weight_(setup.weight), cluster_(setup.cluster), pairs_(std::move(pairs)),
           balance_(setup.radius, friction_of(law)) {
-        ties_.build(pairs_, std::move(setup.held));
+        graph_.build(pairs_, std::move(setup.held));
         cut_.assign(pairs_.size(), 0);
         safe2_.assign(centre_.size(), 0), known_.assign(centre_.size(), 0), lost_.assign(centre_.size(), 0);
         seat_of_.assign(centre_.size(), -1);
@@ -50,7 +50,7 @@ public:
     /// The strength of a site has fallen by a step.
     void weakened(Index site) {
         forget(site);
-        for (const Ties::End& end : ties_.of(site)) forget(end.other);
+        for (const BondGraph::End& end : graph_.of(site)) forget(end.other);
     }
 
     /// Takes in what presses and which sites are empty from now on. `left(site)` is what is left of a
@@ -61,7 +61,7 @@ public:
         for (const Index site : emptied)
             if (!lost_[at(site)]) lose(site);
         for (const Press& press : presses)
-            if (!lost_[at(press.site)] && !ties_.held(press.site)) check(press, left, loose);
+            if (!lost_[at(press.site)] && !graph_.held(press.site)) check(press, left, loose);
         seat_pieces(nullptr, loose);
         std::sort(loose.begin(), loose.end());
         return loose;
@@ -69,10 +69,10 @@ public:
 
     Index broken_tension() const noexcept { return broken_tension_; }
     Index broken_shear() const noexcept { return broken_shear_; }
-    const Ties& ties() const noexcept { return ties_; }
+    const BondGraph& graph() const noexcept { return graph_; }
 
     static void fields(auto&& field) {
-        field("ties", &StandingBonds::ties_), field("cut", &StandingBonds::cut_),
+        field("graph", &StandingBonds::graph_), field("cut", &StandingBonds::cut_),
             field("safe2", "N2", &StandingBonds::safe2_), field("known", &StandingBonds::known_),
             field("lost", &StandingBonds::lost_), field("seat_of", &StandingBonds::seat_of_),
             field("seats", &StandingBonds::seats_), field("doubtful", &StandingBonds::doubtful_),
@@ -92,7 +92,8 @@ private:
         bond.normal = link.normal, bond.radius = radius_;
         bond.length = (centre_[at(pair.first)] - centre_[at(pair.second)]).norm();
         bond.effective_mass = bond.effective_inertia = bond.time_step = 1;
-        bond.compression = link.compression(), bond.travel = link.way, bond.turn = link.turn;
+        bond.compression = link.compression(), bond.displacement = link.displacement,
+        bond.rotation = link.rotation;
         return bond;
     }
     /// mu, from what the law answers for a broken bond that is dragged far.
@@ -101,7 +102,7 @@ private:
         broken.broken = 1;
         BondKinematics bond;
         bond.radius = bond.length = bond.effective_mass = bond.effective_inertia = bond.time_step = 1;
-        bond.compression = 1, bond.travel = {1e9, 0, 0};
+        bond.compression = 1, bond.displacement = {1e9, 0, 0};
         const Vec3 force = law.respond(bond, 1, broken).load.force;
         return force.z() > 0 ? force.template head<2>().norm() / force.z() : 0;
     }
@@ -128,8 +129,8 @@ private:
         std::size_t from = 0;
         for (Index n = 0; n < cluster_; ++n)
             for (const std::size_t to = members.size(); from < to; ++from)
-                for (const Ties::End& end : ties_.of(members[from]))
-                    if (!lost_[at(end.other)] && !ties_.held(end.other) && !cut_[at(end.tie)] &&
+                for (const BondGraph::End& end : graph_.of(members[from]))
+                    if (!lost_[at(end.other)] && !graph_.held(end.other) && !cut_[at(end.tie)] &&
                         std::find(members.begin(), members.end(), end.other) == members.end())
                         members.push_back(end.other);
         return members;
@@ -138,7 +139,7 @@ private:
         balance_.begin(static_cast<Index>(members.size()));
         for (std::size_t a = 0; a < members.size(); ++a) {
             balance_.load[a].along = weight_;
-            for (const Ties::End& end : ties_.of(members[a])) {
+            for (const BondGraph::End& end : graph_.of(members[a])) {
                 if (lost_[at(end.other)]) continue;
                 const auto b = std::find(members.begin(), members.end(), end.other) - members.begin();
                 const bool inside = b < static_cast<std::ptrdiff_t>(members.size());
@@ -154,18 +155,18 @@ private:
         const auto of = [&](Index site) { return std::max(left(site) - less, 0.0); };
         return law_.strength(of(pairs_[at(tie)].first), of(pairs_[at(tie)].second));
     }
-    Fate fate(const StandingLink& link, Real share, Real strength) const noexcept {
+    FailureMode failure(const StandingLink& link, Real share, Real strength) const noexcept {
         StandingLink scaled = link;
-        scaled.way *= share, scaled.turn *= share;
-        return law_.respond(kinematics(pairs_[at(link.number)], scaled), strength, Memory{}).fate;
+        scaled.displacement *= share, scaled.rotation *= share;
+        return law_.respond(kinematics(pairs_[at(link.number)], scaled), strength, Memory{}).failure;
     }
     /// The largest factor on what a link bears at which it holds, up to `most`.
     Real bears(const StandingLink& link, Real strength, Real most) const noexcept {
-        if (fate(link, most, strength) == Fate::intact) return most;
+        if (failure(link, most, strength) == FailureMode::intact) return most;
         Real low = 0, high = most;
         for (int n = 0; n < 40; ++n) {
             const Real middle = 0.5 * (low + high);
-            (fate(link, middle, strength) == Fate::intact ? low : high) = middle;
+            (failure(link, middle, strength) == FailureMode::intact ? low : high) = middle;
         }
         return low;
     }
@@ -195,20 +196,20 @@ private:
         for (const StandingLink& link : balance_.links) {
             if (!link.sound) continue;
             const Real left_over = strength(link.number, left);
-            if (fate(link, 1, left_over) == Fate::intact) continue;
+            if (failure(link, 1, left_over) == FailureMode::intact) continue;
             if (const Real share = bears(link, left_over, 1); !worst || share < least)
                 least = share, worst = &link;
         }
         if (!worst) return false;
-        (fate(*worst, 1, strength(worst->number, left)) == Fate::tension ? broken_tension_ : broken_shear_) +=
-            1;
+        (failure(*worst, 1, strength(worst->number, left)) == FailureMode::tension ? broken_tension_
+                                                                                   : broken_shear_) += 1;
         cut(worst->number);
         return true;
     }
     void cut(Index tie) {
         if (cut_[at(tie)]) return;
         cut_[at(tie)] = 1;
-        ties_.cut(tie, pairs_[at(tie)]);
+        graph_.cut(tie, pairs_[at(tie)]);
         forget(pairs_[at(tie)].first), forget(pairs_[at(tie)].second);
         for (const Index site : {pairs_[at(tie)].first, pairs_[at(tie)].second})
             if (seat_of_[at(site)] >= 0) doubtful_.push_back(seat_of_[at(site)]);
@@ -244,7 +245,7 @@ private:
             for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
                 if (!(balance_.compliance(l)[kind] > 0)) continue;
                 StandingLink one = link;
-                one.way = kinds[kind].along, one.turn = kinds[kind].about;
+                one.displacement = kinds[kind].along, one.rotation = kinds[kind].about;
                 // Over a metre or a radian nothing holds.
                 share += balance_.compliance(l)[kind] / std::max(bears(one, left_over, 1), 1e-300);
             }
@@ -257,7 +258,7 @@ private:
     /// The sphere of a site is there no more.
     void lose(Index site) {
         lost_[at(site)] = 1;
-        for (const Ties::End& end : ties_.of(site)) {
+        for (const BondGraph::End& end : graph_.of(site)) {
             cut(end.tie);
             forget(end.other);
             if (seat_of_[at(end.other)] >= 0) doubtful_.push_back(seat_of_[at(end.other)]);
@@ -268,7 +269,7 @@ private:
     /// Finds what has come off the ground, and sees whether it, and what else may have lost support, stays.
     void seat_pieces(const Press* press, std::vector<Index>& loose) {
         for (bool more = true; more;) {
-            for (const Ties::Piece& piece : ties_.take_loose()) add_seats(piece);
+            for (const BondGraph::Component& component : graph_.take_loose()) add_seats(component);
             std::sort(doubtful_.begin(), doubtful_.end());
             doubtful_.erase(std::unique(doubtful_.begin(), doubtful_.end()), doubtful_.end());
             const std::vector<Index> now = std::exchange(doubtful_, {});
@@ -277,9 +278,9 @@ private:
             more = !doubtful_.empty() || !fresh_.empty();
         }
     }
-    void add_seats(const Ties::Piece& piece) {
-        for (const Ties::Piece& part : ties_.parts(piece)) {
-            Ties::Piece there;
+    void add_seats(const BondGraph::Component& component) {
+        for (const BondGraph::Component& part : graph_.parts(component)) {
+            BondGraph::Component there;
             for (const Index site : part)
                 if (!lost_[at(site)]) there.push_back(site);
             if (there.empty()) continue;
@@ -291,19 +292,19 @@ private:
     }
     /// A piece in a seat may have broken on, or lost what held it.
     void split(Index seat) {
-        Ties::Piece piece = std::exchange(seats_[at(seat)], {});
-        std::erase_if(piece, [&](Index site) { return lost_[at(site)] || seat_of_[at(site)] != seat; });
-        if (!piece.empty()) add_seats(piece);
+        BondGraph::Component component = std::exchange(seats_[at(seat)], {});
+        std::erase_if(component, [&](Index site) { return lost_[at(site)] || seat_of_[at(site)] != seat; });
+        if (!component.empty()) add_seats(component);
     }
     void try_seat(Index seat, const Press* press, std::vector<Index>& loose) {
-        const Ties::Piece piece = seats_[at(seat)];
-        if (piece.empty()) return;
+        const BondGraph::Component component = seats_[at(seat)];
+        if (component.empty()) return;
         Vec3 centre = Vec3::Zero();
-        for (const Index site : piece) centre += centre_[at(site)] / static_cast<Real>(piece.size());
+        for (const Index site : component) centre += centre_[at(site)] / static_cast<Real>(component.size());
         balance_.begin(1);
-        balance_.load[0].along = static_cast<Real>(piece.size()) * weight_;
-        for (const Index site : piece) {
-            for (const Ties::End& end : ties_.of(site))
+        balance_.load[0].along = static_cast<Real>(component.size()) * weight_;
+        for (const Index site : component) {
+            for (const BondGraph::End& end : graph_.of(site))
                 if (!lost_[at(end.other)] && seat_of_[at(end.other)] != seat)
                     balance_.links.push_back(link_of(end.tie, site, 0, -1, centre, centre_[at(end.other)]));
             if (!press || press->site != site) continue;
@@ -312,9 +313,9 @@ private:
                 press->load.about + (centre_[at(site)] - centre).cross(press->load.along) / radius_;
         }
         if (balance_.solve(held_share * radius_)) return;
-        for (const Index site : piece) loose.push_back(site);
+        for (const Index site : component) loose.push_back(site);
         seats_[at(seat)].clear();
-        for (const Index site : piece) lose(site);
+        for (const Index site : component) lose(site);
     }
 
     Law law_;
@@ -323,14 +324,14 @@ private:
     Vec3 weight_ = Vec3::Zero();
     Index cluster_ = 0;
     std::vector<BondedPair> pairs_;
-    Ties ties_;
+    BondGraph graph_;
     Equilibrium balance_;
-    std::vector<char> cut_;                ///< [tie]
-    std::vector<Real> safe2_;              ///< [site] [N2]
-    std::vector<char> known_;              ///< [site] whether that has been found
-    std::vector<char> lost_;               ///< [site] its sphere has left
-    std::vector<Index> seat_of_;           ///< [site] -1: none
-    std::vector<Ties::Piece> seats_;       ///< pieces that no bond ties to the ground
+    std::vector<char> cut_;                    ///< [tie]
+    std::vector<Real> safe2_;                  ///< [site] [N2]
+    std::vector<char> known_;                  ///< [site] whether that has been found
+    std::vector<char> lost_;                   ///< [site] its sphere has left
+    std::vector<Index> seat_of_;               ///< [site] -1: none
+    std::vector<BondGraph::Component> seats_;  ///< pieces that no bond ties to the ground
     std::vector<Index> doubtful_, fresh_;  ///< seats that may have lost support, that nobody has looked at
     Index broken_tension_ = 0, broken_shear_ = 0;
 };

@@ -53,12 +53,12 @@ public:
         using Base = typename Law::template MemoryOf<Number>;
         const auto answer = law_.respond(bond, strength_left, static_cast<const Base&>(memory));
         BondResponseOf<Number, MemoryOf<Number>> all;
-        all.load = answer.load, all.fate = answer.fate;
+        all.load = answer.load, all.failure = answer.failure;
         static_cast<Base&>(all.memory) = answer.memory;
 
         const auto k = rigidity(bond.radius, bond.length);
         const Number zero(0), rate = bond.spin.dot(bond.normal),
-                              twist = memory.twist + bond.turn.dot(bond.normal);
+                              twist = memory.twist + bond.rotation.dot(bond.normal);
         const Number dashpot = Number(2 * k.damping_ratio) * sqrt(k.twisting * bond.effective_inertia);
         const Number held = Number(0.5) * k.twisting * twist * twist;
         const auto sound = memory.broken == zero, holds = answer.memory.broken == zero;

@@ -29,7 +29,7 @@ struct WaterEnergy {
     // since then
     Real inflow = 0;          ///< kinetic and potential energy and work of the pressure, through inflows
     Real outflow = 0;         ///< the same through outflows; what comes back there is taken off
-    Real sides = 0;           ///< work of sides that move along themselves
+    Real boundaries = 0;      ///< work of sides that move along themselves
     Real body_force = 0;      ///< work of `body_force`, and of gravity along periodic axes
     Real reshaped = 0;        ///< what `set_wall` changed, and solids that came took the place of
     Real solids = 0;          ///< work of solids that move in it, as `solids_took` has told it
@@ -46,7 +46,8 @@ struct WaterEnergy {
             field("kinetic_start", "J", &WaterEnergy::kinetic_start),
             field("potential_start", "J", &WaterEnergy::potential_start),
             field("inflow", "J", &WaterEnergy::inflow), field("outflow", "J", &WaterEnergy::outflow),
-            field("sides", "J", &WaterEnergy::sides), field("body_force", "J", &WaterEnergy::body_force),
+            field("boundaries", "J", &WaterEnergy::boundaries),
+            field("body_force", "J", &WaterEnergy::body_force),
             field("reshaped", "J", &WaterEnergy::reshaped), field("solids", "J", &WaterEnergy::solids),
             field("viscous", "J", &WaterEnergy::viscous), field("turbulent", "J", &WaterEnergy::turbulent),
             field("wall_friction", "J", &WaterEnergy::wall_friction),
@@ -57,7 +58,7 @@ struct WaterEnergy {
 
     Real total() const noexcept { return kinetic + potential; }
     Real gained() const noexcept { return total() - kinetic_start - potential_start; }
-    Real supplied() const noexcept { return inflow - outflow + sides + body_force + reshaped + solids; }
+    Real supplied() const noexcept { return inflow - outflow + boundaries + body_force + reshaped + solids; }
     /// By physics; `numerical` is not.
     Real dissipated() const noexcept { return viscous + turbulent + wall_friction + solid_friction; }
 
@@ -75,7 +76,7 @@ struct WaterEnergy {
     void visit(auto&& f) const {
         f("kinetic", kinetic), f("potential", potential);
         f("kinetic_start", kinetic_start), f("potential_start", potential_start);
-        f("inflow", inflow), f("outflow", outflow), f("sides", sides), f("body_force", body_force);
+        f("inflow", inflow), f("outflow", outflow), f("boundaries", boundaries), f("body_force", body_force);
         f("reshaped", reshaped), f("solids", solids);
         f("viscous", viscous), f("turbulent", turbulent), f("wall_friction", wall_friction);
         f("solid_friction", solid_friction);

@@ -1,7 +1,7 @@
 #pragma once
 // What a scene, as it begins, allows: how long a step, how wide lists, how short a period.
 
-#include <abrade/sim/trouble_text.hpp>
+#include <abrade/sim/failure_message.hpp>
 
 #include <algorithm>
 #include <cmath>

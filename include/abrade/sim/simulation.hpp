@@ -2,7 +2,7 @@
 // One simulation from four policies: the builder, the loop and its guards.
 
 #include <abrade/bond/bond_law.hpp>
-#include <abrade/dem/linear_spring.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/sim/run_options.hpp>
 #include <abrade/sim/scene_limits.hpp>
@@ -133,7 +133,7 @@ public:
         return Concrete::safe_collision_share * wear_.params().acceleration /
                concrete().largest_collision_share();
     }
-    Real sediment_passed() const { return world().gauge_volume(); }  ///< the gauge, solid [m3]
+    Real sediment_passed() const { return world().cumulative_discharge(); }  ///< the gauge, solid [m3]
     const auto& world() const {
         if (!world_) throw std::logic_error("Simulation: run it before asking for its state");
         return *world_;
@@ -233,7 +233,7 @@ private:
     bool shorten(const RunOptions& options) {
         const StableStep now = StableStepNow(world_->state()).of_touching(time_step_);
         if (!(now.seconds < time_step_) || now.seconds == 0) return false;
-        if (options.time_step > 0) raise({Trouble::Cause::step_too_long, now.body, -1, now.seconds});
+        if (options.time_step > 0) raise({Failure::Cause::step_too_long, now.body, -1, now.seconds});
         time_step_ = share_of_now * now.seconds;
         ++shortened_;
         return true;
@@ -312,15 +312,15 @@ private:
     /// Finds the forces at the start, and what is wrong with it.
     void open() {
         world_->open(time_);
-        if (const Trouble trouble = world_->take_trouble(); trouble.cause == Trouble::Cause::overlap) {
+        if (const Failure failure = world_->take_failure(); failure.cause == Failure::Cause::overlap) {
             const TroubleText say(*world_, time_step_);
             const std::string what =
-                "Scene: overlap of " + say.name_of(trouble.body) + " with " + say.name_of(trouble.other);
+                "Scene: overlap of " + say.name_of(failure.body) + " with " + say.name_of(failure.other);
             world_.reset();
             require(false,
                     {what, "at most " + to_text(100 * World::overlap_limit) + " % of the smaller radius", "%",
                      "move them apart"},
-                    100 * trouble.measure);
+                    100 * failure.measure);
         }
         remember();
         opened_ = true;
@@ -344,14 +344,14 @@ private:
     }
 
     void look_for_trouble() {
-        if (const Trouble trouble = world_->take_trouble(); trouble.cause != Trouble::Cause::none)
-            raise(trouble);
+        if (const Failure failure = world_->take_failure(); failure.cause != Failure::Cause::none)
+            raise(failure);
     }
 
-    [[noreturn]] void raise(const Trouble& trouble) {
+    [[noreturn]] void raise(const Failure& failure) {
         world_->publish_places();
-        raise(TroubleText(*world_, time_step_).of(trouble),
-              particles().id[static_cast<std::size_t>(trouble.body)]);
+        raise(TroubleText(*world_, time_step_).of(failure),
+              particles().id[static_cast<std::size_t>(failure.body)]);
     }
     [[noreturn]] void raise(const std::string& what, Index id) const {
         throw RunError("step " + std::to_string(step_) + " (t = " + short_text(time_) +

@@ -1,7 +1,7 @@
 #pragma once
 // What stands in the slots of a simulation while they are empty, or filled by what cannot be used.
 
-#include <abrade/coupling/drag.hpp>
+#include <abrade/coupling/drag/drag.hpp>
 #include <abrade/sim/run_options.hpp>
 
 #include <type_traits>

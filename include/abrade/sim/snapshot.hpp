@@ -2,7 +2,7 @@
 // The state of all bodies at one time.
 
 #include <abrade/core/fields.hpp>
-#include <abrade/dem/particles.hpp>
+#include <abrade/dem/store/particles.hpp>
 #include <abrade/wear/concrete.hpp>
 
 #include <vector>

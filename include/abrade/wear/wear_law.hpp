@@ -1,7 +1,7 @@
 #pragma once
 // What a wear law sees and answers, its concept, and the null policy.
 
-#include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/laws/contact_law.hpp>
 
 namespace abrade {
 

@@ -1,7 +1,7 @@
-#include <abrade/fluid/flow_queries.hpp>
-#include <abrade/fluid/grid_fluid.hpp>
-#include <abrade/fluid/wall_loads.hpp>
-#include <abrade/fluid/wall_solids.hpp>
+#include <abrade/fluid/embedded_boundary/solid_shapes.hpp>
+#include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/queries/flow_queries.hpp>
+#include <abrade/fluid/queries/wall_loads.hpp>
 #include <iostream>
 
 using namespace abrade;
@@ -9,12 +9,12 @@ using namespace abrade;
 int main() {
     // A stream of 4 m/s, 0.5 m deep, meets a round pier.
     GridFluidParams<3> params{.grid = {.cells = {20, 10, 14}, .spacing = {0.1, 0.1, 0.1}},
-                              .sides = Sides<3>::all(Side::slip),
+                              .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .gravity = {0, 0, -9.81}};
     params.wall =
         CylinderWall({1.2, 0.5, -1}, {1.2, 0.5, 2}, 0.15);  // BoxWall, BallWall, MeshWall, PlaneWall
-    params.sides[0] = {Side::inflow, Side::outflow};
-    params.side_velocity = [](const Point<3>&, Real) { return Point<3>(4, 0, 0); };
+    params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
+    params.boundary_velocity = [](const Point<3>&, Real) { return Point<3>(4, 0, 0); };
     params.water = params.inflow_water = [](const Point<3>& x) { return 0.5 - x.z(); };
     params.velocity = [](const Point<3>&) { return Point<3>(4, 0, 0); };
     GridFluid<3> flow(params);

@@ -1,5 +1,5 @@
 #pragma once
-#include <abrade/dem/contact_law.hpp>
+#include <abrade/dem/laws/contact_law.hpp>
 
 /// A contact that keeps a dent until it opens; no friction:
 ///   f = max(k_2 (delta - (1 - e^2) delta_max), 0),  k_2 = k_1 / e^2

@@ -1,6 +1,0 @@
-#pragma once
-// Liquid below a surface that is a height: z = h(x, y, t).
-
-#include <abrade/fluid/height_among_solids.hpp>
-#include <abrade/fluid/height_of_fluid_class.hpp>
-#include <abrade/fluid/height_step.hpp>

@@ -1,5 +1,0 @@
-#pragma once
-// Water below a free surface: where it is, what it touches, and what carries its momentum.
-
-#include <abrade/fluid/surface_water_class.hpp>
-#include <abrade/fluid/surface_water_faces.hpp>

@@ -1,0 +1,42 @@
+#pragma once
+// Whether a table of laws has what a scene needs.
+
+#include <abrade/dem/store/particles.hpp>
+#include <abrade/sim/scene/scene.hpp>
+
+namespace abrade {
+
+/// Throws InputError where a material has no such number, or where two materials that can meet have no law.
+/// What can meet: what moves with what moves and with what does not; a body does not meet itself.
+template <class Table>
+void require_laws_for(const Table& table, const Particles& particles, const Scene& scene) {
+    const auto count = static_cast<std::size_t>(table.materials());
+    std::vector<Index> moving(count, 0), standing(count, 0);  // [material], as far as two
+    const auto add = [&](std::vector<Index>& to, Index material, const std::string& field, Index bodies) {
+        require(material >= 0 && material < table.materials(),
+                {field, "the number of a material, below " + std::to_string(count), "",
+                 "MaterialPairs::number(name) gives it"},
+                material);
+        to[static_cast<std::size_t>(material)] += bodies;
+    };
+    for (std::size_t b = 0; b < particles.material.size(); ++b)
+        add(particles.inverse_mass[b] > 0 ? moving : standing, particles.material[b], "BodyState.material",
+            1);
+    for (const Plane& wall : scene.walls) add(standing, wall.material, "Plane.material", 1);
+    if (scene.feed)
+        for (const StoneClass& stones : scene.feed->classes)
+            add(moving, stones.material, "StoneClass.material", 2);
+    for (std::size_t a = 0; a < count; ++a)
+        for (std::size_t b = a; b < count; ++b) {
+            const bool meet =
+                a == b ? moving[a] > 1 || (moving[a] > 0 && standing[a] > 0)
+                       : (moving[a] > 0 && moving[b] + standing[b] > 0) || (moving[b] > 0 && standing[a] > 0);
+            const auto first = static_cast<Index>(a), second = static_cast<Index>(b);
+            if (meet && !table.has({first, second}))
+                fail({"MaterialPairs.pairs", "complete for what can meet in the scene", "",
+                      "add a law for these two"},
+                     "none for " + table.material(first) + " with " + table.material(second));
+        }
+}
+
+}  // namespace abrade
