@@ -1,4 +1,4 @@
-// Draws the pictures of docs/convergence.md and prints its first tables: chart_convergence [FOLDER [SEEDS]].
+// Draws the pictures of docs/verification/convergence.md and prints its first tables: chart_convergence [FOLDER [SEEDS]].
 // The folder is made where it is not.
 //
 // Its runs take a quarter of an hour. What they gave is kept in FOLDER as convergence.csv, and taken from

@@ -1,6 +1,6 @@
 // Concrete of small spheres that fractures, against concrete of large ones that a wear law wears (Fig. 1 of
 // the paper on sub-particle abrasion): which blows break anything, what they take off, what it costs. Draws
-// the pictures of docs/fracture_or_wear.md, prints its tables and writes summary.json: chart_fracture
+// the pictures of docs/verification/fracture_or_wear.md, prints its tables and writes summary.json: chart_fracture
 // [FOLDER].
 //
 // Its runs take some minutes. What they gave is kept in FOLDER as fracture.csv, and taken from there the

@@ -1,5 +1,5 @@
 // Whether concrete that stands lets as many spheres go as concrete that moves; draws the picture of
-// docs/standing_concrete.md on that, prints its tables and writes summary.json: chart_loosened [FOLDER].
+// docs/howto/standing_concrete.md on that, prints its tables and writes summary.json: chart_loosened [FOLDER].
 //
 // What its runs gave is kept in FOLDER as loosened.csv, and taken from there the next time.
 

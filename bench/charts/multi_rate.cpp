@@ -1,4 +1,4 @@
-// Draws the pictures of docs/multi_rate.md and prints its tables: chart_multi_rate [FOLDER [RUNS]]. The
+// Draws the pictures of docs/verification/multi_rate.md and prints its tables: chart_multi_rate [FOLDER [RUNS]]. The
 // folder is made where it is not; of RUNS runs, three if not said, the fastest counts.
 
 #include "../../examples/common/charts.hpp"

@@ -1,4 +1,4 @@
-// Draws the picture of docs/03_heap_at_rest.md on five hundred stones that lie on concrete, and prints the
+// Draws the picture of docs/verification/03_heap_at_rest.md on five hundred stones that lie on concrete, and prints the
 // table: chart_static_deposit [FOLDER], which is made where it is not. Some nine minutes.
 
 #include "../../examples/common/charts.hpp"

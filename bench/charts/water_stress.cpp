@@ -1,5 +1,5 @@
 // Runs the scenes in which solvers of free surfaces fail, prints a table of what each showed and writes
-// summary.json for docs/water_stress.md: chart_water_stress [FOLDER [WORD]]. Only scenes whose name holds
+// summary.json for docs/verification/water_stress.md: chart_water_stress [FOLDER [WORD]]. Only scenes whose name holds
 // WORD, if one is given. One thread; half a minute.
 
 #include "../../tests/fluid/stress_scenes.hpp"

@@ -1,4 +1,4 @@
-// Draws the pictures of docs/convergence.md on the time acceleration of wear and prints its tables:
+// Draws the pictures of docs/verification/convergence.md on the time acceleration of wear and prints its tables:
 // chart_wear_acceleration [FOLDER]. The folder is made where it is not.
 //
 // Its runs take some minutes. What they gave is kept in FOLDER as wear_acceleration.csv, and taken from there

@@ -1,5 +1,5 @@
 // Whether wear depends on the stone or on how the concrete is cut and computed; draws the pictures of
-// docs/convergence.md on that, prints its tables and writes summary.json:
+// docs/verification/convergence.md on that, prints its tables and writes summary.json:
 // chart_wear_mesh [FOLDER [drops|patch|beta|slow_patch]...]; all but the last, which takes hours, where none
 // is named.
 //

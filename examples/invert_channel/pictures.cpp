@@ -356,7 +356,7 @@ std::string bed_validity(const ChannelConfig& c, const ChannelResults& r) {
         return "Warning: one collision wore " + short_number(r.largest_collision_share, 2) +
                " times its sphere's cell: beta " + short_number(beta) + " is above the safe " +
                short_number(r.largest_safe_beta, 2) +
-               ". How much of the worn volume such collisions brought is not known: see docs/convergence.md.";
+               ". How much of the worn volume such collisions brought is not known: see docs/verification/convergence.md.";
     if (r.largest_collision_share == 0)
         return "No collision wore concrete: nothing tells which beta is safe.";
     return "No collision wore more than half of its cell: beta was safe.";
@@ -368,7 +368,7 @@ std::string validity(const ChannelConfig& c, const ChannelResults& r) {
     if (!r.breaks_by_blows) return bed_validity(c, r);
     return "Warning: blows broke " + std::to_string(r.bonds_broken) +
            " bonds of standing concrete; moving concrete would break several times as many, and more of it "
-           "would come loose (docs/standing_concrete.md). " +
+           "would come loose (docs/howto/standing_concrete.md). " +
            bed_validity(c, r);
 }
 

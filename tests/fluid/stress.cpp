@@ -1,4 +1,4 @@
-// Scenes where solvers of free surfaces fail, in the plane; docs/water_stress.md has the table.
+// Scenes where solvers of free surfaces fail, in the plane; docs/verification/water_stress.md has the table.
 #include "stress_checks.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Scenes where solvers of free surfaces fail, in three dimensions; docs/water_stress.md has the table.
+// Scenes where solvers of free surfaces fail, in three dimensions; docs/verification/water_stress.md has the table.
 #include "stress_checks.hpp"
 
 TEST_CASE("thin water on cut walls, a hole, drops, a ball that moves: speed, energy, volume") {

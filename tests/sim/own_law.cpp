@@ -1,4 +1,4 @@
-// The laws that docs/your_own_law.md shows, as a user wrote them.
+// The laws that docs/howto/own_law.md shows, as a user wrote them.
 #include "../consumer/shown/hysteretic_spring.hpp"
 #include "../consumer/shown/simple_shear.hpp"
 #include "../consumer/shown/specific_energy.hpp"

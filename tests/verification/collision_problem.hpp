@@ -1,5 +1,5 @@
 #pragma once
-// The two spheres and the laws of docs/steppers.md. Shared by the tests and by bench/charts/collision.cpp.
+// The two spheres and the laws of docs/verification/steppers.md. Shared by the tests and by bench/charts/collision.cpp.
 
 #include "../../bench/charts/collision_reference.hpp"
 

@@ -1,6 +1,6 @@
 // A static deposit must not wear: stones at rest leave the worn volume as it is, to the last bit, on concrete
 // whose spheres move and on concrete that stands. Five hundred for ten seconds: long_deposit.cpp;
-// docs/03_heap_at_rest.md.
+// docs/verification/03_heap_at_rest.md.
 #include "deposit.hpp"
 
 #include <doctest/doctest.h>

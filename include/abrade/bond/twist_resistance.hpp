@@ -14,7 +14,7 @@ namespace abrade {
 ///
 /// It has no part in the yield, and ends with the bond: what it stored then counts as lost in the bond. Made
 /// for lattices whose springs let neighbours turn against each other as gears do: a cubic one of MohrCoulomb
-/// bonds (docs/03_heap_at_rest.md). Throws InputError for parameters out of their range, those of the law
+/// bonds (docs/verification/03_heap_at_rest.md). Throws InputError for parameters out of their range, those of the law
 /// included.
 template <BondLaw Law>
 requires(AnswersBondPacks<Law> && !CarriesMoments<Law>) class TwistResistance {

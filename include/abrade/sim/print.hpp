@@ -10,7 +10,7 @@ namespace abrade {
 
 /// Whether bonds of concrete that stands gave way to blows rather than to wear: more than one for every four
 /// cells that wore. Concrete that moves then breaks several times as many, and more of it comes loose
-/// (docs/standing_concrete.md). Throws std::logic_error before the first run.
+/// (docs/howto/standing_concrete.md). Throws std::logic_error before the first run.
 template <class C, class B, class W, class F, class D>
 bool breaks_by_blows(const Simulation<C, B, W, F, D>& sim) {
     if (!sim.world().state().sites.stand) return false;
@@ -49,7 +49,7 @@ std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim
     }
     if (breaks_by_blows(sim))
         out << "warning  blows broke bonds of standing concrete: moving concrete would break several "
-               "times as many, and more of it would come loose; see docs/standing_concrete.md\n";
+               "times as many, and more of it would come loose; see docs/howto/standing_concrete.md\n";
     const auto tell = [&](std::string_view name, Real value) {
         if (value != 0) out << "         " << name << std::string(22 - name.size(), ' ') << value << "\n";
     };

@@ -127,7 +127,7 @@ public:
     Index bonds_broken() const { return world().state().bonds_broken(); }
     Index spheres_let_go() const { return world().state().let_go_count; }  ///< of concrete that stood
     /// The time acceleration at which the largest collision so far would have worn half of its sphere's cell
-    /// [-], from where on the map of docs/convergence.md loses wear to overflow; infinite where nothing wore.
+    /// [-], from where on the map of docs/verification/convergence.md loses wear to overflow; infinite where nothing wore.
     /// More stones may bring a larger collision.
     Real largest_safe_acceleration() const requires AcceleratedWear<W> {
         return Concrete::safe_collision_share * wear_.params().acceleration /

@@ -55,7 +55,7 @@ struct WaitingSites {
 class Concrete {
 public:
     /// What one collision may wear of its site's V_omega while the result does not depend on the time
-    /// acceleration [-]: less than 1 % goes to overflow in the scenes of docs/convergence.md.
+    /// acceleration [-]: less than 1 % goes to overflow in the scenes of docs/verification/convergence.md.
     static constexpr Real safe_collision_share = 0.5;
 
     Concrete() = default;

@@ -1,6 +1,6 @@
 #pragma once
 // Boost.Odeint's steppers for small systems with memory: to compare with, and for reference solutions. Not
-// part of abrade.hpp, for they take long to compile (docs/steppers.md); dem/time/stepper.hpp takes from
+// part of abrade.hpp, for they take long to compile (docs/verification/steppers.md); dem/time/stepper.hpp takes from
 // odeint a tag only.
 
 #include <abrade/dem/time/phase_point.hpp>
