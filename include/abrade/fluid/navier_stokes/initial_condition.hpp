@@ -145,8 +145,8 @@ void check_inflows(const GridFluidParams<Dim>& params, const Liquid& liquid,
                 ++open;
                 wet += liquid.fraction()[high ? c + s : c - s] > 0;
             });
-            const std::string side =
-                std::string(high ? "upper" : "lower") + " side along " + Grid<Dim>::axis_name(a);
+            std::string side = high ? "upper" : "lower";
+            side.append(" side along ").push_back(Grid<Dim>::axis_name(a));
             const std::string of = " of " + std::to_string(faces) + " faces";
             if (open == 0)
                 fail({"GridFluid.wall", "open somewhere at the inflow (" + side + ")", "",

@@ -1,0 +1,1 @@
+// KaTeX sets the formulas: formulas.js
