@@ -54,11 +54,11 @@ inline const std::map<std::string, std::vector<std::string>, std::less<>> inner_
     {"coupling/exchange", {"coupling/mapping", "coupling/averaging"}},
     {"sim/scene", {}},
     {"sim/state", {"sim/scene"}},
-    {"sim/motion", {"sim/state"}},
+    {"sim/motion", {"sim/scene", "sim/state"}},
     {"sim/rest", {"sim/motion"}},
     {"sim/guards", {"sim/state", "sim/motion"}},
     {"sim/engine", {"sim/scene", "sim/motion", "sim/rest", "sim/guards"}},
-    {"sim", {"sim/guards", "sim/engine"}},
+    {"sim", {"sim/scene", "sim/guards", "sim/engine"}},
 };
 /// All that dem/time/stepper.hpp, which every simulation includes, may take from odeint.
 inline constexpr std::string_view odeint_tag = "boost/numeric/odeint/stepper/stepper_categories.hpp";

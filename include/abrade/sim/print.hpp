@@ -11,8 +11,8 @@ namespace abrade {
 /// Whether bonds of concrete that stands gave way to blows rather than to wear: more than one for every four
 /// cells that wore. Concrete that moves then breaks several times as many, and more of it comes loose
 /// (docs/howto/standing_concrete.md). Throws std::logic_error before the first run.
-template <class C, class B, class W, class F, class D>
-bool breaks_by_blows(const Simulation<C, B, W, F, D>& sim) {
+template <class... All>
+bool breaks_by_blows(const Simulation<All...>& sim) {
     if (!sim.world().state().sites.stand) return false;
     const Concrete& concrete = sim.concrete();
     Real cells = 0;
@@ -22,8 +22,10 @@ bool breaks_by_blows(const Simulation<C, B, W, F, D>& sim) {
 
 /// Laws with their parameters, the step and why, the ledger and the water's account if it has one, the wear,
 /// the wall time and where it went.
-template <class C, class B, class W, class F, class D>
-std::ostream& operator<<(std::ostream& out, const Simulation<C, B, W, F, D>& sim) {
+template <class... All>
+std::ostream& operator<<(std::ostream& out, const Simulation<All...>& sim) {
+    using F = std::remove_cvref_t<decltype(sim.fluid_model())>;
+    using W = std::remove_cvref_t<decltype(sim.wear_law())>;
     out << "contact  " << describe(sim.contact_) << "\nbond     " << describe(sim.bond_) << "\nwear     "
         << describe(sim.wear_) << "\nfluid    " << describe(sim.fluid_);
     if constexpr (!std::same_as<F, NoFluid>) out << " with " << describe(sim.drag_);

@@ -5,6 +5,7 @@
 #include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/sim/run_options.hpp>
+#include <abrade/sim/scene/body_force.hpp>
 #include <abrade/sim/scene_limits.hpp>
 #include <abrade/sim/slots.hpp>
 #include <abrade/sim/snapshot.hpp>
@@ -14,17 +15,18 @@
 
 namespace abrade {
 
-/// Made by `simulate(scene)`, completed by `.contact()`, `.bond()`, `.wear()` and `.fluid()`, then run. The
-/// four policies are part of the type; an absent one costs nothing.
+/// Made by `simulate(scene)`, completed by `.contact()`, `.bond()`, `.wear()`, `.fluid()` and `.force()`,
+/// then run. The policies are part of the type; an absent one costs nothing.
 template <class C = ContactLawIsMissing, BondLaw B = NoBond, WearLaw W = NoWear, FluidModel F = NoFluid,
-          DragLaw D = NoDrag>
+          DragLaw D = NoDrag, ForceOnBodies U = NoForceOnBodies>
 class Simulation {
 public:
-    Simulation(Scene scene, C contact, B bond, W wear, F fluid, D drag)
+    Simulation(Scene scene, C contact, B bond, W wear, F fluid, D drag, U force)
         : scene_(std::move(scene)), contact_(std::move(contact)), bond_(std::move(bond)),
-          wear_(std::move(wear)), fluid_(std::move(fluid)), drag_(std::move(drag)) {}
+          wear_(std::move(wear)), fluid_(std::move(fluid)), drag_(std::move(drag)), force_(std::move(force)) {
+    }
 
-    // --- the four slots --------------------------------------------------------------------------
+    // --- the slots -------------------------------------------------------------------------------
     // Each gives back a simulation of another type with its slot filled, and throws std::logic_error once
     // the simulation has run.
 
@@ -33,8 +35,9 @@ public:
         check_not_run();
         static_assert(ContactLaw<One>, "Simulation::contact(law): the law misses what the notes below name");
         if constexpr (ContactPolicy<L>)
-            return Simulation<L, B, W, F, D>{std::move(scene_), std::move(law),    std::move(bond_),
-                                             std::move(wear_),  std::move(fluid_), std::move(drag_)};
+            return Simulation<L, B, W, F, D, U>{std::move(scene_), std::move(law),    std::move(bond_),
+                                                std::move(wear_),  std::move(fluid_), std::move(drag_),
+                                                std::move(force_)};
         else
             return detail::AfterRejectedLaw{};
     }
@@ -43,8 +46,9 @@ public:
         check_not_run();
         static_assert(BondLaw<L>, "Simulation::bond(law): the law misses what the notes below name");
         if constexpr (BondLaw<L>)
-            return Simulation<C, L, W, F, D>{std::move(scene_), std::move(contact_), std::move(law),
-                                             std::move(wear_),  std::move(fluid_),   std::move(drag_)};
+            return Simulation<C, L, W, F, D, U>{std::move(scene_), std::move(contact_), std::move(law),
+                                                std::move(wear_),  std::move(fluid_),   std::move(drag_),
+                                                std::move(force_)};
         else
             return detail::AfterRejectedLaw{};
     }
@@ -53,8 +57,9 @@ public:
         check_not_run();
         static_assert(WearLaw<L>, "Simulation::wear(law): the law misses what the notes below name");
         if constexpr (WearLaw<L>)
-            return Simulation<C, B, L, F, D>{std::move(scene_), std::move(contact_), std::move(bond_),
-                                             std::move(law),    std::move(fluid_),   std::move(drag_)};
+            return Simulation<C, B, L, F, D, U>{std::move(scene_), std::move(contact_), std::move(bond_),
+                                                std::move(law),    std::move(fluid_),   std::move(drag_),
+                                                std::move(force_)};
         else
             return detail::AfterRejectedLaw{};
     }
@@ -66,8 +71,24 @@ public:
         static_assert(DragLaw<Drag>,
                       "Simulation::fluid(law, drag): the drag law misses what the notes below name");
         if constexpr (FluidModel<L> && DragLaw<Drag>)
-            return Simulation<C, B, W, L, Drag>{std::move(scene_), std::move(contact_), std::move(bond_),
-                                                std::move(wear_),  std::move(law),      std::move(drag)};
+            return Simulation<C, B, W, L, Drag, U>{std::move(scene_), std::move(contact_), std::move(bond_),
+                                                   std::move(wear_),  std::move(law),      std::move(drag),
+                                                   std::move(force_)};
+        else
+            return detail::AfterRejectedLaw{};
+    }
+    /// A force on each body that moves, beside all others: see ForceOnBodies. Its work is
+    /// `Ledger::force_work`. Bodies under it take each step: none flies freely or sleeps.
+    template <class L>
+    auto force(L law) && {
+        check_not_run();
+        static_assert(ForceOnBodies<L>,
+                      "Simulation::force(law): needs law(const BodyView&, Real t) const "
+                      "noexcept, which gives a BodyLoad or a Vec3 [N]");
+        if constexpr (ForceOnBodies<L>)
+            return Simulation<C, B, W, F, D, L>{std::move(scene_), std::move(contact_), std::move(bond_),
+                                                std::move(wear_),  std::move(fluid_),   std::move(drag_),
+                                                std::move(law)};
         else
             return detail::AfterRejectedLaw{};
     }
@@ -85,6 +106,41 @@ public:
     }
     void run(const RunOptions& options) {
         run(options, [](const Simulation&) {});
+    }
+
+    // --- changes between two runs ------------------------------------------------------------------
+    // Contacts keep their memory. What is put in is the ledger's `fed_*`, what is taken out its `left_*`. All
+    // throw std::logic_error before the first run, when the scene is what to change, and InputError for what
+    // cannot be, which changes nothing. A body or a wall that overlaps what is there ends the next run in its
+    // first step.
+
+    /// Adds a body; returns its id.
+    Index add_stone(Clump clump, const BodyState& state, Real density = 2650) {
+        return changed([&](auto change) { return change.add({std::move(clump), density, state}); });
+    }
+    Index add_sphere(Real radius, const BodyState& state, Real density = 2650) {
+        require_positive(radius, "Simulation.add_sphere: radius", "m");
+        return add_stone(make_clump("sphere", {{Vec3::Zero(), radius}}), state, density);
+    }
+    void remove(Index id) {
+        changed([&](auto change) { return change.remove(id), id; });
+    }
+    /// Returns the wall's number.
+    Index add_wall(const Vec3& point, const Vec3& normal, Index material = 0) {
+        return changed([&](auto change) { return change.add_wall(point, normal, material); });
+    }
+    void remove_wall(Index number) {
+        changed([&](auto change) { return change.remove_wall(number), number; });
+    }
+    void set_gravity(const Vec3& gravity) {
+        changed([&](auto change) { return change.set_gravity(gravity), 0; });
+    }
+    /// Lets go a stone that is fixed, and holds one that moves, where it is.
+    void let_go(Index id) {
+        changed([&](auto change) { return change.let_go(id), id; });
+    }
+    void hold(Index id) {
+        changed([&](auto change) { return change.hold(id), id; });
     }
 
     // --- saving and going on later ---------------------------------------------------------------
@@ -127,8 +183,8 @@ public:
     Index bonds_broken() const { return world().state().bonds_broken(); }
     Index spheres_let_go() const { return world().state().let_go_count; }  ///< of concrete that stood
     /// The time acceleration at which the largest collision so far would have worn half of its sphere's cell
-    /// [-], from where on the map of docs/verification/convergence.md loses wear to overflow; infinite where nothing wore.
-    /// More stones may bring a larger collision.
+    /// [-], from where on the map of docs/verification/convergence.md loses wear to overflow; infinite where
+    /// nothing wore. More stones may bring a larger collision.
     Real largest_safe_acceleration() const requires AcceleratedWear<W> {
         return Concrete::safe_collision_share * wear_.params().acceleration /
                concrete().largest_collision_share();
@@ -149,9 +205,8 @@ public:
         return shares_of(wall_seconds_, world_->timed(), world_->renewal_seconds(), world_->fluid_seconds());
     }
 
-    template <class X, class Y, class Z, class U, class V>
-    friend std::ostream& operator<<(std::ostream& out,
-                                    const Simulation<X, Y, Z, U, V>& sim);  // sim/print.hpp
+    template <class... All>
+    friend std::ostream& operator<<(std::ostream& out, const Simulation<All...>& sim);  // sim/print.hpp
 
     const C& contact_law() const noexcept { return contact_; }
     const B& bond_law() const noexcept { return bond_; }
@@ -259,8 +314,22 @@ private:
         return step;
     }
 
+    Index changed(auto&& change) {
+        if (!opened_) throw std::logic_error("Simulation: change the scene instead, before the first run");
+        Index found = 0;
+        world_->change([&](auto changes) { found = change(changes); });
+        limits_.emplace(*world_);
+        resumes_ = false;
+        return found;
+    }
+
     void prepare(const RunOptions& options) {
-        validate(options, time_, scene_.gravity.isZero());
+        const Scene& scene = world_ ? world_->scene() : scene_;
+        validate(options, time_, scene.gravity.isZero());
+        require(options.sleep_speed == 0 || (std::same_as<U, NoForceOnBodies> && scene.moving_walls.empty()),
+                {"RunOptions.sleep_speed", "0 where walls move or a force of yours acts on bodies", "m/s",
+                 "nobody knows when they would have to wake"},
+                options.sleep_speed);
         if (!world_) build_world();
         world_->set_skin(limits().skin(options.skin, range_of(contact_), world_->scene()));
         world_->set_free_flight(options.free_flight);
@@ -292,7 +361,7 @@ private:
 
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
-        world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_}));
+        world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_, force_}));
         limits_.emplace(*world_);
     }
 
@@ -371,7 +440,7 @@ private:
         remembered_ = step_;
     }
 
-    using PoliciesOf = Policies<std::conditional_t<ContactPolicy<C>, C, LinearSpring>, B, W, F, D>;
+    using PoliciesOf = Policies<std::conditional_t<ContactPolicy<C>, C, LinearSpring>, B, W, F, D, U>;
     using World = abrade::World<PoliciesOf>;
 
     Scene scene_;
@@ -380,6 +449,7 @@ private:
     [[no_unique_address]] W wear_;
     [[no_unique_address]] F fluid_;
     [[no_unique_address]] D drag_;
+    [[no_unique_address]] U force_;
     std::optional<World> world_;
     Ledger ledger_;
     std::optional<SceneLimits> limits_;
@@ -394,7 +464,7 @@ private:
 
 /// Starts a simulation; fill the slots, then run.
 inline Simulation<> simulate(Scene scene) {
-    return {std::move(scene), {}, NoBond{}, NoWear{}, NoFluid{}, NoDrag{}};
+    return {std::move(scene), {}, NoBond{}, NoWear{}, NoFluid{}, NoDrag{}, NoForceOnBodies{}};
 }
 
 }  // namespace abrade

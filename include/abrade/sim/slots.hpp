@@ -23,6 +23,7 @@ struct AfterRejectedLaw {
     AfterRejectedLaw bond(auto&&...) { return {}; }
     AfterRejectedLaw wear(auto&&...) { return {}; }
     AfterRejectedLaw fluid(auto&&...) { return {}; }
+    AfterRejectedLaw force(auto&&...) { return {}; }
     void run(const RunOptions&, auto&&...) {}
     void build() {}
 };

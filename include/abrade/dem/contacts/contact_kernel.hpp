@@ -77,13 +77,14 @@ struct PackSums {
     /// Overlap times (1/r_i + 1/r_j), planes as an equal sphere: at least 1 + r_small/r_large times overlap
     /// over the smaller radius [-].
     Pack deepest = 0;
+    Pack wall_power = 0;  ///< [W]
 
     PackSums& operator+=(const PackSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential, stored += other.stored;
         lost_rolling += other.lost_rolling, lost_film += other.lost_film;
         concrete_lost_normal += other.concrete_lost_normal;
         concrete_lost_tangential += other.concrete_lost_tangential;
-        deepest = max(deepest, other.deepest);
+        deepest = max(deepest, other.deepest), wall_power += other.wall_power;
         return *this;
     }
 };
@@ -225,6 +226,8 @@ QuadColumns gather(const Lanes& pack, const Combine& combine) noexcept {
     return columns(row);
 }
 
+inline Vec3Of<Pack> packs_of(const Vec3& v) noexcept { return {Pack(v.x()), Pack(v.y()), Pack(v.z())}; }
+
 /// Angular velocity of i relative to j [rad/s], and 1/(m_i r_i^2) + 1/(m_j r_j^2) [1/(kg m2)].
 template <bool on_plane, class Lanes>
 QuadColumns gather_spins(const Lanes& pack, const LineReader& at) noexcept {
@@ -257,7 +260,7 @@ void add_couples(const Vec3Of<Pack>& couple, const Lanes& pack, const LineReader
 
 /// What sets packs apart when the program is compiled, so that none has to ask.
 struct KernelKind {
-    bool on_plane = false;  ///< spheres on one plane, which neither moves nor feels
+    bool on_plane = false;  ///< spheres on one plane, which feels nothing
     bool wears = false;     ///< concrete is among them
 };
 
@@ -332,13 +335,22 @@ template <KernelKind kind, ContactLaw Law, class Wear>
         contact.curvature = curvature;
         contact.time_step = step.time_step;
         const Vec3Of<Pack> surface_velocity(surface_velocity_x, surface_velocity_y, surface_velocity_z);
-        const Vec3Of<Pack> velocity = Vec3Of<Pack>(vx, vy, vz) - surface_velocity.cross(arm);
+        Vec3Of<Pack> velocity = Vec3Of<Pack>(vx, vy, vz) - surface_velocity.cross(arm);
+        Vec3Of<Pack> on_wall;  // from the wall's point to the contact point
+        if constexpr (kind.on_plane)
+            if (plane.moves) {
+                on_wall = Vec3Of<Pack>(x, y, z) - detail::packs_of(plane.point) - reach * arm;
+                velocity -=
+                    detail::packs_of(plane.last.velocity) + detail::packs_of(plane.last.spin).cross(on_wall);
+            }
         const Pack ahead = select(pack.touched, Pack(step.ahead), Pack(0));
         contact.displacement = Pack(step.time_step) * velocity;
         contact.velocity = velocity + ahead * (velocity - pack.before.velocity);
         if constexpr (ResistsRolling<Law>) {
             const auto [sx, sy, sz, inverse_turning] = detail::gather_spins<kind.on_plane>(pack, at);
-            const Vec3Of<Pack> spin(sx, sy, sz);
+            Vec3Of<Pack> spin(sx, sy, sz);
+            if constexpr (kind.on_plane)
+                if (plane.moves) spin -= detail::packs_of(plane.last.spin);
             contact.rotation = Pack(step.time_step) * spin;
             contact.spin = spin + ahead * (spin - pack.before.spin);
             contact.inverse_turning = inverse_turning;
@@ -355,6 +367,13 @@ template <KernelKind kind, ContactLaw Law, class Wear>
         if constexpr (ActsBeforeTouch<Law>) sums.lost_film += answer.lost_film;
         sums.deepest =
             max(sums.deepest, contact.overlap * (kind.on_plane ? curvature + curvature : curvature));
+        if constexpr (kind.on_plane)
+            if (plane.moves) {
+                const Vec3Of<Pack> spin = detail::packs_of(plane.now.spin);
+                sums.wall_power +=
+                    answer.force.dot(detail::packs_of(plane.now.velocity) + spin.cross(on_wall));
+                if constexpr (ResistsRolling<Law>) sums.wall_power += answer.couple.dot(spin);
+            }
         Pack worn = 0;
         if constexpr (kind.wears) {
             Pack sides = 0;

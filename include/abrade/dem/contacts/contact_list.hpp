@@ -25,6 +25,11 @@ inline ContactKinematics<Real> contact_between(const HotArrays& lines, std::span
         contact.normal = plane.normal;
         contact.overlap = place.radius - plane.distance(place.centre);
         lambda = 1 - 0.5 * contact.overlap * contact.curvature;
+        if (plane.moves) {
+            const Vec3 on_wall = place.centre - plane.point - lambda * place.radius * plane.normal;
+            velocity -= plane.last.velocity + plane.last.spin.cross(on_wall);
+            contact.spin -= plane.last.spin;
+        }
     } else {
         const auto j = static_cast<std::size_t>(pair.second);
         const Vec3 apart = place.centre - lines.place[j].centre;

@@ -18,13 +18,14 @@ struct ContactSums {
     Real lost_rolling = 0, lost_film = 0;                         ///< [J]
     Real concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< [J]
     Real deepest = 0;                                             ///< as in PackSums [-]
+    Real wall_power = 0;                                          ///< of walls that move, on spheres [W]
 
     ContactSums& operator+=(const ContactSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential;
         stored += other.stored, lost_rolling += other.lost_rolling, lost_film += other.lost_film;
         concrete_lost_normal += other.concrete_lost_normal;
         concrete_lost_tangential += other.concrete_lost_tangential;
-        deepest = std::max(deepest, other.deepest);
+        deepest = std::max(deepest, other.deepest), wall_power += other.wall_power;
         return *this;
     }
 };
@@ -153,7 +154,8 @@ public:
                 sum(sums.lost_film),
                 sum(sums.concrete_lost_normal),
                 sum(sums.concrete_lost_tangential),
-                largest(sums.deepest)};
+                largest(sums.deepest),
+                sum(sums.wall_power)};
     }
 
     /// Calls `visit(TouchingContact)` for each contact that touched when last evaluated and whose pair is

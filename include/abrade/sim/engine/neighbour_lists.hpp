@@ -22,8 +22,11 @@ public:
 
     void set_skin(Real skin) noexcept { skin_ = skin; }
 
-    /// Tells of a step done: nothing moved further than `way` [m] in it.
-    void note_step(Real way) noexcept { moved_ += way, ++age_; }
+    /// Tells of a step done: no body moved further than `way` [m] in it, and no wall where bodies are than
+    /// `way_of_walls`.
+    void note_step(Real way, Real way_of_walls) noexcept {
+        moved_ += way + way_of_walls, walls_moved_ += way_of_walls, walls_way_ = way_of_walls, ++age_;
+    }
 
     /// Makes the lists good for the places of now. Steps are of dt.
     void freshen(State<P>& state, Real t, Real dt) {
@@ -85,7 +88,7 @@ public:
         parallel_for(state.store.spheres(),
                      [&](Index s) { built_at_[at(s)] = state.store.lines.place[at(s)].centre; });
         state.loosened = false;
-        age_ = 0;
+        age_ = 0, walls_moved_ = 0;
         refine(state, dt);
         seconds_ += std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
     }
@@ -109,7 +112,9 @@ public:
             field("inner_life", &NeighbourLists::inner_life_), field("outrun", &NeighbourLists::outrun_),
             field("dt", "s", &NeighbourLists::dt_), field("age", &NeighbourLists::age_),
             field.bytes("near_sites", &NeighbourLists::near_sites_),
-            field("built_at", "m", &NeighbourLists::built_at_), field("passive", &NeighbourLists::passive_);
+            field("built_at", "m", &NeighbourLists::built_at_), field("passive", &NeighbourLists::passive_),
+            field("walls_moved", "m", &NeighbourLists::walls_moved_),
+            field("walls_way", "m", &NeighbourLists::walls_way_);
     }
 
 private:
@@ -196,8 +201,8 @@ private:
         if (!state.flight.sound) return true;
         const Extremes most = extremes(state);
         if (most.strays && age_ > 0) return false;
-        const Real left = list_skin_ - 2 * std::sqrt(most.way2);
-        const Real way = 2 * dt * std::sqrt(most.speed2);
+        const Real left = list_skin_ - 2 * (std::sqrt(most.way2) + walls_moved_);
+        const Real way = 2 * (dt * std::sqrt(most.speed2) + walls_way_);
         if (left < 4 * way && age_ > 0) return false;
         inner_skin_ = std::min(left, std::max(inner_life_ * way, 0.01 * skin_));
         moved_ = 0;
@@ -227,6 +232,7 @@ private:
         d.moved.resize(at(state.store.spheres()));
         std::iota(d.moved.begin(), d.moved.end(), 0);
         if (state.sites.stand) retire(state, near, d.gone);
+        for (const Index body : std::exchange(state.removed, {})) d.gone[at(body)] = 1;
         for (const Index site : std::exchange(state.worn_away, {}))
             if (const Index body = state.sites.body_of[at(site)]; body >= 0) {
                 if (p.inverse_mass[at(body)] > 0) leave(state, body, state.store.position_of(p, body), dt);
@@ -291,7 +297,7 @@ private:
                 if (!departure.gone[from]) column[to++] = column[from];
             column.resize(to);
         };
-        if constexpr (P::has_fluid) compact(state.velocity_in_fluid);
+        if constexpr (P::looks_ahead) compact(state.velocity_in_fluid);
         if constexpr (P::fluid_resolves) compact(state.flow_load);
         compact(state.past_counter);
         leave_sleepers(state, departure.gone);
@@ -314,7 +320,7 @@ private:
     /// Of bodies that have just come.
     static void grow_columns(State<P>& state) {
         const Particles& p = state.particles;
-        if constexpr (P::has_fluid)
+        if constexpr (P::looks_ahead)
             for (std::size_t b = state.velocity_in_fluid.size(); b < p.velocity.size(); ++b)
                 state.velocity_in_fluid.push_back(p.velocity[b]);
         if constexpr (P::fluid_resolves) state.flow_load.resize(p.velocity.size());
@@ -375,9 +381,10 @@ private:
         return SphereStore::ImageRequest{slot, chunk, {}};
     }
 
-    Real skin_ = 0, list_skin_ = 0;       ///< asked for, of the present list [m]
-    Real inner_skin_ = 0, moved_ = 0;     ///< of the candidates; how far anything may have come since [m]
-    Real seconds_ = 0, inner_life_ = 32;  ///< [s], [steps]
+    Real skin_ = 0, list_skin_ = 0;         ///< asked for, of the present list [m]
+    Real inner_skin_ = 0, moved_ = 0;       ///< of the candidates; how far anything may have come since [m]
+    Real walls_moved_ = 0, walls_way_ = 0;  ///< walls since the last renewal, and in the last step [m]
+    Real seconds_ = 0, inner_life_ = 32;    ///< [s], [steps]
     bool outrun_ = false;
     Real dt_ = 0;                       ///< the step [s]
     Index age_ = 0;                     ///< steps since the last renewal

@@ -1,6 +1,7 @@
 #pragma once
 // Everything that moves, and one step of it.
 
+#include <abrade/sim/engine/changes.hpp>
 #include <abrade/sim/engine/neighbour_lists.hpp>
 #include <abrade/sim/guards/diagnosis.hpp>
 #include <abrade/sim/motion/advance.hpp>
@@ -68,6 +69,8 @@ public:
         });
         ledger_ = state_.accounts;
         book(ledger_, sums.motion);
+        const Real by_walls = half.kick * wall_power_;
+        ledger_.wall_work += by_walls;
         ledger_.kinetic = sums.kinetic, ledger_.potential = sums.potential;
         ledger_.stored_contacts = stored_contacts_ + at_rest();
         ledger_.stored_bonds = stored_bonds_;
@@ -75,12 +78,26 @@ public:
         return ledger_;
     }
 
+    /// Between steps: `change(Changes)` is made of velocities and particles that are those of now; then
+    /// forces are found anew, over no time, with what contacts remember.
+    void change(auto&& change) {
+        make_whole();
+        publish();
+        land(state_);  // what flies has flown under what was there until now
+        rouse_all(state_);
+        change(Changes<P>(state_));
+        state_.outline = SceneOutline(state_.scene, state_.policies);
+        state_.loosened = true;
+        evaluated_ = false, led_here_ = kicked_ = last_kick_ = 0;
+    }
+
     /// Places, and velocities as the lines have them, for what cannot wait for forces.
     void publish_places() { abrade::publish_places(state_); }
 
     void set_skin(Real skin) noexcept { lists_.set_skin(skin); }
     void set_free_flight(bool allowed) {
-        state_.flight.allowed = allowed && !P::fluid_resolves;  // each exchange asks where all are
+        // Each exchange asks where all are; what a force of the user's does over a flight nobody knows.
+        state_.flight.allowed = allowed && !P::fluid_resolves && !P::has_force;
         find_flyers(state_);
     }
     /// As RunOptions says.
@@ -129,8 +146,10 @@ public:
             field("stored_bonds", "J", &World::stored_bonds_),
             field("stored_at_rest", "J", &World::stored_at_rest_), field("unlooked", &World::unlooked_),
             field("too_deep", &World::too_deep_), field("timed", &World::timed_),
-            field("fluid_seconds", "s", &World::fluid_seconds_), field("fluid_due", &World::fluid_due_);
+            field("fluid_seconds", "s", &World::fluid_seconds_), field("fluid_due", &World::fluid_due_),
+            field("wall_power", "W", &World::wall_power_);
     }
+    void restored() { move_walls(led_here_); }
 
 private:
     struct alignas(64) PassSums {
@@ -161,9 +180,40 @@ private:
 
     /// Before forces are evaluated, once for each time.
     void make_ready(Real dt) {
+        move_walls(led_here_);
         settle_concrete(state_, now_);
         state_.free_loose_concrete();
         lists_.freshen(state_, now_, dt);
+    }
+
+    /// Brings walls that move to where they are now, in the step `led` that led here [s].
+    void move_walls(Real led) {
+        if (state_.scene.moving_walls.empty()) return;
+        // Over a step about now, which is what the next kick is of.
+        const Real dt = time_step_ > 0 ? time_step_ : 1e-6;
+        wall_speed_ = 0;
+        for (const MovingWall& moving : state_.scene.moving_walls) {
+            Plane& wall = state_.scene.walls[at(moving.wall)];
+            const auto place = [&](Real t) {
+                const PlanePlace found = moving.place(t);
+                const std::string name = "Scene.moving_walls: wall " + std::to_string(moving.wall) +
+                                         " at t = " + short_text(t) + " s, ";
+                require_finite(found.displacement, name + "displacement", "m");
+                require_finite(found.rotation, name + "rotation", "rad");
+                return found;
+            };
+            const PlanePlace here = place(now_);
+            wall = here.of(moving.start);
+            wall.moves = true;
+            if (led > 0) wall.last = here.since(place(now_ - led), led);
+            wall.now = place(now_ + 0.5 * dt).since(place(now_ - 0.5 * dt), dt);
+            Real reach = 0;
+            if (!wall.now.spin.isZero(0))
+                for (const SpherePlace& sphere :
+                     std::span(state_.store.lines.place).first(at(state_.store.spheres())))
+                    reach = std::max(reach, (sphere.centre - wall.point).norm());
+            wall_speed_ = std::max(wall_speed_, wall.now.velocity.norm() + reach * wall.now.spin.norm());
+        }
     }
 
     /// Brings forces, losses and wear up to the present.
@@ -252,15 +302,16 @@ private:
             state_.presses.insert(state_.presses.end(), part.presses.begin(), part.presses.end());
             state_.weakened.insert(state_.weakened.end(), part.weakened.begin(), part.weakened.end());
         }
-        if (evaluate) book(all.contacts, all.bonds), kicked_ = 0;
+        if (evaluate) book(all.contacts, all.bonds), kicked_ = 0, wall_power_ = all.contacts.wall_power;
         report_overlap(move ? *move : Move{});
         if (move) {
             book(state_.accounts, all.motion);
+            state_.accounts.wall_work += move->kick * wall_power_;
             state_.flight.note(move->kick, move->drift, move->time);
             state_.sleep.stirred |= all.motion.stirs;
             fluid_due_.fastest = std::max(std::sqrt(all.motion.fastest2), state_.flight.fastest_now());
             const Real way = move->drift * fluid_due_.fastest;
-            lists_.note_step(way);
+            lists_.note_step(way, move->drift * wall_speed_);
             check(all.motion);
             if (way > state_.smallest_radius)
                 land(state_), report(Diagnosis(state_).longest_stride(move->drift));
@@ -391,6 +442,7 @@ private:
     bool whole_ = true;                ///< velocities are those of the present, not of half a step ago
     Real stored_contacts_ = 0, stored_bonds_ = 0;  ///< in what is evaluated [J]
     Real stored_at_rest_ = 0;                      ///< [J]
+    Real wall_power_ = 0, wall_speed_ = 0;  ///< of walls that move: on bodies [W], where these are [m/s]
     FluidDue fluid_due_;
     Index unlooked_ = 0;     ///< steps since the last look at who falls asleep
     bool too_deep_ = false;  ///< some contact may be, as of the last evaluation

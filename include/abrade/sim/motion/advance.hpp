@@ -33,21 +33,23 @@ template <class P>
         SpherePlace& place = lines.place[slot];
         const Real mass = load.mass;
         if (motion.inverse_mass > 0) {
-            typename P::OnBody fluid{};
-            if constexpr (P::has_fluid) {
+            typename P::OnBody beside{};
+            if constexpr (P::looks_ahead) {
                 const auto sphere = static_cast<std::size_t>(state.store.sphere_of(static_cast<Index>(slot)));
-                if (const Index body = state.particles.body[sphere]; state.feels_fluid(body)) {
-                    fluid =
-                        state.fluid_on(body, place.centre, motion.velocity, move.time, move.ahead_in_fluid);
+                if (const Index body = state.particles.body[sphere];
+                    P::has_force || state.feels_fluid(body)) {
+                    beside = state.acting_on(body, place.centre, motion.velocity,
+                                             motion.curvature * motion.surface_velocity, move.time,
+                                             move.ahead_in_fluid);
                     state.velocity_in_fluid[static_cast<std::size_t>(body)] = motion.velocity;
-                    take_along(fluid, load.force, mass, state.scene.gravity);
+                    take_along(beside, load.force, mass, state.scene.gravity);
                 }
             }
-            const KickedSphere after = kick(motion, load, fluid, gravity, move.kick);
+            const KickedSphere after = kick(motion, load, beside, gravity, move.kick);
             sums.interaction = sums.interaction + after.interaction;
             sums.mass_displacement = sums.mass_displacement + after.mass_displacement;
-            if constexpr (P::has_fluid)
-                sums.add(fluid, 0.5 * move.kick * (motion.velocity + detail::first_three(after.velocity)),
+            if constexpr (P::looks_ahead)
+                sums.add(beside, 0.5 * move.kick * (motion.velocity + detail::first_three(after.velocity)),
                          0.5 * move.kick * motion.curvature *
                              (motion.surface_velocity + detail::first_three(after.surface_velocity)),
                          move.kick);
@@ -74,20 +76,21 @@ template <class P>
                    last = first + static_cast<std::size_t>(clump.count);
         if (state.mode[first] > IntegrationMode::beside_sleeper) continue;
         if (clump.inverse_mass > 0) {
-            typename P::OnBody fluid{};
-            if constexpr (P::has_fluid)
-                if (state.feels_fluid(clump.body)) {
-                    fluid = state.fluid_on(clump.body, clump.position, clump.velocity, move.time,
-                                           move.ahead_in_fluid);
+            typename P::OnBody beside{};
+            if constexpr (P::looks_ahead)
+                if (P::has_force || state.feels_fluid(clump.body)) {
+                    beside = state.acting_on(clump.body, clump.position, clump.velocity,
+                                             clump.angular_velocity(clump.angular_momentum), move.time,
+                                             move.ahead_in_fluid);
                     state.velocity_in_fluid[static_cast<std::size_t>(clump.body)] = clump.velocity;
                 }
             const ClumpLoad load = load_of(clump, lines);
-            take_along(fluid, load.force, clump.mass, state.scene.gravity);
-            const KickedClump after = kick(clump, load, fluid, state.scene.gravity, move.kick);
+            take_along(beside, load.force, clump.mass, state.scene.gravity);
+            const KickedClump after = kick(clump, load, beside, state.scene.gravity, move.kick);
             sums.interaction.value[0] += after.interaction;
             sums.mass_displacement =
                 sums.mass_displacement + detail::quad(Vec3(clump.mass * after.displacement));
-            if constexpr (P::has_fluid) sums.add(fluid, after.displacement, after.rotation, move.kick);
+            if constexpr (P::looks_ahead) sums.add(beside, after.displacement, after.rotation, move.kick);
             clump.velocity = after.velocity, clump.angular_momentum = after.angular_momentum;
             if (move.drift > 0) drift(clump, move.drift, state.store, state.particles);
             for (std::size_t m = first; m < last; ++m)
@@ -139,11 +142,10 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         for (auto* column : {&p.velocity, &p.angular_momentum, &p.force, &p.torque}) (*column)[b].setZero();
         return true;
     };
-    typename P::OnBody fluid{};
-    const auto sample = [&](const Vec3& position, const Vec3& velocity) {
-        if constexpr (P::has_fluid)
-            if (state.feels_fluid(body))
-                fluid = state.fluid_on(body, position, velocity, move.time, move.ahead_in_fluid);
+    typename P::OnBody beside{};
+    const auto sample = [&](const Vec3& position, const Vec3& velocity, const Vec3& spin) {
+        if constexpr (P::looks_ahead)
+            beside = state.acting_on(body, position, velocity, spin, move.time, move.ahead_in_fluid);
     };
     if (clump_index >= 0) {
         const MovingClump& clump = state.store.clumps[static_cast<std::size_t>(clump_index)];
@@ -154,16 +156,16 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
         p.position[b] = clump.position, p.orientation[b] = clump.orientation;
         if (at_rest()) return;
         const ClumpLoad load = load_of(clump, lines);
-        sample(clump.position, clump.velocity);
-        take_along(fluid, load.force, clump.mass, state.scene.gravity);
-        const KickedClump after = kick(clump, load, fluid, state.scene.gravity, move.kick);
+        sample(clump.position, clump.velocity, clump.angular_velocity(clump.angular_momentum));
+        take_along(beside, load.force, clump.mass, state.scene.gravity);
+        const KickedClump after = kick(clump, load, beside, state.scene.gravity, move.kick);
         p.velocity[b] = after.velocity, p.angular_momentum[b] = after.angular_momentum;
-        p.force[b] = load.force + p.mass[b] * state.scene.gravity + force_of(fluid);
+        p.force[b] = load.force + p.mass[b] * state.scene.gravity + force_of(beside);
         p.torque[b] = load.torque;
-        if constexpr (P::fluid_resolves) p.torque[b] += fluid.torque;
+        if constexpr (turns_bodies<typename P::OnBody>) p.torque[b] += torque_of(beside);
         sums.interaction.value[0] += after.interaction;
         sums.mass_displacement = sums.mass_displacement + detail::quad(Vec3(clump.mass * after.displacement));
-        sums.add(fluid, after.displacement, after.rotation, move.kick);
+        sums.add(beside, after.displacement, after.rotation, move.kick);
         return;
     }
     const auto slot = static_cast<std::size_t>(state.store.slot_of(static_cast<Index>(first)));
@@ -185,17 +187,17 @@ void publish_body(State<P>& state, Index body, const Move& move, MotionSums& sum
                            flight.kicks, sums);
         return;
     }
-    sample(place.centre, motion.velocity);
-    take_along(fluid, load.force, p.mass[b], state.scene.gravity);
-    const KickedSphere after = kick(motion, load, fluid, detail::quad(state.scene.gravity), move.kick);
+    sample(place.centre, motion.velocity, motion.curvature * motion.surface_velocity);
+    take_along(beside, load.force, p.mass[b], state.scene.gravity);
+    const KickedSphere after = kick(motion, load, beside, detail::quad(state.scene.gravity), move.kick);
     p.velocity[b] = detail::first_three(after.velocity);
     p.angular_momentum[b] = 0.4 * p.mass[b] * place.radius * detail::first_three(after.surface_velocity);
-    p.force[b] = load.force + p.mass[b] * state.scene.gravity + force_of(fluid);
+    p.force[b] = load.force + p.mass[b] * state.scene.gravity + force_of(beside);
     p.torque[b] = place.radius * load.torque_over_radius;
-    if constexpr (P::fluid_resolves) p.torque[b] += fluid.torque;
+    if constexpr (turns_bodies<typename P::OnBody>) p.torque[b] += torque_of(beside);
     sums.interaction = sums.interaction + after.interaction;
     sums.mass_displacement = sums.mass_displacement + after.mass_displacement;
-    sums.add(fluid, 0.5 * move.kick * (motion.velocity + p.velocity[b]),
+    sums.add(beside, 0.5 * move.kick * (motion.velocity + p.velocity[b]),
              0.5 * move.kick * motion.curvature *
                  (motion.surface_velocity + detail::first_three(after.surface_velocity)),
              move.kick);

@@ -4,6 +4,7 @@
 #include <abrade/coupling/drag/drag.hpp>
 #include <abrade/dem/store/sphere_store.hpp>
 #include <abrade/dem/time/rotation.hpp>
+#include <abrade/sim/scene/policies.hpp>
 #include <abrade/sim/state/ledger.hpp>
 
 #include <limits>
@@ -14,8 +15,8 @@ namespace abrade {
 struct MotionSums {
     Quad interaction{};        ///< work of contacts and bonds; its first three numbers are to be added up [J]
     Quad mass_displacement{};  ///< sum of mass times displacement [kg m]; times gravity: its work
-    Real drag = 0, drag_input = 0, buoyancy = 0, flow = 0;  ///< [J]
-    Real fastest2 = 0;                                      ///< of spheres' centres [m2/s2]
+    Real drag = 0, drag_input = 0, buoyancy = 0, flow = 0, force = 0;  ///< [J]
+    Real fastest2 = 0;                                                 ///< of spheres' centres [m2/s2]
     Quad low{{1e300, 1e300, 1e300, 1e300}}, high{{-1e300, -1e300, -1e300, -1e300}};  ///< of positions [m]
     Quad finite{};       ///< sum of velocities: not finite where one is not
     bool stirs = false;  ///< one beside a sleeper has become fast
@@ -29,6 +30,12 @@ struct MotionSums {
     void add(const FlowLoad& fluid, const Vec3& displacement, const Vec3& rotation, Real /*time*/) noexcept {
         flow += fluid.force.dot(displacement) + fluid.torque.dot(rotation);
     }
+    template <class FromFluid>
+    void add(const WithForce<FromFluid>& load, const Vec3& displacement, const Vec3& rotation,
+             Real time) noexcept {
+        add(static_cast<const FromFluid&>(load), displacement, rotation, time);
+        force += load.given.force.dot(displacement) + load.given.torque.dot(rotation);
+    }
     /// A sphere that has moved: where it is, its velocity, and that of its surface.
     void notice(const Quad& place, const Quad& velocity, const Quad& surface_velocity) noexcept {
         const Quad squares = velocity * velocity;
@@ -41,6 +48,7 @@ struct MotionSums {
         interaction = interaction + o.interaction;
         mass_displacement = mass_displacement + o.mass_displacement;
         drag += o.drag, drag_input += o.drag_input, buoyancy += o.buoyancy, flow += o.flow;
+        force += o.force;
         fastest2 = std::max(fastest2, o.fastest2);
         low = least(low, o.low), high = most(high, o.high), finite = finite + o.finite;
         stirs |= o.stirs;
@@ -59,7 +67,7 @@ inline void book(Ledger& to, const MotionSums& motion, const Vec3& gravity) noex
     to.interaction_work += motion.interaction_work();
     to.gravity_work += motion.gravity_work(gravity);
     to.drag_work += motion.drag, to.drag_input += motion.drag_input;
-    to.buoyancy_work += motion.buoyancy, to.flow_work += motion.flow;
+    to.buoyancy_work += motion.buoyancy, to.flow_work += motion.flow, to.force_work += motion.force;
 }
 
 /// What contacts and weight do to the water that a body takes along, its added mass. A flow that resolves
@@ -70,6 +78,17 @@ inline void take_along(FlowLoad& fluid, const Vec3& contacts, Real mass, const V
 inline void take_along(FluidLoad& fluid, const Vec3& contacts, Real mass, const Vec3& gravity) noexcept {
     take_along(fluid, contacts + mass * gravity, mass);
 }
+template <class FromFluid>
+void take_along(WithForce<FromFluid>& load, const Vec3& contacts, Real mass, const Vec3& gravity) noexcept {
+    take_along(static_cast<FromFluid&>(load), contacts + load.given.force, mass, gravity);
+}
+
+/// What turns a body beside contacts and bonds [N m].
+template <class OnBody>
+inline constexpr bool turns_bodies = !std::same_as<OnBody, FluidLoad>;
+inline const Vec3& torque_of(const FlowLoad& load) noexcept { return load.torque; }
+inline const Vec3& torque_of(const WithForce<FluidLoad>& load) noexcept { return load.given.torque; }
+inline Vec3 torque_of(const WithForce<FlowLoad>& load) noexcept { return load.torque + load.given.torque; }
 
 /// What a kick does to a single sphere, and the works it does: a force is paired with the mean of the
 /// velocities before and after, so works add up to the change in kinetic energy exactly.
@@ -90,8 +109,8 @@ KickedSphere kick(const SphereMotion& motion, const SphereLoad& load, const OnBo
     KickedSphere after;
     after.velocity = before + per_mass * (force + mass * gravity + detail::quad(force_of(fluid)));
     Quad turning = torque_over_radius;
-    if constexpr (std::same_as<OnBody, FlowLoad>)
-        turning = turning + detail::quad(Vec3(motion.curvature * fluid.torque));
+    if constexpr (turns_bodies<OnBody>)
+        turning = turning + detail::quad(Vec3(motion.curvature * torque_of(fluid)));
     after.surface_velocity = surface_velocity + detail::same(2.5) * per_mass * turning;
     const Quad displacement = detail::same(0.5 * dt) * (before + after.velocity);
     after.interaction =
@@ -132,7 +151,7 @@ KickedClump kick(const MovingClump& clump, const ClumpLoad& load, const OnBody& 
     const Vec3 velocity =
         clump.velocity + dt * clump.inverse_mass * (load.force + clump.mass * gravity + force_of(fluid));
     Vec3 momentum = clump.angular_momentum + dt * load.torque;
-    if constexpr (std::same_as<OnBody, FlowLoad>) momentum += dt * fluid.torque;
+    if constexpr (turns_bodies<OnBody>) momentum += dt * torque_of(fluid);
     const Vec3 displacement = 0.5 * dt * (clump.velocity + velocity);
     const Vec3 rotation = 0.5 * dt * clump.angular_velocity(clump.angular_momentum + momentum);
     return {velocity, momentum, displacement, rotation,

@@ -1,15 +1,26 @@
 #pragma once
-// The four slots of a simulation as one type.
+// The slots of a simulation as one type.
 
 #include <abrade/bond/bond_law.hpp>
 #include <abrade/core/fields.hpp>
 #include <abrade/coupling/drag/drag.hpp>
+#include <abrade/sim/scene/body_force.hpp>
 #include <abrade/wear/wear_law.hpp>
 
 namespace abrade {
 
-/// The four policies, and the drag law that goes with the fluid.
-template <ContactPolicy C, BondLaw B, WearLaw W, FluidModel F, DragLaw D>
+/// What acts on a body beside contacts, bonds and weight where the user gives a force of his own.
+template <class OnBody>
+struct WithForce : OnBody {
+    BodyLoad given;
+};
+template <class OnBody>
+Vec3 force_of(const WithForce<OnBody>& load) noexcept {
+    return force_of(static_cast<const OnBody&>(load)) + load.given.force;
+}
+
+/// The four policies, the drag law that goes with the fluid, and the user's force on bodies.
+template <ContactPolicy C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U = NoForceOnBodies>
 struct Policies {
     static constexpr bool has_materials = !std::same_as<PairLaw<C>, C>;
     static constexpr bool has_bonds = !std::same_as<B, NoBond>;
@@ -17,13 +28,18 @@ struct Policies {
     static constexpr bool has_fluid = !std::same_as<F, NoFluid>;
     static constexpr bool fluid_advances = AdvancingFluid<F>;
     static constexpr bool fluid_resolves = ResolvedFluid<F>;
-    using OnBody = std::conditional_t<fluid_resolves, FlowLoad, FluidLoad>;  ///< what the fluid does to one
+    static constexpr bool has_force = !std::same_as<U, NoForceOnBodies>;
+    static constexpr bool looks_ahead = has_fluid || has_force;  ///< whether velocities are brought up to now
+    using FromFluid =
+        std::conditional_t<fluid_resolves, FlowLoad, FluidLoad>;  ///< what the fluid does to one
+    using OnBody = std::conditional_t<has_force, WithForce<FromFluid>, FromFluid>;
 
     C contact;
     [[no_unique_address]] B bond;
     [[no_unique_address]] W wear;
     [[no_unique_address]] F fluid;
     [[no_unique_address]] D drag;
+    [[no_unique_address]] U force;
 
     /// Laws are what they are; a fluid that goes on may have much to list.
     static void fields(auto&& field) {

@@ -6,6 +6,7 @@
 #include <abrade/sim/scene/feed.hpp>
 #include <abrade/wear/concrete.hpp>
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -33,6 +34,13 @@ struct ConcreteBlock {
     Overflow overflow = FillCrater{};
 };
 
+/// A wall that moves as a function of time [s]. Called between steps, one call after the other.
+struct MovingWall {
+    Index wall = 0;  ///< number of the wall
+    std::function<PlanePlace(Real)> place{};
+    Plane start{};
+};
+
 /// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.
 struct Scene {
     struct Stone {
@@ -45,6 +53,7 @@ struct Scene {
     Vec3 gravity{0, 0, -standard_gravity};  ///< [m/s2]
     std::vector<Stone> stones;
     std::vector<Plane> walls;
+    std::vector<MovingWall> moving_walls;
     std::optional<ConcreteBlock> concrete;
     std::optional<FeedParams> feed;
     Box bounds;                            ///< leaving it is an error, unless it is periodic
@@ -80,6 +89,16 @@ struct Scene {
         return *this;
     }
 
+    /// A wall that moves, and does work on what it touches (Ledger::wall_work): from `point` and `normal` at
+    /// the start to what `place(t)` says, {.displacement [m], .rotation about `point` [rad]}. Where walls
+    /// move nobody sleeps.
+    Scene& add_moving_wall(const Vec3& point, const Vec3& normal, std::function<PlanePlace(Real)> place,
+                           Index material = 0) {
+        add_wall(point, normal, material);
+        moving_walls.push_back({static_cast<Index>(walls.size()) - 1, std::move(place), walls.back()});
+        return *this;
+    }
+
     /// The periodic axes, with what they repeat.
     Periodic periodic() const {
         Periodic space;
@@ -106,6 +125,12 @@ struct Scene {
                     bounds.high[a] - bounds.low[a]);
         for (std::size_t n = 0; n < walls.size(); ++n)
             validate(walls[n], "Scene.walls[" + std::to_string(n) + "]");
+        for (std::size_t n = 0; n < moving_walls.size(); ++n)
+            require(moving_walls[n].place && moving_walls[n].wall >= 0 &&
+                        moving_walls[n].wall < static_cast<Index>(walls.size()),
+                    {"Scene.moving_walls[" + std::to_string(n) + "]", "a wall's number and a function", "",
+                     "take add_moving_wall()"},
+                    moving_walls[n].wall);
         for (std::size_t n = 0; n < stones.size(); ++n)
             validate(stones[n], "Scene.stones[" + std::to_string(n) + "]");
         for (int a = 0; a < 3; ++a) {

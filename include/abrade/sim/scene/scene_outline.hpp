@@ -23,7 +23,9 @@ public:
         law("contact law", describe(policies.contact)), law("bond law", describe(policies.bond));
         law("wear law", describe(policies.wear)), law("fluid", describe(policies.fluid));
         law("drag law", describe(policies.drag));
-        add_space(scene), add_walls(scene.walls), add_stones(scene.stones);
+        add_space(scene), add_walls(scene.walls);
+        number("Scene.moving_walls", scene.moving_walls.size());
+        add_stones(scene.stones);
         line("Scene.concrete", scene.concrete ? "given" : "none", "");
         if (scene.concrete) add_concrete(*scene.concrete);
         line("Scene.feed", scene.feed ? "given" : "none", "");

@@ -32,11 +32,15 @@ struct Ledger {
     Real drag_input = 0;    ///< drag force times fluid velocity: put in by the flow
     Real drag_work = 0;     ///< drag force times body velocity: what reached the bodies
     Real buoyancy_work = 0;
-    Real flow_work = 0;  ///< of a fluid that resolves the bodies: all that it does to them
+    Real flow_work = 0;  ///< of a fluid that resolves the bodies, all that it does to them; of a sampled one,
+                         ///< what it does beside drag and buoyancy (WithInertia)
+    Real force_work = 0;  ///< of the user's force on bodies
     Real gravity_work = 0;
     Real interaction_work = 0;  ///< done on the bodies by contacts and bonds
+    Real wall_work = 0;         ///< part of that: done by walls that move
+    /// Of what came: fed, added between runs, let go; and what a change of gravity gave to what was there.
     Real fed_kinetic = 0, fed_potential = 0;
-    Real left_kinetic = 0, left_potential = 0, left_stored = 0;
+    Real left_kinetic = 0, left_potential = 0, left_stored = 0;  ///< of what left or was removed
 
     // losses of contacts with concrete, once for each side that is concrete
     Real concrete_lost_normal = 0, concrete_lost_sliding = 0;
@@ -54,7 +58,8 @@ struct Ledger {
             field("lost_bond", "J", &Ledger::lost_bond), field("lost_asleep", "J", &Ledger::lost_asleep),
             field("drag_input", "J", &Ledger::drag_input), field("drag_work", "J", &Ledger::drag_work),
             field("buoyancy_work", "J", &Ledger::buoyancy_work), field("flow_work", "J", &Ledger::flow_work),
-            field("gravity_work", "J", &Ledger::gravity_work),
+            field("gravity_work", "J", &Ledger::gravity_work), field("force_work", "J", &Ledger::force_work),
+            field("wall_work", "J", &Ledger::wall_work),
             field("interaction_work", "J", &Ledger::interaction_work),
             field("fed_kinetic", "J", &Ledger::fed_kinetic),
             field("fed_potential", "J", &Ledger::fed_potential),
@@ -74,19 +79,21 @@ struct Ledger {
     /// Kinetic energy against the work done: zero but for round-off.
     Real residual() const noexcept {
         return kinetic - (kinetic_start + fed_kinetic - left_kinetic + gravity_work + buoyancy_work +
-                          drag_work + flow_work + interaction_work - lost_asleep);
+                          drag_work + flow_work + force_work + interaction_work - lost_asleep);
     }
 
     /// Energy that passed through: what `residual` is to be measured by.
     Real throughput() const noexcept {
         return std::max({kinetic_start + fed_kinetic + drag_input, lost() + left_kinetic + kinetic,
-                         std::abs(gravity_work) + std::abs(buoyancy_work) + std::abs(flow_work), 1e-300});
+                         std::abs(gravity_work) + std::abs(buoyancy_work) + std::abs(flow_work) +
+                             std::abs(force_work) + std::abs(wall_work),
+                         1e-300});
     }
     Real residual_relative() const noexcept { return std::abs(residual()) / throughput(); }
 
     /// Works less what the state functions and the losses account for: the integrator's error in energy.
     Real integration_residue() const noexcept {
-        const Real elastic = -interaction_work -
+        const Real elastic = wall_work - interaction_work -
                              (stored_contacts + stored_bonds - stored_start + left_stored) - lost_normal -
                              lost_sliding - lost_rolling - lost_film - lost_bond;
         const Real gravity = -gravity_work - (potential - potential_start - fed_potential + left_potential);
@@ -106,6 +113,7 @@ struct Ledger {
         f("concrete_lost_sliding", concrete_lost_sliding);
         f("drag_input", drag_input), f("drag_work", drag_work);
         f("buoyancy_work", buoyancy_work), f("flow_work", flow_work), f("gravity_work", gravity_work);
+        f("force_work", force_work), f("wall_work", wall_work);
         f("interaction_work", interaction_work);
         f("fed_kinetic", fed_kinetic), f("fed_potential", fed_potential);
         f("left_kinetic", left_kinetic), f("left_potential", left_potential), f("left_stored", left_stored);

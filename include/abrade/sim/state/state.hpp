@@ -9,8 +9,8 @@
 #include <abrade/sim/scene/scene.hpp>
 #include <abrade/sim/scene/scene_outline.hpp>
 #include <abrade/sim/scene/site_bodies.hpp>
-#include <abrade/sim/state/ledger.hpp>
 #include <abrade/sim/state/integration_mode.hpp>
+#include <abrade/sim/state/ledger.hpp>
 
 namespace abrade {
 
@@ -26,7 +26,9 @@ struct State {
         for (const Scene::Stone& stone : scene.stones) {
             BodyState at = stone.state;
             at.position += scene.periodic().way_back(at.position);
-            particles.add(stone.clump, stone.density, at, stone.fixed ? Kind::fixed : Kind::stone);
+            const Index body =
+                particles.add(stone.clump, stone.density, at, stone.fixed ? Kind::fixed : Kind::stone);
+            stone_id.push_back(particles.id[static_cast<std::size_t>(body)]);
         }
         if constexpr (P::has_materials) require_laws_for(policies.contact, particles, scene);
     }
@@ -48,12 +50,14 @@ struct State {
     std::vector<Press> presses;                                ///< on it, beyond what it bears for certain
     std::vector<Index> weakened;                               ///< sites whose strength has fallen by a step
     std::vector<Index> worn_away;                              ///< sites whose bodies are to be taken out
+    std::vector<Index> stone_id;                               ///< of each stone of the scene
+    std::vector<Index> removed;                    ///< bodies that a user takes out, until lists are renewed
     Index let_go_count = 0;                        ///< spheres of standing concrete that came loose
     std::vector<BondGraph::Component> components;  ///< that came loose and are to go on as clumps
     std::optional<Feed> feed;
     Ledger accounts;  ///< works and losses up to the velocities that the lines hold
-    std::vector<Vec3>
-        velocity_in_fluid;  ///< [body] that drag was last reckoned with [m/s]; empty without a fluid
+    /// [body] that drag or the user's force was last reckoned with [m/s]; empty without either.
+    std::vector<Vec3> velocity_in_fluid;
     std::vector<FlowLoad> flow_load;  ///< [body] from the last exchange with a fluid that resolves bodies
     Index broken_tension = 0, broken_shear = 0;
     bool pattern_changed = false;    ///< a bond broke
@@ -138,6 +142,23 @@ struct State {
     bool feels_fluid(Index body) const noexcept {
         const Kind kind = particles.kind[at(body)];
         return P::has_fluid && (kind == Kind::stone || kind == Kind::grain);
+    }
+    /// All that acts on a body at time t beside contacts, bonds and weight; `ahead` as in ContactStep.
+    typename P::OnBody acting_on(Index body, [[maybe_unused]] const Vec3& position,
+                                 [[maybe_unused]] const Vec3& velocity, [[maybe_unused]] const Vec3& spin,
+                                 [[maybe_unused]] Real t, [[maybe_unused]] Real ahead) const noexcept {
+        typename P::OnBody load{};
+        if constexpr (P::has_fluid)
+            if (feels_fluid(body))
+                static_cast<typename P::FromFluid&>(load) = fluid_on(body, position, velocity, t, ahead);
+        if constexpr (P::has_force) {
+            const Vec3 now = velocity + ahead * (velocity - velocity_in_fluid[at(body)]);
+            load.given =
+                policies.force(BodyView{particles.id[at(body)], particles.kind[at(body)], position, now, spin,
+                                        particles.mass[at(body)], particles.volume[at(body)]},
+                               t);
+        }
+        return load;
     }
     /// What the fluid does to a body at time t; `ahead` as in ContactStep.
     auto fluid_on(Index body, [[maybe_unused]] const Vec3& position, [[maybe_unused]] const Vec3& velocity,
