@@ -55,7 +55,7 @@ struct Rig {
     }
     template <class StrengthLeft>
     BondSums respond(const StrengthLeft& left) {
-        for (SphereLoad& load : store.lines.load) load.force.setZero(), load.lever.setZero();
+        for (SphereLoad& load : store.lines.load) load.force.setZero(), load.torque_over_radius.setZero();
         BondSums sums;
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
             sums += network.respond(slab, law, NoWear{}, store.lines, left, {1e-6, 0});

@@ -26,7 +26,7 @@ Held held(const SolidCover& cover) {
         sum.least_friction = std::min(sum.least_friction, f.friction);
     }
     Vec3 way = Vec3::Zero(), turn = Vec3::Zero();
-    for (const SolidCell& c : cover.cells) way += c.way, turn += c.turn;
+    for (const SolidCell& c : cover.cells) way += c.area, turn += c.area_moment;
     sum.out = way.norm(), sum.turned = turn.norm();
     return sum;
 }
