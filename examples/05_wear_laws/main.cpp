@@ -114,7 +114,8 @@ struct Slide {
         constexpr Real stiffness = 1e6, great = 1e4, off = 0.05, foot = 0.02;
         const Clump block = make_clump(
             "block",
-            {{{off, off, 0}, foot}, {{off, -off, 0}, foot}, {{-off, off, 0}, foot}, {{-off, -off, 0}, foot}});
+            {{{off, off, 0}, foot}, {{off, -off, 0}, foot}, {{-off, off, 0}, foot}, {{-off, -off, 0}, foot}},
+            ClumpParts::apart);
         const Real pressed = density * block.volume * standard_gravity / (4 * stiffness);
         Scene scene;
         scene.concrete =

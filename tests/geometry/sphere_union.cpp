@@ -318,7 +318,7 @@ TEST_CASE("a chiral clump is rotated into its frame, never mirrored") {
         Spheres members;
         for (int k = 0; k < 4; ++k)
             members.push_back({{uniform(random), uniform(random), uniform(random)}, 0.6});
-        const Clump clump = make_clump("chiral", members);
+        const Clump clump = make_clump("chiral", members, ClumpParts::apart);
         CHECK(handedness(clump.members) == doctest::Approx(handedness(members)).epsilon(1e-9));
     }
 }

@@ -16,7 +16,8 @@ const LinearSpring law{{.stiffness = 1e5, .restitution = 0.5, .friction = 0.5}};
 
 const Clump sled = make_clump(
     "sled",
-    {{{-0.02, -0.02, 0}, 0.01}, {{0.02, -0.02, 0}, 0.01}, {{-0.02, 0.02, 0}, 0.01}, {{0.02, 0.02, 0}, 0.01}});
+    {{{-0.02, -0.02, 0}, 0.01}, {{0.02, -0.02, 0}, 0.01}, {{-0.02, 0.02, 0}, 0.01}, {{0.02, 0.02, 0}, 0.01}},
+    ClumpParts::apart);
 
 /// A sled that friction holds on a slope of 20 degrees.
 Scene slope() {

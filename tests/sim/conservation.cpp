@@ -180,12 +180,14 @@ TEST_CASE("free flight is exact: a parabola, at any step") {
 }
 
 TEST_CASE("a clump turns its spheres though its three moments are equal") {
-    Clump cross = make_clump("cross", {{{0.02, 0, 0}, 0.01},
-                                       {{-0.02, 0, 0}, 0.01},
-                                       {{0, 0.02, 0}, 0.01},
-                                       {{0, -0.02, 0}, 0.01},
-                                       {{0, 0, 0.02}, 0.01},
-                                       {{0, 0, -0.02}, 0.01}});
+    Clump cross = make_clump("cross",
+                             {{{0.02, 0, 0}, 0.01},
+                              {{-0.02, 0, 0}, 0.01},
+                              {{0, 0.02, 0}, 0.01},
+                              {{0, -0.02, 0}, 0.01},
+                              {{0, 0, 0.02}, 0.01},
+                              {{0, 0, -0.02}, 0.01}},
+                             ClumpParts::apart);
     cross.principal_moments.setConstant(cross.principal_moments.mean());
     Scene scene;
     scene.gravity = Vec3::Zero();

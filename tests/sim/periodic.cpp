@@ -79,7 +79,8 @@ TEST_CASE("the smallest period moves as the same space twice as long does, the n
 }
 
 TEST_CASE("a body alone must not reach its own image") {
-    const Clump rod = make_clump("rod", {{{-0.03, 0, 0}, 0.01}, {{0, 0, 0}, 0.01}, {{0.03, 0, 0}, 0.01}});
+    const Clump rod = make_clump("rod", {{{-0.03, 0, 0}, 0.01}, {{0, 0, 0}, 0.01}, {{0.03, 0, 0}, 0.01}},
+                                 ClumpParts::apart);
     const auto with = [&](Real period) {
         Scene scene;
         scene.periodic_along = {true, false, false};

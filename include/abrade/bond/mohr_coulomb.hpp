@@ -55,7 +55,7 @@ public:
     using MemoryOf = SpringMemory<Number>;
     using Memory = MemoryOf<Real>;
 
-    explicit MohrCoulomb(Params params) : params_(params) {
+    explicit MohrCoulomb(Params params) : params_(params) {  // Params{...} alone tells a wrong name
         params_.validate();
         tan_phi_ = std::tan(radians(params_.friction_angle));
     }

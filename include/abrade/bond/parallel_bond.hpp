@@ -60,7 +60,7 @@ public:
     };
     using Memory = MemoryOf<Real>;
 
-    explicit ParallelBond(Params params) : params_(params) {
+    explicit ParallelBond(Params params) : params_(params) {  // Params{...} alone tells a wrong name
         params_.validate();
         tan_phi_ = std::tan(radians(params_.friction_angle));
     }

@@ -58,7 +58,7 @@ public:
         }
     };
 
-    explicit UniformFlow(Params params) : params_(params) {
+    explicit UniformFlow(Params params) : params_(params) {  // Params{...} alone tells a wrong name
         params_.validate();
         depth_ = normal_depth(params_.section, params_.discharge, params_.manning);
         roughness_length_ = std::pow(26 * params_.manning, 6) / 30;

@@ -87,10 +87,50 @@ struct Clump {
     Real bounding_radius = 0;               ///< about the centroid [m]
 };
 
+/// Whether the spheres of a clump must hang together.
+enum class ClumpParts { joined, apart };
+
+namespace detail {
+
+/// Throws InputError where spheres hang together in no one piece: by the first that touches none of the
+/// first's.
+inline void require_joined(std::span<const Sphere> members, const std::string& field) {
+    constexpr Real touching = 1 + 1e-9;  // of the sum of two radii
+    std::vector<char> joined(members.size(), 0);
+    std::vector<std::size_t> open{0};
+    joined[0] = 1;
+    while (!open.empty()) {
+        const Sphere one = members[open.back()];
+        open.pop_back();
+        for (std::size_t n = 0; n < members.size(); ++n)
+            if (!joined[n] &&
+                (members[n].centre - one.centre).norm() <= touching * (members[n].radius + one.radius))
+                joined[n] = 1, open.push_back(n);
+    }
+    for (std::size_t n = 0; n < members.size(); ++n) {
+        if (joined[n]) continue;
+        Real gap = std::numeric_limits<Real>::infinity();
+        for (std::size_t k = 0; k < members.size(); ++k)
+            if (joined[k])
+                gap = std::min(gap, (members[n].centre - members[k].centre).norm() - members[n].radius -
+                                        members[k].radius);
+        fail({field + "[" + std::to_string(n) + "]: gap to those before it",
+              "0, so that they touch or overlap", "m",
+              "move it nearer; ClumpParts::apart is for bodies of several pieces"},
+             to_text(gap));
+    }
+}
+
+}  // namespace detail
+
 /// Moves `members` into the principal frame of their union. A single sphere stays where it is, exactly.
-/// Throws InputError as `union_moments` does, with the clump's name and the member's number.
-inline Clump make_clump(std::string name, std::vector<Sphere> members) {
-    const SolidMoments moments = union_moments(members, "Clump '" + name + "'.members");
+/// Throws InputError as `union_moments` does, with the clump's name and the member's number, and where
+/// spheres lie apart, unless that is meant.
+inline Clump make_clump(std::string name, std::vector<Sphere> members,
+                        ClumpParts parts = ClumpParts::joined) {
+    const std::string field = "Clump '" + name + "'.members";
+    const SolidMoments moments = union_moments(members, field);
+    if (parts == ClumpParts::joined) detail::require_joined(members, field);
     Clump clump{std::move(name), std::move(members), moments.volume, Vec3::Zero(), 0};
     if (clump.members.size() == 1) {
         const Real r = clump.members[0].radius;

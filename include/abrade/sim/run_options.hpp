@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -23,7 +24,7 @@ struct RunError : std::runtime_error {
 
 /// How far a run goes, in which steps, and when it is looked at.
 struct RunOptions {
-    Real end_time = 0;  ///< [s]
+    Real end_time = std::numeric_limits<Real>::quiet_NaN();  ///< [s]; must be given
     /// [s]; at most `Simulation::stable_step_now()`. 0: `safety` times the stable step of dense surroundings,
     /// and shorter where contacts as they stand need it.
     Real time_step = 0;
@@ -86,6 +87,9 @@ struct RunAtWork {
 
 /// Throws InputError for what cannot be asked for `now` [s].
 inline void validate(const RunOptions& options, Real now, bool weightless) {
+    if (std::isnan(options.end_time))
+        fail({"RunOptions.end_time", "given", "s", "run({.end_time = 1}) goes on to 1 s from the start"},
+             "none");
     require(std::isfinite(options.end_time) && options.end_time >= now,
             {"RunOptions.end_time", "finite and not before now (" + to_text(now) + " s)", "s",
              "end times count from the start of the simulation"},

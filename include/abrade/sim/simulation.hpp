@@ -33,7 +33,10 @@ public:
     template <class L, class One = PairLaw<L>>
     auto contact(L law) && {
         check_not_run();
-        static_assert(ContactLaw<One>, "Simulation::contact(law): the law misses what the notes below name");
+        static_assert(!ParamSet<L>,
+                      "Simulation::contact(law): these are a law's parameters; write contact(Law{...})");
+        static_assert(ParamSet<L> || ContactLaw<One>,
+                      "Simulation::contact(law): the law misses what the notes below name");
         if constexpr (ContactPolicy<L>)
             return Simulation<L, B, W, F, D, U>{std::move(scene_), std::move(law),    std::move(bond_),
                                                 std::move(wear_),  std::move(fluid_), std::move(drag_),
@@ -44,7 +47,10 @@ public:
     template <class L>
     auto bond(L law) && {
         check_not_run();
-        static_assert(BondLaw<L>, "Simulation::bond(law): the law misses what the notes below name");
+        static_assert(!ParamSet<L>,
+                      "Simulation::bond(law): these are a law's parameters; write bond(Law{...})");
+        static_assert(ParamSet<L> || BondLaw<L>,
+                      "Simulation::bond(law): the law misses what the notes below name");
         if constexpr (BondLaw<L>)
             return Simulation<C, L, W, F, D, U>{std::move(scene_), std::move(contact_), std::move(law),
                                                 std::move(wear_),  std::move(fluid_),   std::move(drag_),
@@ -55,7 +61,10 @@ public:
     template <class L>
     auto wear(L law) && {
         check_not_run();
-        static_assert(WearLaw<L>, "Simulation::wear(law): the law misses what the notes below name");
+        static_assert(!ParamSet<L>,
+                      "Simulation::wear(law): these are a law's parameters; write wear(Law{...})");
+        static_assert(ParamSet<L> || WearLaw<L>,
+                      "Simulation::wear(law): the law misses what the notes below name");
         if constexpr (WearLaw<L>)
             return Simulation<C, B, L, F, D, U>{std::move(scene_), std::move(contact_), std::move(bond_),
                                                 std::move(law),    std::move(fluid_),   std::move(drag_),
@@ -91,6 +100,28 @@ public:
                                                 std::move(law)};
         else
             return detail::AfterRejectedLaw{};
+    }
+
+    // A filled slot makes a simulation of another type, so none is filled of one that has a name.
+    template <class L>
+    auto contact(L&&) & {
+        return detail::no_slot_of_a_name<L>();
+    }
+    template <class L>
+    auto bond(L&&) & {
+        return detail::no_slot_of_a_name<L>();
+    }
+    template <class L>
+    auto wear(L&&) & {
+        return detail::no_slot_of_a_name<L>();
+    }
+    template <class L>
+    auto fluid(L&&, auto&&...) & {
+        return detail::no_slot_of_a_name<L>();
+    }
+    template <class L>
+    auto force(L&&) & {
+        return detail::no_slot_of_a_name<L>();
     }
 
     // --- running -------------------------------------------------------------------------------

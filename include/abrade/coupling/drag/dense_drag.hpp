@@ -25,7 +25,7 @@ public:
     using Params = CliftGauvin::Params;
 
     DiFelice() = default;
-    explicit DiFelice(Params params) : alone_(params) {}
+    explicit DiFelice(Params params) : alone_(params) {}  // Params{...} alone tells a wrong name
     const Params& params() const noexcept { return alone_.params(); }
 
     /// Of the force 1/2 C rho pi/4 d^2 |u - v| (u - v).

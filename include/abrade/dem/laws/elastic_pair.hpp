@@ -12,6 +12,12 @@ inline void require_poisson(Real value, std::string_view field) {
             {field, "in (-1, 0.5]", "", "concrete has about 0.2, rubber nearly 0.5"}, value);
 }
 
+/// What is softer than foam was most likely not meant in Pa.
+inline void require_in_pascal(Real youngs, std::string_view field) {
+    require(youngs >= 1e3, {field, "at least 1000 Pa", "Pa", "granite has 7e10 Pa: was it meant in GPa?"},
+            youngs);
+}
+
 /// Effective moduli of two elastic materials in contact [Pa]:
 ///   1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2,  1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2,  G = E/(2 (1 + nu))
 /// E Young's modulus [Pa], nu Poisson's ratio [-], G shear modulus [Pa]. K. L. Johnson, Contact Mechanics,

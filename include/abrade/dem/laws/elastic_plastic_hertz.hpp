@@ -71,6 +71,7 @@ public:
         void validate() const {
             require_positive(youngs, "ElasticPlasticHertz.youngs", "Pa",
                              "give that of the material; softening makes the run's softer");
+            require_in_pascal(youngs, "ElasticPlasticHertz.youngs");
             require_poisson(poisson, "ElasticPlasticHertz.poisson");
             require_positive(yield_pressure, "ElasticPlasticHertz.yield_pressure", "Pa",
                              "fit it to a measured restitution");
@@ -111,7 +112,7 @@ public:
         Number deepest = Number(0);                      ///< delta_m [m]
     };
 
-    explicit ElasticPlasticHertz(Params params) : params_(params) {
+    explicit ElasticPlasticHertz(Params params) : params_(params) {  // Params{...} alone tells a wrong name
         params_.validate();
         const auto pair =
             ElasticPair::of(params_.youngs, params_.poisson, params_.youngs_other, params_.poisson_other);

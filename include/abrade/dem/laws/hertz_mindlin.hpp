@@ -62,6 +62,7 @@ public:
 
         void validate() const {
             require_positive(youngs, "HertzMindlin.youngs", "Pa", "1e7 Pa is soft, stone is near 5e10 Pa");
+            require_in_pascal(youngs, "HertzMindlin.youngs");
             require_poisson(poisson, "HertzMindlin.poisson");
             require_restitution(restitution, "HertzMindlin.restitution");
             require_not_negative(friction, "HertzMindlin.friction", "", "0 slides freely");
@@ -95,7 +96,7 @@ public:
         Number stiffness = Number(0);                    ///< k_t when it was stored [N/m]
     };
 
-    explicit HertzMindlin(Params params) : params_(params) {
+    explicit HertzMindlin(Params params) : params_(params) {  // Params{...} alone tells a wrong name
         params_.validate();
         const auto pair =
             ElasticPair::of(params_.youngs, params_.poisson, params_.youngs_other, params_.poisson_other);

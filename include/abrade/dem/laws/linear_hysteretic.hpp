@@ -67,7 +67,7 @@ public:
         Number deepest = Number(0);                      ///< delta_max [m]
     };
 
-    explicit LinearHysteretic(Params params) : params_(params) {
+    explicit LinearHysteretic(Params params) : params_(params) {  // Params{...} alone tells a wrong name
         params_.validate();
         dent_share_ = 1 - square(params_.restitution);
         unloading_ = params_.stiffness / square(params_.restitution);

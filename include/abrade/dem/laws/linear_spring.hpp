@@ -52,7 +52,7 @@ public:
         Vec3Of<Number> spring = Vec3Of<Number>::Zero();  ///< [m]
     };
 
-    explicit LinearSpring(Params params) : params_(params) {
+    explicit LinearSpring(Params params) : params_(params) {  // Params{...} alone tells a wrong name
         params_.validate();
         damping_ratio_ = damping_ratio_without_tension(params_.restitution);
         dashpot_normal_ = 2 * damping_ratio_ * std::sqrt(stiffness());

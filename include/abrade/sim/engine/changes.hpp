@@ -36,8 +36,8 @@ public:
             }
         }
         state_.scene.stones.push_back(stone), state_.stone_id.push_back(p.id[at_of(body)]);
-        state_.accounts.fed_kinetic += p.kinetic_energy(body);
-        state_.accounts.fed_potential += state_.potential_energy(body, p.position[at_of(body)]);
+        state_.accounts.sum.fed_kinetic += p.kinetic_energy(body);
+        state_.accounts.sum.fed_potential += state_.potential_energy(body, p.position[at_of(body)]);
         return p.id[at_of(body)];
     }
 
@@ -45,8 +45,8 @@ public:
         const Index body = body_of(id);
         refuse_concrete(body, "remove");
         const Particles& p = state_.particles;
-        state_.accounts.left_kinetic += p.kinetic_energy(body);
-        state_.accounts.left_potential += state_.potential_energy(body, p.position[at_of(body)]);
+        state_.accounts.sum.left_kinetic += p.kinetic_energy(body);
+        state_.accounts.sum.left_potential += state_.potential_energy(body, p.position[at_of(body)]);
         state_.removed.push_back(body);
     }
 
@@ -61,7 +61,7 @@ public:
         p.kind[at_of(body)] = Kind::stone;
         set_mobility(body, 1 / p.mass[at_of(body)],
                      Vec3((stone.density * stone.clump.principal_moments).cwiseInverse()));
-        state_.accounts.fed_potential += state_.potential_energy(body, p.position[at_of(body)]);
+        state_.accounts.sum.fed_potential += state_.potential_energy(body, p.position[at_of(body)]);
     }
 
     /// Holds what moves: from now on it is fixed where it is.
@@ -71,8 +71,8 @@ public:
         require(p.kind[at_of(body)] == Kind::stone,
                 {"Simulation.hold: id", "of a stone that moves", "", "concrete is held by its bonds"}, id);
         stone_of(id);  // so that it can be let go again
-        state_.accounts.left_kinetic += p.kinetic_energy(body);
-        state_.accounts.left_potential += state_.potential_energy(body, p.position[at_of(body)]);
+        state_.accounts.sum.left_kinetic += p.kinetic_energy(body);
+        state_.accounts.sum.left_potential += state_.potential_energy(body, p.position[at_of(body)]);
         p.kind[at_of(body)] = Kind::fixed;
         p.velocity[at_of(body)].setZero(), p.angular_momentum[at_of(body)].setZero();
         set_mobility(body, 0, Vec3::Zero());
@@ -105,9 +105,9 @@ public:
         state_.contacts.each_touching([&](const auto& touching) {
             if (touching.pair.second != -1 - number) return;
             const auto contact = contact_between(state_.store.lines, state_.scene.walls, touching.pair, 0);
-            state_.accounts.left_stored += law_between(state_.policies.contact, touching.materials)
-                                               .respond(contact, touching.memory)
-                                               .load.stored;
+            state_.accounts.sum.left_stored += law_between(state_.policies.contact, touching.materials)
+                                                   .respond(contact, touching.memory)
+                                                   .load.stored;
         });
         Plane& wall = state_.scene.walls[at_of(number)];
         wall.point = -1e100 * wall.normal;  // nothing is near it
@@ -131,7 +131,7 @@ public:
         };
         const Real before = potential();
         state_.scene.gravity = gravity;
-        state_.accounts.fed_potential += potential() - before;
+        state_.accounts.sum.fed_potential += potential() - before;
     }
 
 private:

@@ -57,11 +57,11 @@ public:
         if (!state.sites.worn_out.empty()) mark_touched(state, near);
         reshape(state, near);
         const Departure departure = departing(state, dt, near);
-        state.accounts.left_stored +=
+        state.accounts.sum.left_stored +=
             state.contacts.keep(state.policies.contact, state.store, state.scene.walls, departure.moved);
         if (departure.any) remove(state, departure);
         if (has_broken_bonds || (P::has_bonds && departure.any))
-            state.accounts.left_stored +=
+            state.accounts.sum.left_stored +=
                 state.network.prune(state.particles, departure.moved, state.particles.centre);
         const Index known = state.particles.bodies();
         supply(state, t, dt);
@@ -241,7 +241,7 @@ private:
         if constexpr (P::has_bonds)
             if (!state.components.empty()) {
                 d.fragments = join_pieces(state, d.gone);
-                state.accounts.lost_bond +=
+                state.accounts.sum.lost_bond +=
                     state.network.drop([&](Index body) { return d.gone[at(body)] != 0; });
             }
         d.any = std::find(d.gone.begin(), d.gone.end(), 1) != d.gone.end();
@@ -277,8 +277,8 @@ private:
             turning = 0.2 * state.particles.mass[at(body)] *
                       store.lines.motion[at(slot)].surface_velocity.squaredNorm();
         }
-        state.accounts.left_kinetic += 0.5 * state.particles.mass[at(body)] * v.squaredNorm() + turning;
-        state.accounts.left_potential += state.potential_energy(body, x - 0.5 * dt * v);
+        state.accounts.sum.left_kinetic += 0.5 * state.particles.mass[at(body)] * v.squaredNorm() + turning;
+        state.accounts.sum.left_potential += state.potential_energy(body, x - 0.5 * dt * v);
         if (state.scene.flow_counter && state.particles.kind[at(body)] == Kind::stone)
             state.cumulative_discharge +=
                 state.particles.volume[at(body)] *
@@ -311,8 +311,8 @@ private:
                 [&](Index body) {
                     const Vec3 before =
                         state.particles.position[at(body)] - 0.5 * dt * state.particles.velocity[at(body)];
-                    state.accounts.fed_kinetic += state.particles.kinetic_energy(body);
-                    state.accounts.fed_potential += state.potential_energy(body, before);
+                    state.accounts.sum.fed_kinetic += state.particles.kinetic_energy(body);
+                    state.accounts.sum.fed_potential += state.potential_energy(body, before);
                 },
                 [&](const Vec3& x, Real reach) { return height_above_standing(state, x, reach); });
     }

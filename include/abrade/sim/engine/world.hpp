@@ -37,7 +37,7 @@ public:
         now_ = t;
         lists_.renew(state_, now_, 0);
         publish();
-        Ledger& start = state_.accounts;
+        Ledger& start = state_.accounts.sum;
         start.kinetic_start = ledger_.kinetic;
         start.potential_start = ledger_.potential;
         start.stored_start = ledger_.stored_contacts + ledger_.stored_bonds;
@@ -67,7 +67,7 @@ public:
             one.potential = state_.potential_energy(b, state_.particles.position[at(b)]);
             return one;
         });
-        ledger_ = state_.accounts;
+        ledger_ = state_.accounts.total();
         book(ledger_, sums.motion);
         const Real by_walls = half.kick * wall_power_;
         ledger_.wall_work += by_walls;
@@ -271,8 +271,9 @@ private:
         make_whole();
         FlowBodies<P> flow(state_);
         fluid.advance(to, flow.bodies()), ++fluid_due_.met;
-        state_.accounts.flow_work += flow.give_back(state_);
-        if constexpr (requires { fluid.solids_took(Real{}); }) fluid.solids_took(state_.accounts.flow_work);
+        state_.accounts.sum.flow_work += flow.give_back(state_);
+        if constexpr (requires { fluid.solids_took(Real{}); })
+            fluid.solids_took(state_.accounts.sum.flow_work);
     }
 
     /// Forces, if asked for, and motion, if asked for, of all slabs. A chunk's first slab comes last: the
@@ -306,7 +307,7 @@ private:
         report_overlap(move ? *move : Move{});
         if (move) {
             book(state_.accounts, all.motion);
-            state_.accounts.wall_work += move->kick * wall_power_;
+            state_.accounts.add(&Ledger::wall_work, move->kick * wall_power_);
             state_.flight.note(move->kick, move->drift, move->time);
             state_.sleep.stirred |= all.motion.stirs;
             fluid_due_.fastest = std::max(std::sqrt(all.motion.fastest2), state_.flight.fastest_now());
@@ -382,20 +383,21 @@ private:
     }
 
     void book(const ContactSums& contacts, const BondSums& bonds) {
-        Ledger& a = state_.accounts;
-        a.lost_normal += contacts.lost_normal + bonds.lost_normal;
-        a.lost_sliding += contacts.lost_tangential + bonds.lost_tangential;
-        a.lost_rolling += contacts.lost_rolling, a.lost_film += contacts.lost_film;
-        a.lost_bond += bonds.lost_bond;
-        a.concrete_lost_normal += contacts.concrete_lost_normal + bonds.concrete_lost_normal;
-        a.concrete_lost_sliding += contacts.concrete_lost_tangential + bonds.concrete_lost_tangential;
+        Accounts& a = state_.accounts;
+        a.add(&Ledger::lost_normal, contacts.lost_normal + bonds.lost_normal);
+        a.add(&Ledger::lost_sliding, contacts.lost_tangential + bonds.lost_tangential);
+        a.add(&Ledger::lost_rolling, contacts.lost_rolling), a.add(&Ledger::lost_film, contacts.lost_film);
+        a.add(&Ledger::lost_bond, bonds.lost_bond);
+        a.add(&Ledger::concrete_lost_normal, contacts.concrete_lost_normal + bonds.concrete_lost_normal);
+        a.add(&Ledger::concrete_lost_sliding,
+              contacts.concrete_lost_tangential + bonds.concrete_lost_tangential);
         stored_contacts_ = contacts.stored, stored_bonds_ = bonds.stored;
         state_.broken_tension += bonds.broken_tension, state_.broken_shear += bonds.broken_shear;
         state_.pattern_changed |= bonds.broken_tension + bonds.broken_shear > 0;
         too_deep_ |= contacts.deepest > overlap_limit * (1 + state_.size_ratio);
         if (bonds.deepest > overlap_limit) report(Diagnosis(state_).crushed_bond(bonds));
     }
-    void book(Ledger& to, const MotionSums& motion) const { abrade::book(to, motion, state_.scene.gravity); }
+    void book(auto& to, const MotionSums& motion) const { abrade::book(to, motion, state_.scene.gravity); }
 
     /// What is first stays, but for overlaps: the deepest counts.
     void report(const Failure& found) noexcept {

@@ -103,7 +103,7 @@ void add_fragment(State<P>& state, const Fragment& fragment) {
     const Index body = p.add(fragment.clump, state.scene.concrete->density, fragment.state, Kind::grain);
     p.angular_momentum[static_cast<std::size_t>(body)] = fragment.angular_momentum;
     p.material.back() = state.scene.concrete->material;
-    state.accounts.lost_asleep += fragment.kinetic - p.kinetic_energy(body);
+    state.accounts.sum.lost_asleep += fragment.kinetic - p.kinetic_energy(body);
 }
 
 }  // namespace abrade

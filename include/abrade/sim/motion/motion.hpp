@@ -62,12 +62,13 @@ struct MotionSums {
     }
 };
 
-/// Books the works of moving bodies.
-inline void book(Ledger& to, const MotionSums& motion, const Vec3& gravity) noexcept {
-    to.interaction_work += motion.interaction_work();
-    to.gravity_work += motion.gravity_work(gravity);
-    to.drag_work += motion.drag, to.drag_input += motion.drag_input;
-    to.buoyancy_work += motion.buoyancy, to.flow_work += motion.flow, to.force_work += motion.force;
+/// Books the works of moving bodies in a Ledger or in Accounts.
+void book(auto& to, const MotionSums& motion, const Vec3& gravity) noexcept {
+    add(to, &Ledger::interaction_work, motion.interaction_work());
+    add(to, &Ledger::gravity_work, motion.gravity_work(gravity));
+    add(to, &Ledger::drag_work, motion.drag), add(to, &Ledger::drag_input, motion.drag_input);
+    add(to, &Ledger::buoyancy_work, motion.buoyancy), add(to, &Ledger::flow_work, motion.flow);
+    add(to, &Ledger::force_work, motion.force);
 }
 
 /// What contacts and weight do to the water that a body takes along, its added mass. A flow that resolves

@@ -16,9 +16,9 @@ void wrap(State<P>& state) {
     const auto back = [&](Vec3& x, Index body) {
         const Vec3 shift = space.way_back(x);
         if (shift.isZero(0)) return shift;
-        state.accounts.fed_potential -= state.potential_energy(body, x);
+        state.accounts.sum.fed_potential -= state.potential_energy(body, x);
         x += shift;
-        state.accounts.fed_potential += state.potential_energy(body, x);
+        state.accounts.sum.fed_potential += state.potential_energy(body, x);
         return shift;
     };
     std::vector<char> outside(at(store.spheres()));

@@ -183,7 +183,7 @@ bool fall_asleep(State<P>& state, const Move& half, Real interval, MotionSums& s
             sleep.stirred |= own.rouse;
         } else if (now.touches) {
             publish_body(state, b, half, sums);
-            state.accounts.lost_asleep += state.particles.kinetic_energy(b);
+            state.accounts.sum.lost_asleep += state.particles.kinetic_energy(b);
             own = {.asleep = true, .watched = true, .support = now.sum, .strongest = now.strongest};
             detail::put_to_sleep(state, b);
             fell = true;

@@ -39,4 +39,23 @@ void require_laws_for(const Table& table, const Particles& particles, const Scen
         }
 }
 
+/// Throws InputError where a material has a number though one law serves all contacts.
+inline void require_one_material(const Scene& scene) {
+    const auto check = [](Index material, const std::string& field) {
+        require(material == 0,
+                {field, "0 where one law serves all contacts", "",
+                 "hand contact() a MaterialPairs table, whose number(name) gives it"},
+                material);
+    };
+    for (std::size_t n = 0; n < scene.stones.size(); ++n)
+        if (scene.stones[n].state.material != 0)
+            check(scene.stones[n].state.material, "Scene.stones[" + std::to_string(n) + "].material");
+    for (std::size_t n = 0; n < scene.walls.size(); ++n)
+        if (scene.walls[n].material != 0)
+            check(scene.walls[n].material, "Scene.walls[" + std::to_string(n) + "].material");
+    if (scene.concrete) check(scene.concrete->material, "Scene.concrete.material");
+    if (scene.feed)
+        for (const StoneClass& stones : scene.feed->classes) check(stones.material, "StoneClass.material");
+}
+
 }  // namespace abrade

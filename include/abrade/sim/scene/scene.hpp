@@ -207,6 +207,11 @@ private:
     void validate(const Stone& stone, const std::string& name) const {
         const BodyState& state = stone.state;
         require_positive(stone.density, name + ".density", "kg/m3", "stone has 2500 to 2800");
+        for (const auto& [speed, what, unit] :
+             {std::tuple(state.velocity.norm(), ".velocity", "m/s"),
+              std::tuple(state.angular_velocity.norm(), ".angular_velocity", "rad/s")})
+            require(!stone.fixed || !(speed > 0),
+                    {name + what, "0, for it is fixed", unit, "leave it out, or let the stone move"}, speed);
         require(!stone.clump.members.empty(),
                 {name + ".clump", "of at least one sphere", "spheres", "make clumps with make_clump()"}, 0);
         for (std::size_t m = 0; m < stone.clump.members.size(); ++m) {

@@ -121,4 +121,28 @@ struct Ledger {
     }
 };
 
+/// A ledger that adds up over millions of steps: of each column what rounding took is kept beside the sum,
+/// and counts in the total. A. Neumaier 1974, doi:10.1002/zamm.19740540106.
+struct Accounts {
+    Ledger sum, rounded_off;
+
+    void add(Real Ledger::*column, Real x) noexcept {
+        Real& s = sum.*column;
+        const Real next = s + x;
+        rounded_off.*column += std::abs(s) >= std::abs(x) ? (s - next) + x : (x - next) + s;
+        s = next;
+    }
+    Ledger total() const {
+        Ledger all = sum;
+        Ledger::fields([&](auto, auto, Real Ledger::*column) { all.*column += rounded_off.*column; });
+        return all;
+    }
+    static void fields(auto&& field) {
+        field("sum", &Accounts::sum), field("rounded_off", &Accounts::rounded_off);
+    }
+};
+/// The same of a ledger alone.
+inline void add(Ledger& to, Real Ledger::*column, Real x) noexcept { to.*column += x; }
+inline void add(Accounts& to, Real Ledger::*column, Real x) noexcept { to.add(column, x); }
+
 }  // namespace abrade

@@ -30,7 +30,14 @@ struct State {
                 particles.add(stone.clump, stone.density, at, stone.fixed ? Kind::fixed : Kind::stone);
             stone_id.push_back(particles.id[static_cast<std::size_t>(body)]);
         }
-        if constexpr (P::has_materials) require_laws_for(policies.contact, particles, scene);
+        if constexpr (P::has_materials)
+            require_laws_for(policies.contact, particles, scene);
+        else
+            require_one_material(scene);
+        if (!P::has_fluid && particles.bodies() == 0 && !scene.concrete && !scene.feed)
+            fail({"Scene.stones", "at least one, or concrete or a feed", "",
+                  "add_sphere() and add_stone() add bodies"},
+                 "none");
     }
 
     P policies;
@@ -55,7 +62,7 @@ struct State {
     Index let_go_count = 0;                        ///< spheres of standing concrete that came loose
     std::vector<BondGraph::Component> components;  ///< that came loose and are to go on as clumps
     std::optional<Feed> feed;
-    Ledger accounts;  ///< works and losses up to the velocities that the lines hold
+    Accounts accounts;  ///< works and losses up to the velocities that the lines hold
     /// [body] that drag or the user's force was last reckoned with [m/s]; empty without either.
     std::vector<Vec3> velocity_in_fluid;
     std::vector<FlowLoad> flow_load;  ///< [body] from the last exchange with a fluid that resolves bodies
@@ -218,7 +225,7 @@ struct State {
         particles.inverse_inertia[at(body)].setConstant(1 / inertia);
         if (const Index sphere = particles.first_sphere[at(body)]; sphere < store.spheres())
             store.lines.motion[at(store.slot_of(sphere))].inverse_mass = 1 / mass;
-        accounts.fed_potential += potential_energy(body, particles.position[at(body)]);
+        accounts.sum.fed_potential += potential_energy(body, particles.position[at(body)]);
         leave_place(site);
         loosened = true;
     }
