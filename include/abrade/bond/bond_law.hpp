@@ -7,7 +7,7 @@ namespace abrade {
 
 enum class FailureMode : std::uint8_t { intact, tension, shear };
 
-/// The fates of a pack of bonds.
+/// The failure modes of a pack of bonds.
 struct PackFailureMode {
     PackMask tension{}, shear{};
 };
@@ -16,12 +16,14 @@ struct PackFailureMode {
 template <class Number>
 struct BondKinematicsOf {
     Vec3Of<Number> normal{Number(0), Number(0), Number(1)};  ///< unit, from j to i
-    Number compression = Number(0);                    ///< rest length - length [m]; negative in tension
-    Vec3Of<Number> velocity = Vec3Of<Number>::Zero();  ///< of i relative to j, halfway between them [m/s]
-    Number radius = Number(0);                         ///< of the bonded spheres (the smaller) [m]
-    Number length = Number(0);                         ///< between their centres, unloaded [m]
-    Number effective_mass = Number(0);                 ///< [kg]
-    Real time_step = 0;                                ///< [s]
+    Number compression = Number(0);  ///< rest length - length [m]; negative in tension
+    /// Of i relative to j at the contact point [m/s]: the arms share the distance of the centres in
+    /// proportion to the radii.
+    Vec3Of<Number> velocity = Vec3Of<Number>::Zero();
+    Number radius = Number(0);          ///< of the bonded spheres (the smaller) [m]
+    Number length = Number(0);          ///< between their centres, unloaded [m]
+    Number effective_mass = Number(0);  ///< [kg]
+    Real time_step = 0;                 ///< [s]
     Vec3Of<Number> displacement =
         Vec3Of<Number>::Zero();  ///< of i relative to j, over the step that led here [m]
 

@@ -36,7 +36,7 @@ inline BondKinematics lane_of(const BondKinematicsOf<Pack>& b, int lane) noexcep
 /// How the two of a bond moved when last seen, the first relative to the second.
 template <class Law, class Number>
 struct SeenEnds {
-    Vec3Of<Number> velocity = Vec3Of<Number>::Zero();  ///< halfway between them [m/s]
+    Vec3Of<Number> velocity = Vec3Of<Number>::Zero();  ///< at the contact point [m/s]
 };
 template <CarriesMoments Law, class Number>
 struct SeenEnds<Law, Number> {

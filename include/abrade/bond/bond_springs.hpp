@@ -94,6 +94,8 @@ public:
             contact, select(pressed, Vec3Of<Number>(normal.force * bond_.normal + tangential.force), none),
             load.force);
         load.stored = select(contact, stored, held);
+        // Where a bond breaks pressed, the tangential dashpot's work of this step is in no loss: it is part
+        // of the integration residue.
         load.lost_bond = select(breaks, max(held + also - stored, zero) + lost_normal,
                                 select(contact, zero, load.lost_bond));
         const Mask old = contact & !breaks;

@@ -37,8 +37,9 @@ struct Unworn {
     Real operator()(Index /*body*/) const noexcept { return 1; }
 };
 
-/// Bonds between single-sphere bodies. A broken bond stays in the network as a frictional contact for as
-/// long as both of its spheres are part of the concrete.
+/// Bonds between single-sphere bodies. A broken bond stays in the network as a frictional contact until it is
+/// open and one of its spheres has come loose (`prune`), or one is gone: a pressed one with a loose end
+/// stays.
 template <BondLaw Law>
 class Network {
 public:

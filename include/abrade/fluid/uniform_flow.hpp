@@ -30,7 +30,8 @@ inline Real normal_depth(const Invert& section, Real discharge, Real manning) {
 /// Uniform flow over an invert. Depth from Manning; the velocity is along x,
 ///   u(y, z) = C ln(1 + (z - z_bed(y)) / z_0),  z_0 = k_s / 30,  k_s = (26 n)^6
 /// (Strickler's roughness height, H. Schlichting's fully rough z_0), with C such that the discharge is met.
-/// Bed shear velocity of the section: sqrt(g R_h S). Water at 10 degrees C unless told otherwise.
+/// Bed shear stress of the section: rho g R_h S; shear velocity at the centre line: sqrt(g h S). Water at 10
+/// degrees C unless told otherwise.
 class UniformFlow {
 public:
     static constexpr std::string_view name = "UniformFlow";

@@ -12,8 +12,8 @@ namespace abrade {
 
 /// All in joules, in two dimensions per metre of width. The balance over any time is
 ///   kinetic + potential - (kinetic_start + potential_start)
-///     = inflow - outflow + sides + body_force + reshaped + solids - viscous - turbulent - wall_friction -
-///     numerical.
+///     = inflow - outflow + boundaries + body_force + reshaped + solids - viscous - turbulent - wall_friction
+///       - solid_friction - numerical.
 /// Every term but `numerical` is measured on its own; `numerical` is the remainder of each step: what
 /// advection, time steps, the surface's reconstruction and the pressure's tolerance lose (below 0: gain).
 /// In a full box `advection` measures the largest part of it on its own, from the fluxes of momentum.

@@ -8,7 +8,7 @@
 
 namespace abrade {
 
-/// Says of a trouble who is in it, where, and what helps. `world` must have its places published.
+/// Says of a failure which body is the reason, where, and what helps. `world` must have its places published.
 template <class World>
 class TroubleText {
 public:

@@ -26,7 +26,8 @@ struct RunError : std::runtime_error {
 struct RunOptions {
     Real end_time = std::numeric_limits<Real>::quiet_NaN();  ///< [s]; must be given
     /// [s]; at most `Simulation::stable_step_now()`. 0: `safety` times the stable step of dense surroundings,
-    /// and shorter where contacts as they stand need it.
+    /// and shorter where contacts as they stand need it. A run is divided into whole steps, so that the last
+    /// ends at `end_time`: either step is shortened slightly where the run is no multiple of it.
     Real time_step = 0;
     Real safety = 0.5;       ///< share of the stable step that is taken [-]
     Real observe_every = 0;  ///< [s]; 0: at the start and at the end only
@@ -37,8 +38,9 @@ struct RunOptions {
     /// Bodies slower than this, centre and rim, that touch something are put to sleep: they take no steps
     /// until something stirs them [m/s]. 0: never. What they still move with is the ledger's `lost_asleep`.
     Real sleep_speed = 0;
-    /// How long they must have been that slow [s]. 0: until a hundredth of gravity would have made them
-    /// faster, 200 sleep_speed / g, and twice as long as their diameter d takes to topple, 2 sqrt(d/g).
+    /// How long they must have been that slow [s]. 0: the longer of 200 sleep_speed / g, twice as long as a
+    /// hundredth of gravity takes to make them faster, and of 2 sqrt(d/g), twice as long as their diameter d
+    /// takes to topple.
     Real sleep_after = 0;
     /// Asked now and then between steps, while a fluid settles too; true ends the run cleanly. The place to
     /// save the simulation from (io/restart.hpp).

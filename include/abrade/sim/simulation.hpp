@@ -220,7 +220,8 @@ public:
         return Concrete::safe_collision_share * wear_.params().acceleration /
                concrete().largest_collision_share();
     }
-    Real sediment_passed() const { return world().cumulative_discharge(); }  ///< the gauge, solid [m3]
+    /// The flow counter, net downstream: solid volume of stones [m3].
+    Real sediment_passed() const { return world().cumulative_discharge(); }
     const auto& world() const {
         if (!world_) throw std::logic_error("Simulation: run it before asking for its state");
         return *world_;

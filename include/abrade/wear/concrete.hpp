@@ -47,7 +47,8 @@ struct WaitingSites {
 }  // namespace detail
 
 /// One entry per lattice site, for as long as the simulation runs; the sphere may be long gone.
-/// Fracture rate gamma_f = fractured / V_omega, in [0, 1].
+/// Fracture rate gamma_f = min(fractured / V_omega, 1); only with `WornOut::recorded` the fractured volume
+/// may exceed V_omega.
 ///
 /// Volume is conserved to round-off: all that `wear` was told is in `worn_volume`, `overflow_volume` or
 /// `waiting_volume`. A site that is gone is a grain on its way: it wears what it still has, the excess is
@@ -55,7 +56,7 @@ struct WaitingSites {
 class Concrete {
 public:
     /// What one collision may wear of its site's V_omega while the result does not depend on the time
-    /// acceleration [-]: less than 1 % goes to overflow in the scenes of docs/verification/convergence.md.
+    /// acceleration [-]: less than 2 % goes to overflow in the scenes of docs/verification/convergence.md.
     static constexpr Real safe_collision_share = 0.5;
 
     Concrete() = default;

@@ -61,10 +61,11 @@ inline void validate(const Overflow& overflow) {
 }
 
 /// What becomes of a sphere at gamma_f = 1. `fines`: it vanishes, mass and energy are booked. `grain`: it
-/// stays as a loose grain. `recorded`: wear is written down only, without limit; the bed is frozen, each
-/// sphere stays as strong as it was, and nothing overflows. `recedes`: as fines, and until then a sphere of
-/// standing concrete sinks towards the next one below, by gamma_f of the way, so that the surface that stones
-/// meet is as deep as the record says and no rougher than its spheres.
+/// stays as a loose grain; on concrete that moves, once its bonds have broken. `recorded`: wear is written
+/// down only, without limit; the bed is frozen, each sphere stays as strong as it was, and nothing overflows.
+/// `recedes`: as fines, and until then a sphere of standing concrete sinks towards the next one below, by
+/// gamma_f of the way, so that the surface that stones meet is as deep as the record says and no rougher than
+/// its spheres.
 enum class WornOut { fines, grain, recorded, recedes };
 
 namespace detail {

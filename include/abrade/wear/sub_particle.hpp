@@ -13,10 +13,11 @@ namespace abrade {
 ///   what is left of the strength: 1 - gamma_f                        [2]
 /// C_w abrasion coefficient [m3/J], beta time acceleration [-], V_omega volume of the sphere's cell [m3].
 ///
-/// dE_nm,ij is the contact law's dissipation (dashpot and slider), summed as it occurs, and so never
-/// negative; elastic energy on loan does not wear. Over a whole collision this is equation [11]'s integral of
-/// f . (v_j - v_i) dt up to the integration residue that the ledger shows. A load at rest loses nothing, so a
-/// static deposit does not wear.
+/// dE_nm,ij is the contact law's dissipation (dashpot and slider; with LinearHysteretic and
+/// ElasticPlasticHertz the dent, too), summed as it occurs, and so never negative; elastic energy on loan
+/// does not wear. Over a whole collision this is equation [11]'s integral of f . (v_j - v_i) dt up to the
+/// integration residue that the ledger shows. A load at rest loses nothing, so a static deposit does not
+/// wear.
 ///
 /// `normal_weight` and `tangential_weight` weigh the two kinds of loss; 1 and 1 is the paper. Field evidence
 /// finds that sliding over-predicts at equal weight (C. Auel, R. M. Boes, L. S. Sumi, 2017).

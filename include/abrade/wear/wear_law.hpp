@@ -14,7 +14,8 @@ struct WearIncrement {
 
 /// A wear law is a pure function of a contact in one step: how it stands, and what the contact law answered.
 /// - `increment` gives the volume worn off *one* of the two bodies; it is never negative; a template on the
-///   number type, as contact laws are;
+///   number type, as contact laws are. Each side that is concrete wears that volume: concrete against
+///   concrete wears twice a law's formula, but for SubParticleAbrasion, which halves the loss;
 /// - `strength_left(fracture)` says what a sphere that is worn to `fracture` in [0, 1] still holds.
 // clang-format off
 template <class W>

@@ -19,11 +19,11 @@ namespace abrade {
 /// surface:
 ///   F = B + beta (u - v) - rho g V grad(surface),
 /// B buoyancy, drag implicit in the body's velocity v. The column loses B and drag, as far as they point
-/// along the plane, over a triangle as wide as a ball of three diameters, or of three cells, to each cell by
-/// the water in it; a body where no water is has none of it. There the volume
-/// below the surface stands under the water, whose surface lies on top of both: it flows as over a bed that
-/// is so much higher, and so the slope's part is taken from it, too. Bodies are not turned, and have no added
-/// mass.
+/// along the plane, over a triangle along each axis that has the variance of a ball of three diameters, or of
+/// three cells where these are wider (half width sqrt(6/5) radii of that ball), to each cell by the water in
+/// it; a body where no water is has none of it. There the volume below the surface stands under the water,
+/// whose surface lies on top of both: it flows as over a bed that is so much higher, and so the slope's part
+/// is taken from it, too. Bodies are not turned, and have no added mass.
 template <DragLaw Drag = CliftGauvin>
 class TwoWayShallow {
 public:

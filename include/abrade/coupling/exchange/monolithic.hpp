@@ -21,8 +21,9 @@ namespace abrade {
 /// implicitly in time,
 ///   du/dt = C nu / h^2 (1 - d) / (1 + d) (v - u),  -1 < d < 1,
 /// and its body takes the impulse; C is calibrated on the drag of a sphere at Re 20. Where bodies leave less
-/// than a tenth of a face the water sticks. How fast a body is when friction acts tells what its added mass
-/// lets it have of its forces: the pressure comes later.
+/// than a tenth of what walls leave of a face, a share of its water sticks to them at least: it rises
+/// linearly from 0 at a tenth to 1 at a closed face. How fast a body is when friction acts tells what its
+/// added mass lets it have of its forces: the pressure comes later.
 ///
 /// Bodies of less than `resolved_from` cells to a diameter are averaged: AveragedBodies.
 template <DenseDragLaw DragOfSmall = DiFelice>
@@ -183,7 +184,7 @@ public:
 
 private:
     /// Share of the way to a body's velocity that friction takes a face's water in a step: bodies share what
-    /// all of them do there. What is left of a face that they nearly close sticks to them.
+    /// all of them do there. Of a face that they nearly close a share sticks to them.
     Real held_by(std::size_t i, const FlowStage& stage) const noexcept {
         constexpr Real sliver = 0.1;  // of what walls leave of a face
         const FaceColumns& f = faces();

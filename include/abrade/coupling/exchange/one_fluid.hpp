@@ -28,18 +28,20 @@ struct WaterDensity {
     static Real of(const FlowBody&, Real water) noexcept { return water; }
 };
 
-/// One velocity for water and solids. With sigma, the share of a face's control volume that bodies cover, and
-/// rho = (1 - sigma) rho_w + sigma rho_s (MixtureDensity: S. Fukuoka et al. 2014) or rho_w (WaterDensity:
-/// T. Kajishima & S. Takiguchi 2002, doi:10.1016/S0142-727X(02)00159-5), the pressure makes
-///   u = [(1 - sigma) rho_w u* + sigma rho_s v* - dt grad p] / rho
+/// One velocity for water and solids. sigma is the share of a face's control volume that bodies cover,
+/// sigma_r that of their cores, bodies whose surface is `retracted`. With the densities
+///   rho = (1 - sigma) rho_w + sigma rho_s,  rho_r = (1 - sigma_r) rho_w + sigma_r rho_s
+/// (MixtureDensity: S. Fukuoka et al. 2014) or rho_w for both (WaterDensity: T. Kajishima & S. Takiguchi
+/// 2002, doi:10.1016/S0142-727X(02)00159-5) the pressure makes
+///   u = [(1 - sigma_r) rho_w u* + sigma_r rho_s v*] / rho_r - dt grad p / rho
 /// free of divergence; u* is the water's velocity and v* the body's by all but the pressure (WaterDensity: u*
 /// is that of both). The integral of -grad p + div(2 mu S) over the body's place moves it, and its rigid
-/// velocity v = V + W x r replaces what is there,  u += sigma_f (v - u),  implicit in V and W. What water
+/// velocity v = V + W x r replaces what is there,  u += sigma_r (v - u),  implicit in V and W. What water
 /// gains by mixing and replacing its body loses, so momentum is conserved.
 ///
-/// Water that sticks in cells that a body covers in part makes it larger than it is. sigma_f, which holds it,
-/// is therefore the share of a body whose surface is `retracted`. Of a body at the surface, what is below
-/// carries in rho what is above.
+/// Water that sticks in cells that a body covers in part makes it larger than it is: velocities are therefore
+/// mixed and replaced by the cores' shares. The density under the pressure counts the full shares; of a body
+/// at the surface, what is below carries in rho what is above.
 ///
 /// Below water MixtureDensity is stable from a ratio of 0.01 to 8 (tried). With WaterDensity the pressure
 /// moves a body as heavy as water, and what it lacks follows a step later: a body much lighter than water

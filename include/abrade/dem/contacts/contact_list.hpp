@@ -1,5 +1,5 @@
 #pragma once
-// All contacts: from near pairs to sections, and what pairs remember while lists are renewed.
+// All contacts: from Verlet pairs to sections, and what pairs remember while lists are renewed.
 
 #include <abrade/dem/contacts/contact_section.hpp>
 #include <abrade/dem/store/sphere_store.hpp>
@@ -99,7 +99,7 @@ public:
         return gone;
     }
 
-    /// Finds near pairs in a store that has just been arranged; makes the images that they and `requests`
+    /// Finds Verlet pairs in a store that has just been arranged; makes the images that they and `requests`
     /// need. `holds(first, second)` [sphere] says which pairs are looked after elsewhere.
     template <class Holds>
     void rebuild(SphereStore& store, const Build& build, std::vector<SphereStore::ImageRequest> requests,
@@ -119,7 +119,7 @@ public:
         share_out(store, by_own_slot(listed, store.spheres()), kept_by_sphere(build.particles.spheres()));
     }
 
-    /// Picks the candidates of all sections: what may touch before surfaces have come `skin` [m] nearer.
+    /// Picks the inner lists of all sections: what may touch before surfaces have come `skin` [m] nearer.
     /// Pairs that both rest (`rests` [slot, images too], empty: none) are not among them.
     void refine(const HotArrays& lines, std::span<const Plane> planes, Real skin,
                 std::span<const char> rests = {}) {
@@ -154,7 +154,8 @@ public:
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
 
-    /// A near pair on its way into a section: `own` lies in the section's slab, `other` there or in the next.
+    /// A Verlet pair on its way into a section: `own` lies in the section's slab, `other` there or in the
+    /// next.
     struct Listed {
         Index section = 0, chunk = 0, own = 0, other = 0;  ///< slots
         Index spheres_low = 0, spheres_high = 0;           ///< lasting indices

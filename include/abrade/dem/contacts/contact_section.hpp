@@ -1,5 +1,5 @@
 #pragma once
-// The contacts of a step: near pairs slab by slab, those of them that may touch soon in packs, and what they
+// The contacts of a step: Verlet pairs slab by slab, the inner pairs among them in packs, and what these
 // remember.
 
 #include <abrade/dem/contacts/contact_kernel.hpp>
@@ -38,8 +38,7 @@ struct ContactKind {
     auto operator<=>(const ContactKind&) const = default;
 };
 
-/// Pairs within the skin, of them those evaluated in each step, and of them those that touch; contacts at
-/// rest.
+/// Verlet pairs (`near`), inner pairs, and of these those that touch; contacts at rest.
 struct ContactCensus {
     std::size_t near = 0, inner_pairs = 0, touching = 0, at_rest = 0;
     ContactCensus& operator+=(const ContactCensus& o) noexcept {
@@ -67,8 +66,9 @@ struct TouchingContact {
     SeenMotion<Law, Real> before{};
 };
 
-/// The contacts that one slab is in charge of. `near` pairs are those within the skin of the list; of them
-/// `refine` picks candidates, those that may touch before it is called again, and only they are evaluated.
+/// The contacts that one slab is in charge of. Verlet pairs (`near`) are those within the skin of the list;
+/// of them `refine` picks the inner list, those that may touch before it is called again, and only inner
+/// pairs are evaluated.
 template <ContactLaw Law>
 class ContactSection {
 public:
@@ -126,8 +126,8 @@ public:
         }
     }
 
-    /// Evaluates the law once for each candidate, commits its memory and adds its answer to the loads. `laws`
-    /// is a Law, or a table of them by materials.
+    /// Evaluates the law once for each inner pair, commits its memory and adds its answer to the loads.
+    /// `laws` is a Law, or a table of them by materials.
     template <class Laws, class Wear>
     ContactSums respond(const Laws& laws, const Wear& wear, std::span<const Plane> planes, HotArrays& lines,
                         const ContactStep& step) noexcept {
@@ -173,7 +173,7 @@ public:
                                        detail::memory_of_lane<Seen>(pack.before, lane)});
         }
     }
-    /// Calls `visit(pair)` for each candidate.
+    /// Calls `visit(pair)` for each inner pair.
     template <class Visit>
     void each_candidate(Visit&& visit) const {
         for (const Run& run : runs_)
@@ -201,7 +201,7 @@ private:
         std::size_t kind, first, last;
     };
 
-    /// Whether the surfaces of near pair n are nearer than `skin` [m], or half of it where one never moves.
+    /// Whether the surfaces of Verlet pair n are nearer than `skin` [m], or half of it where one never moves.
     bool are_within(Real skin, const HotArrays& lines, std::span<const Plane> planes,
                     std::size_t n) const noexcept {
         const auto [first, second] = near_[n].pair;
@@ -227,7 +227,7 @@ private:
         filled_ = lanes, inner_pairs_ = touching_ = at_rest_ = 0;
     }
 
-    /// Puts near pair n, which had `old` among the lanes before, into the next one.
+    /// Puts Verlet pair n, which had `old` among the lanes before, into the next one.
     void keep_lane(std::size_t n, std::size_t old) {
         const ContactPack<Law>& from = old_packs_[old / lanes];
         const int lane = static_cast<int>(old % lanes);
@@ -242,7 +242,7 @@ private:
             Seen{}, true, true);
     }
 
-    /// Puts near pair n into the next lane; pairs come in the order of their kinds.
+    /// Puts Verlet pair n into the next lane; pairs come in the order of their kinds.
     void add_lane(std::size_t n, const Memory& memory, const Seen& before, bool touched, bool rests = false) {
         std::size_t kind = runs_.empty() ? 0 : runs_.back().kind;
         while (!is_of(near_[n], kinds_[kind])) ++kind;
@@ -290,7 +290,7 @@ private:
     }
 
     std::vector<Near> near_;
-    std::vector<ContactKind> kinds_;  ///< of the near pairs, in their order
+    std::vector<ContactKind> kinds_;  ///< of the Verlet pairs, in their order
     std::vector<ContactPack<Law>> packs_, old_packs_;
     std::vector<Index> lane_;                   ///< [pack x lane] into near_, -1: left over
     std::vector<std::uint8_t> concrete_sides_;  ///< [pack x lane]

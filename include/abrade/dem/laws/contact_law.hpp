@@ -17,8 +17,8 @@ struct ContactKinematics {
     Vec3Of<Number> normal;    ///< unit, from j to i
     Number overlap;           ///< [m], > 0 in contact
     Vec3Of<Number> velocity;  ///< of i relative to j at the contact point [m/s]
-    /// 1/m_i + 1/m_j, one over the effective mass [1/kg]; a law that `damps_free_mass` sees the sum over what
-    /// is free.
+    /// 1/m_i + 1/m_j, one over the effective mass [1/kg]; a law that `damps_free_mass`, and the wear law
+    /// beside it, see the sum over what is free.
     Number inverse_mass;
     Number curvature;  ///< 1/r_i + 1/r_j, one over the effective radius [1/m]
     Real time_step;    ///< [s]

@@ -56,7 +56,8 @@ public:
         Slider slider = Slider::whole_force;
         Real youngs_other = 0;  ///< E of the other partner [Pa]; 0: the same material
         Real poisson_other = 0.25;
-        /// Overlap over radius up to which `stable_dt` is stable [-]. Contacts stiffen as they are pressed.
+        /// Overlap over radius up to which `stable_dt` is stable against an equal sphere [-]: contacts
+        /// stiffen as they are pressed. Against a plane the tangents are sqrt(2) times as stiff.
         Real largest_overlap = 0.01;
         DampingMass damping_mass = DampingMass::both;  ///< what m counts
 

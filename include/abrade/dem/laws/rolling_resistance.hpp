@@ -27,7 +27,9 @@ concept KnowsNormalStiffness = requires(const L& law) {
 ///   Holds nothing at rest: a pile creeps.
 ///
 /// The loss is of its own kind, `lost_rolling`: not sliding, so the library's wear laws take nothing from it.
-/// Throws InputError for parameters out of their range, those of the law included.
+/// With a film between the surfaces take `Lubricated<RollingResistance<L>>`:
+/// `RollingResistance<Lubricated<L>>` does not compile, for Lubricated offers no `normal_stiffness`. Throws
+/// InputError for parameters out of their range, those of the law included.
 template <ContactLaw Law>
 requires KnowsNormalStiffness<Law>
 class RollingResistance {

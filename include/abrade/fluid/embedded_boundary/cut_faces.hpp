@@ -66,12 +66,12 @@ struct FacePair {
 
 /// Of the side between two faces, what walls leave open of it over the distance of the centroids of both
 /// faces along the wall's normal n, that between their centres being 1 [-]:
-///   open_side / r,   r = 1 + n . (m_upper - m_lower) / (n_b h),   1/3 <= r <= 1 (1/2 in two dimensions),
-/// m the centroid of a face's open part from its centre [m], h the distance of the centres along b [m]. In a
-/// uniform shear along a plane wall the velocity grows as the distance from it, so the shear stress is then
-/// nu (u_upper - u_lower) / (h r), exactly, where |n_b| > 1e-3. `walls[0, 1]` are the area vectors of the
-/// walls about the lower and the upper face, `open` their open shares; where they see different planes r is
-/// bounded.
+///   open_side / r,   r = 1 + n . (m_upper - m_lower) / (n_b h),   1/4 <= r <= max(1, r_b),
+/// r_b = 1 + (m_upper - m_lower)_b / h, m the centroid of a face's open part from its centre [m], h the
+/// distance of the centres along b [m]. In a uniform shear along a plane wall the velocity grows as the
+/// distance from it, so the shear stress is then nu (u_upper - u_lower) / (h r), exactly, where |n_b| > 1e-3.
+/// `walls[0, 1]` are the area vectors of the walls about the lower and the upper face, `open` their open
+/// shares; the bounds are for faces that see different planes. Where |n_b| is smaller r is r_b.
 template <int Dim>
 Real open_over_distance(const Point<Dim>& size, FacePair pair, const std::array<Point<Dim>, 2>& walls,
                         const std::array<Real, 2>& open, Real open_side) noexcept {

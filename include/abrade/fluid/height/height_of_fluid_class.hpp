@@ -28,11 +28,12 @@ namespace abrade {
 /// hydrostatic (V. Casulli, Int. J. Numer. Meth. Fluids 30 (1999) 425; G. Stelling & M. Zijlema, doi
 /// 10.1002/fld.595).
 ///
-/// It answers what VolumeOfFluid does, in the same units; it has no surplus but where a column reaches the
-/// top of the box. It knows no film between dry cells that leaves its bed, no void, no spray. Where two
-/// columns differ by more than `Params::steepest` times their distance and the difference would grow (the
-/// water wants to overturn), it grows by less; the potential energy that this takes is booked
-/// (`overturning()`), and a run in which too much of the surface is held so stops.
+/// It answers what VolumeOfFluid does, in the same units; it has no volume defect but where a column reaches
+/// the top of the box, and below a surface that stands within a solid or under one. It knows no film between
+/// dry cells that leaves its bed, no void, no spray. Where two columns differ by more than `Params::steepest`
+/// times their distance and the difference would grow (the water wants to overturn), it grows by less; the
+/// potential energy that this takes is booked (`overturning()`), and a run in which too much of the surface
+/// is held so stops.
 template <int Dim>
 class HeightOfFluid {
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner,
@@ -186,7 +187,8 @@ public:
     std::span<const SolidVolume> solid_moved() const noexcept { return solid_moved_; }  ///< part of it
     const Field<Real>& volume_defect() const noexcept { return volume_defect_; }
     Field<Real>& volume_defect() noexcept { return volume_defect_; }
-    bool has_volume_defect() const noexcept { return brim_; }  ///< some column reaches the top of the box
+    /// Some column reaches the top of the box, or has its surface within a solid or under one.
+    bool has_volume_defect() const noexcept { return brim_; }
     Real full() const noexcept { return 1 - wisp; }
     Real void_inside_water() const noexcept { return wisp; }
     const WetRows<Dim>& wet() const noexcept { return wet_; }

@@ -71,8 +71,8 @@ public:
             find_known(grid, params, walls);
     }
 
-    /// `liquid_fraction`: liquid in a cell [-], below 0 of which there are no eddies; with `rows`, that hold
-    /// it. None: all cells are full.
+    /// `liquid_fraction`: liquid in a cell [-], up to 0.01 of which there are no eddies (`least_liquid`);
+    /// with `rows`, that hold it. None: all cells are full.
     void find(const FaceField<Dim, State>& u, const VelocityBoundaries<Dim>& boundaries,
               const WetRows<Dim>* rows = nullptr, const Field<Real>* liquid_fraction = nullptr) {
         const WetRows<Dim>& looked_at = rows ? *rows : all_;

@@ -11,9 +11,10 @@ namespace abrade {
 /// One stage, for the cell around each face (control volume V of component a):
 ///   result = kept velocity + (1 - kept) ((M_before start - dt/V sum over its sides A G) / M + dt g_a) + w
 ///   dp/dx_a, G = W u_face - (nu + nu_t) du/dn,
-/// u_face by an advection scheme, W what carries: a velocity, or the liquid that went through in the step. M
-/// is the share of V that liquid fills, by which momentum goes with the same fluxes as the liquid; 1 without
-/// a surface. kept = 0 for the first stage, 1/2 for the second: Heun's method. `result` may be `start`.
+/// u_face by an advection scheme, W the advecting flux: a velocity, or the liquid that went through in the
+/// step. M is the share of V that liquid fills, by which momentum goes with the same fluxes as the liquid; 1
+/// without a surface. kept = 0 for the first stage, 1/2 for the second: Heun's method. `result` may be
+/// `start`.
 ///
 /// What flows into a volume in the second stage has got the first one's acceleration b = g - dp/dx_a already;
 /// what was in it gets that here, and a volume that fills or empties moves as one that does not:
@@ -41,7 +42,7 @@ struct MomentumStage {
     const Field<State>* liquid_fraction = nullptr;  ///< at its end; none: all cells are full
     const FaceField<Dim>* aperture = nullptr;  ///< share of each face that walls leave open [-]; none: all
     /// [a][b] of the sides along b of component a's control volumes: the share that walls leave open over the
-    /// distance between the centroids of what they leave open of both faces [1/cell]; with open_area.
+    /// distance between the centroids of what they leave open of both faces [1/cell]; with aperture.
     const PerAxis<FaceField<Dim, float>, Dim>* open_friction = nullptr;
     const Field<State>* eddy_viscosity = nullptr;  ///< nu_t of cells, ghosts filled [m2/s]; where Eddies
     /// What the pressure of the step before pushes more than over the distance of the centres, in dt [m/s]; 0
@@ -124,7 +125,7 @@ public:
 
 private:
     Offset room(int rows) const noexcept { return Offset{pitch_} * rows; }
-    /// 1 over what turns a carrier of cells at a level into a velocity.
+    /// 1 over what turns an advecting flux of cells at a level into a velocity.
     Real per_carrier(const Grid<Dim>& grid, int axis, int level) const noexcept {
         if (s_.carried_in == 0) return 1;
         Real area = 1;

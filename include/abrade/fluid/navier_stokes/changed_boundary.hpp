@@ -19,9 +19,9 @@ struct WaterShares {
 ///
 /// Columns settle at once: what opens below water is filled from the top of the water above it, what closes
 /// pushes it up there. A void at the bed would stay, for no pressure fills it. Below a roof, or where nothing
-/// presses down, a full cell stays full, and what it has more room for or less is its surplus, which the next
-/// projection asks from beside or drives out; one that opens there amid full cells is full as well, and lacks
-/// all of it. A cell at the surface keeps what it holds.
+/// presses down, a full cell stays full, and what it has more room for or less is its volume defect, which
+/// the next projection asks from beside or drives out; one that opens there amid full cells is full as well,
+/// and lacks all of it. A cell at the surface keeps what it holds.
 /// Throws InputError where the liquid of a cell that closes finds no room above or beside it, and where it
 /// needs more than the room of a box that nothing leaves.
 template <int Dim, class Liquid = VolumeOfFluid<Dim>>

@@ -341,7 +341,7 @@ private:
             eddies_->find(velocity_, boundaries_, rows(), liquid_fraction());
     }
 
-    /// What carries the water, from its velocity.
+    /// The advecting velocity of water and solids, from the water's.
     void mix(const FaceField<Dim, State>& u, auto&& with_solids) requires Solids::present {
         boundaries_.copy(u, mixture_, rows());
         with_solids();

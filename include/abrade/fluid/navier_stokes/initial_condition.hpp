@@ -30,7 +30,7 @@ void give_velocity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, Fa
             if (std::abs(value) > params.velocity_limit && holds_water())
                 fail({velocity_at<Dim>("GridFluid.velocity", a, x, params.start_time),
                       "at most GridFluid.velocity_limit, " + short_text(params.velocity_limit), "m/s",
-                      "raise fastest if it is meant"},
+                      "raise velocity_limit if it is meant"},
                      short_text(value));
             u[a][c] = static_cast<State>(value);
         }

@@ -1,5 +1,5 @@
 #pragma once
-// Water below a free surface: where it is, what it touches, and what carries its momentum.
+// Water below a free surface: where it is, what it touches, and the advecting flux of its momentum.
 
 #include <abrade/fluid/embedded_boundary/closed_faces.hpp>
 #include <abrade/fluid/embedded_boundary/open_friction.hpp>
@@ -199,15 +199,16 @@ public:
         return taken;
     }
 
-    /// In a step's second stage: in the first one the old pressure pushed what carries other faces. The new
-    /// one is yet to push them, so they begin with what they had of their own there: what flowed to them, and
-    /// its fall.
+    /// In a step's second stage: in the first one the old pressure pushed master faces. The new one is yet to
+    /// push them, so slaved faces begin with what they had of their own there: what flowed to them, and its
+    /// fall.
     void let_go(FaceField<Dim>& velocity) const { extension_.give_own(velocity); }
 
-    /// After `find`, before the pressure is: what rides on a face gives it its momentum, as in an inelastic
-    /// impact. What begins to ride in this step may only slow it down: what it is faster by it had for
-    /// nothing when it began to move by itself, for a pressure that ends at a surface near a cell's centre
-    /// pushes next to no mass there. Given on, waves would gain energy however short the step.
+    /// After `find`, before the pressure is: slaved faces give their master face their momentum, as in an
+    /// inelastic impact. A face that is slaved from this step on may only slow its master down: what it is
+    /// faster by it had for nothing when it began to move by itself, for a pressure that ends at a surface
+    /// near a cell's centre pushes next to no mass there. Given on, waves would gain energy however short the
+    /// step.
     void load_masters(FaceField<Dim>& velocity, const Field<std::uint8_t>& was_wet);
 
     /// To the bit.
@@ -228,7 +229,7 @@ public:
         find_rows(), find_liquid_fraction();
     }
 
-    /// Puts back fractions and surplus as they were saved, in the rows of then, after so many steps.
+    /// Puts back fractions and volume defects as they were saved, in the rows of then, after so many steps.
     void restore(const Field<Real>& fraction, const Field<Real>& volume_defect, const WetRows<Dim>& rows,
                  Index steps) {
         liquid_.set_steps(steps);
@@ -276,7 +277,7 @@ private:
         }
     }
     const Layout<Dim>& layout() const noexcept { return grid_->layout(); }
-    /// Of cells, in shares of which the liquid's surplus is told; none: all.
+    /// Of cells, in shares of which the liquid's volume defect is told; none: all.
     const Field<Real>* room() const noexcept {
         if constexpr (!is_height) return liquid_.room();
         return walls_ ? &walls_->open_fraction() : nullptr;

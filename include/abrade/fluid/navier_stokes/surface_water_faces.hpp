@@ -1,5 +1,5 @@
 #pragma once
-// Faces at and beside the surface: what carries them in a stage, what they give to others.
+// Faces at and beside the surface: their advecting flux in a stage, what slaved ones give to master faces.
 
 #include <abrade/fluid/navier_stokes/surface_water_class.hpp>
 

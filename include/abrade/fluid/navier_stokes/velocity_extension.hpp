@@ -22,13 +22,13 @@ struct WaterFace {
 
 /// Faces between dry cells get the mean of those beside them that are nearer to the water, layer by layer
 /// outward, as far as the stencils of the next step reach. Liquid among them:
-/// - beside a face of a wet cell it rides on that, its carrier;
-/// - farther off, where walls cut no cell, it flies on as it does: drops and sheets thinner than a cell;
-/// - on walls that cut cells, where a surface ends in a wedge of several cells that have no pressure, it has
-///   a velocity of its own, from which the pressure of the water takes what moves the wedge towards it and
-///   no more: v = own + push, push between 0 and -own,
+/// - beside a face of a wet cell (first layer) a face is slaved to that, its master face;
+/// - in the second and third layer, with walls or without, and along cells that walls cut up to layer `wedge`
+///   (a surface ends there in several cells that have no pressure), it has a velocity of its own, which the
+///   pressure of the water may only reduce: v = own + push, push between 0 and -own,
 ///   push: the change of what the layers carry to it. Liquid of other faces could otherwise gain a speed
-///   whose momentum no one gave.
+///   whose momentum no one gave;
+/// - farther off it flies on as it does: drops and sheets thinner than a cell.
 /// Same bits for any number of threads.
 template <int Dim>
 class VelocityExtension {
@@ -121,7 +121,7 @@ public:
         }
     }
 
-    /// Faces that others carried begin as they were left by themselves.
+    /// Slaved faces and films begin with the velocities of their own.
     template <class State>
     void give_own(FaceField<Dim, State>& u) const {
         for (int a = 0; a < Dim; ++a) {
@@ -153,10 +153,10 @@ public:
     /// A face between dry cells that hold liquid: it moves as the mean of the faces of wet cells beside it.
     struct SlavedFace {
         Offset face = 0, master = 0;
-        Real share = 0;  ///< of its liquid that this carrier bears [-]
+        Real share = 0;  ///< of its liquid that this master face bears [-]
         Real own = 0;    ///< what it moved at by itself in the last extension [m/s]
     };
-    /// By the planes of their carriers, those of a carrier one after the other; `own` is not theirs.
+    /// By the planes of their master faces, those of a master one after the other; `own` is not theirs.
     const std::vector<std::vector<SlavedFace>>& carried(int a) const noexcept { return carried_[a]; }
 
     static void fields(auto&& field) {
@@ -268,7 +268,7 @@ private:
         });
     }
 
-    /// Farther along water on walls; what is not reached flies on.
+    /// Farther along water on walls; what no layer has reached flies on, the others are films.
     void find_wedges(int a) {
         for (int layer = layers; layer < wedge; ++layer) {
             fill_periodic(state_[a], layout_, boundaries_);
@@ -328,7 +328,7 @@ private:
         return face;
     }
 
-    /// Those of the first layer that hold liquid; and again by their carriers' planes.
+    /// Those of the first layer that hold liquid; and again by the planes of their master faces.
     void find_riders(int a, const Water& water) {
         water.rows.for_each_plane([&](int plane) {
             std::vector<SlavedFace>& slaved = slaved_[a][static_cast<std::size_t>(plane)];
@@ -367,7 +367,7 @@ private:
             block_of_planes);
     }
 
-    /// Faces that hold liquid and do not ride wait for what is carried to them.
+    /// Faces that hold liquid and are not slaved wait for what is carried to them.
     void find_liquid(int a, const Water& water) {
         const Offset back = layout_.stride[a];
         water.rows.for_each_row([&](int plane, int row, const RowRange& r) {
@@ -396,7 +396,7 @@ private:
     PerAxis<PerAxis<std::vector<std::vector<Mean>>, wedge>, Dim> means_;   ///< [component][layer][plane]
     PerAxis<std::vector<std::vector<SlavedFace>>, Dim> slaved_, carried_;  ///< [component][plane]
     PerAxis<std::vector<Film>, Dim> films_;
-    std::vector<std::vector<Offset>> waiting_;  ///< [plane] faces of water on walls
+    std::vector<std::vector<Offset>> waiting_;  ///< [plane] faces with liquid that are not slaved
 };
 
 }  // namespace abrade

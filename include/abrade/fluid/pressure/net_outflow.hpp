@@ -33,7 +33,7 @@ public:
         }
     }
 
-    /// Without walls shares are not read, nor are volumes and surplus where there is none.
+    /// Without walls shares are not read, nor are volumes and volume defects where there are none.
     struct Shares {
         const FaceField<Dim>* aperture;
         const Field<Real>* open_fraction;

@@ -23,9 +23,9 @@ struct GridFluidParams {
     typename Grid<Dim>::Params grid{};
     BoundaryConditions<Dim> boundaries{};       ///< walls unless told otherwise
     BoundaryVelocity<Dim> boundary_velocity{};  ///< of walls and of what flows in; none: at rest
-    bool steady_boundaries = true;              ///< side_velocity does not depend on time
-    /// What flows in at the start [m3/s]; in two dimensions [m2/s]: side_velocity is multiplied by what makes
-    /// the open, wet part of the faces carry it. 0: as side_velocity says.
+    bool steady_boundaries = true;              ///< boundary_velocity does not depend on time
+    /// What flows in at the start [m3/s]; in two dimensions [m2/s]: boundary_velocity is multiplied by what
+    /// makes the open, wet part of the faces carry it. 0: as boundary_velocity says.
     Real inflow_discharge = 0;
     /// Distance from walls inside the box, > 0 in the water (WallShape); none: no walls. Steeper functions
     /// are found out, but for one that levels off near the wall: divide it by its steepest slope. Called from

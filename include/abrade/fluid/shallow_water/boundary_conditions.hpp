@@ -70,7 +70,7 @@ public:
     }
 
     /// Bed of the ghost cells: mirrored in a wall, repeated in periodic space, else carried on in a straight
-    /// line.
+    /// line where it falls outward, level where it rises.
     void extend_bed(const ShallowGrid<Dim>& grid, CellColumn& column) const {
         for (Index k = -corner(); k < count_ + corner(); ++k)
             for (Index g = 1; g <= ShallowGrid<Dim>::ghosts; ++g) {

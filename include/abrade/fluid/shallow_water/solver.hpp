@@ -178,7 +178,7 @@ private:
                         require(false,
                                 {field,
                                  "within ShallowWater.velocity_limit (" + to_text(p.velocity_limit) + " m/s)",
-                                 "m/s", "raise fastest if it is meant"},
+                                 "m/s", "raise velocity_limit if it is meant"},
                                 u);
                     }
                     start.speed[a][k] = u;

@@ -284,7 +284,8 @@ void VolumeOfFluid<Dim>::locate() {
     fill_ghosts(fraction_, touched_, boundaries_);
     const std::vector<Index> band_before(band_.cells().begin(), band_.cells().end());
     band_.find(fraction_, marks_, active_, boundaries_);
-    // What has left the band with less air than makes a surface is full from now on; the rest is surplus.
+    // What has left the band with less air than makes a surface is full from now on; the rest is its volume
+    // defect.
     const auto close = [&](Index c) {
         if (fraction_[c] < 1 - void_inside_water() || band_.holds(c)) return;
         volume_defect_[c] += fraction_[c] - 1;

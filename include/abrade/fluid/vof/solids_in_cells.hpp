@@ -63,9 +63,9 @@ public:
         put_back(before_);
     }
 
-    /// Once the liquid has moved: its fractions and surplus in the room that is left. `moved`: solid that
-    /// went through faces in the step; `at_once`: how much of a lag is handed over in it [-]; `full`: what is
-    /// more is no surface [-].
+    /// Once the liquid has moved: its fractions and volume defects in the room that is left. `moved`: solid
+    /// that went through faces in the step; `at_once`: how much of a lag is handed over in it [-]; `full`:
+    /// what is more is no surface [-].
     void move(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries, Field<Real>& fraction,
               Field<Real>& volume_defect, std::span<const SolidVolume> moved, Real at_once, Real full) {
         for (const SolidVolume& solid : moved) {
@@ -143,7 +143,8 @@ private:
         if (open_of(c) == 0) return;
         look_at(c), came_[c] += volume / grid.volume(number);
     }
-    /// Liquid, with a part of what it lags by. Full and dry cells stay what they are: the rest is surplus.
+    /// Liquid, with a part of what it lags by. Full and dry cells stay what they are: the rest is
+    /// volume defect.
     void put(Offset c, Real liquid, Real at_once, Field<Real>& fraction, Field<Real>& volume_defect) {
         constexpr Real little = 1e-6;  // of the cell: all at once
         const bool stays = liquid < little || next_[c] != open_of(c);

@@ -39,16 +39,17 @@ struct VolumeStep {
 /// What is then above 1 or below 0 is moved through faces to neighbours that have room. Where all neighbours
 /// are full, in the bulk, f is 1 and the rest is the cell's `volume_defect` (in shares of its open volume, of
 /// either sign):
-///   liquid volume = sum of (f + surplus) open V.
-/// In the bulk surplus changes by -dt div(u) in a step, so it is bounded by the sum of the divergences left;
-/// a projection whose target divergence is surplus / dt keeps it at what one step leaves. Beside the surface,
-/// and in dry cells, it stays below `wisp`, but where `left_over` tells of a cell.
+///   liquid volume = sum of (f + volume_defect) open V.
+/// In the bulk the volume defect changes by -dt div(u) in a step, so it is bounded by the sum of the
+/// divergences left; a projection whose target divergence is volume_defect / dt keeps it at what one step
+/// leaves. Beside the surface, and in dry cells, it stays below `wisp`, but where `left_over` tells of a
+/// cell.
 ///
 /// Cells outside of the surface's band cost one light pass. Ghosts of `fraction()` at inflows are the user's.
 template <int Dim>
 class VolumeOfFluid {
 public:
-    static constexpr Real wisp = 1e-12;  ///< less than this is not a fraction but surplus [-]
+    static constexpr Real wisp = 1e-12;  ///< less than this is no fraction but volume defect [-]
     /// Beyond this a slab is wider than its cell: refused.
     static constexpr Real courant_end = 1;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The lists of near pairs and of candidates: how long they last, and what happens when they are renewed.
+// The Verlet list and the inner list: how long they last, and what happens when they are renewed.
 
 #include <abrade/sim/motion/fragments.hpp>
 #include <abrade/sim/motion/wrap.hpp>
@@ -12,8 +12,9 @@
 
 namespace abrade {
 
-/// Near pairs are found within a skin and last until bodies may have crossed it; of them, candidates within a
-/// thinner, inner skin are picked anew every few dozen steps, and only candidates are looked at in a step.
+/// The Verlet list holds pairs within a skin and lasts until bodies may have crossed it. The inner list,
+/// pairs of it within a thinner, inner skin, is picked anew every few dozen steps, and only inner pairs are
+/// looked at in a step.
 template <class P>
 class NeighbourLists {
 public:
@@ -42,7 +43,7 @@ public:
             repack(state);
     }
 
-    /// Renews what changes seldom: bodies that left, supply, near pairs.
+    /// Renews what changes seldom: bodies that left, supply, the Verlet list.
     void renew(State<P>& state, Real t, Real dt) {
         const auto start = std::chrono::steady_clock::now();
         land(state);
@@ -100,7 +101,7 @@ public:
                               state.sleep.rests);
         take_off(state, 2 * inner_life_ * dt_);
     }
-    Real skin() const noexcept { return list_skin_; }   ///< of near pairs [m]
+    Real skin() const noexcept { return list_skin_; }   ///< of the Verlet list [m]
     Real seconds() const noexcept { return seconds_; }  ///< that renewals took, refining apart
     /// Whether bodies are too fast for any skin that the period of space has room for.
     bool outrun() const noexcept { return outrun_; }
@@ -194,7 +195,7 @@ private:
         });
     }
 
-    /// Picks candidates; false where the list of near pairs would not last.
+    /// Picks the inner list; false where the Verlet list would not last.
     bool refine(State<P>& state, Real dt) {
         dt_ = dt;
         land(state);
@@ -212,10 +213,10 @@ private:
         return true;
     }
 
-    /// Candidates that live longer are picked less often, but more of them do not touch, and spheres that
-    /// could fly are held by them. Both cost the same at the best life. Taken from profiles, in evaluations
-    /// of a candidate that does not touch: a look at a pair or a sphere costs some ten, a sphere's step some
-    /// eight.
+    /// An inner list that lives longer is picked less often, but more of its pairs do not touch, and spheres
+    /// that could fly are held by them. Both cost the same at the best life. Taken from profiles, in
+    /// evaluations of an inner pair that does not touch: a look at a pair or a sphere costs some ten, a
+    /// sphere's step some eight.
     void choose_life(const ContactCensus& census, Index spheres, Index held) noexcept {
         const Real idle = static_cast<Real>(census.inner_pairs - census.touching);
         const Real kept = std::max(0.0, held - 2 * static_cast<Real>(census.touching));
@@ -382,7 +383,7 @@ private:
     }
 
     Real skin_ = 0, list_skin_ = 0;         ///< asked for, of the present list [m]
-    Real inner_skin_ = 0, moved_ = 0;       ///< of the candidates; how far anything may have come since [m]
+    Real inner_skin_ = 0, moved_ = 0;       ///< of the inner list; how far anything may have come since [m]
     Real walls_moved_ = 0, walls_way_ = 0;  ///< walls since the last renewal, and in the last step [m]
     Real seconds_ = 0, inner_life_ = 32;    ///< [s], [steps]
     bool outrun_ = false;

@@ -422,7 +422,7 @@ private:
         report(Diagnosis(state_).unsound_or_lost());
     }
 
-    /// Sediment past the gauge, net.
+    /// Stones past the flow counter, net.
     void count_passed() {
         if (!state_.scene.flow_counter) return;
         for (Index b = 0; b < state_.particles.bodies(); ++b) {

@@ -1,5 +1,5 @@
 #pragma once
-// Who is in trouble: looked for once the sums of a step tell that somebody is.
+// Which body is the reason of a failure: looked for once the sums of a step tell that there is one.
 
 #include <abrade/sim/guards/failure.hpp>
 #include <abrade/sim/motion/advance.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-// Free flight: bodies that are in no candidate contact take many steps as one.
+// Free flight: bodies that are in no inner pair take many steps as one.
 
 #include <abrade/sim/motion/motion.hpp>
 #include <abrade/sim/state/state.hpp>
@@ -200,7 +200,7 @@ std::optional<Real> hardest_in_flight(const State<P>& state, Index body, const V
 
 }  // namespace detail
 
-/// Lets fly what is in no candidate contact; `land` must have been called. No flight is to be longer than
+/// Lets fly what is in no inner pair; `land` must have been called. No flight is to be longer than
 /// `horizon` [s].
 template <class P>
 void take_off(State<P>& state, Real horizon) {
@@ -213,7 +213,7 @@ void take_off(State<P>& state, Real horizon) {
     if (state.sleep.count > 0)
         for (Index slot = 0; slot < store.spheres(); ++slot)
             if (state.sleep.asleep(state.body_in(slot))) mode[at(slot)] = IntegrationMode::asleep;
-    // All spheres of a clump have the pace of its first.
+    // All spheres of a clump have the integration mode of its first.
     const auto set_mode = [&](Index body, IntegrationMode to) {
         const Index first = state.first_slot_of(body);
         for (Index n = 0; n < state.particles.sphere_count[at(body)]; ++n) mode[at(first + n)] = to;

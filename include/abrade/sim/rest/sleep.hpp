@@ -194,7 +194,8 @@ bool fall_asleep(State<P>& state, const Move& half, Real interval, MotionSums& s
 }
 
 /// Wakes those who must, and whom they touch: those who lost support, and those whom a fast body may meet
-/// before candidates are picked again. Forces must not have been evaluated yet. Returns whether anybody woke.
+/// before the inner list is picked again. Forces must not have been evaluated yet. Returns whether anybody
+/// woke.
 template <class P>
 bool wake_stirred(State<P>& state) {
     const auto at = [](Index i) { return static_cast<std::size_t>(i); };

@@ -58,8 +58,9 @@ struct Scene {
     std::optional<FeedParams> feed;
     Box bounds;                            ///< leaving it is an error, unless it is periodic
     std::array<bool, 3> periodic_along{};  ///< x, y, z: what is outside the bounds here comes in there
-    std::optional<Real> outlet;            ///< bodies that pass this x leave the simulation [m]
-    std::optional<Real> flow_counter;      ///< sediment passing this x is counted [m]
+    /// Bodies that pass this x leave the simulation as lists are renewed, at most 400 steps later [m].
+    std::optional<Real> outlet;
+    std::optional<Real> flow_counter;  ///< stones (Kind::stone) that pass this x are counted, no grains [m]
 
     /// A single sphere; returns the scene so that calls can be chained.
     Scene& add_sphere(Real radius, const BodyState& state, Real density = 2650) {

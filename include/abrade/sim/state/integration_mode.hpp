@@ -27,7 +27,7 @@ struct FreeFlight {
     Real hardest = 0;  ///< no acceleration of theirs is beyond this [m/s2]
     Real margin = 0;   ///< from where they took off to the nearest bound of space [m]
     Real horizon = std::numeric_limits<Real>::infinity();  ///< drag is slow over so long a flight [s]
-    Index held = 0;                                        ///< spheres that fly but for their candidates
+    Index held = 0;                                        ///< spheres that would fly but for inner pairs
     bool sound = true;                                     ///< all that landed is where numbers are finite
 
     static void fields(auto&& field) {
