@@ -287,7 +287,7 @@ TEST_CASE("single precision, and a full box along a logarithmic bed that goes wr
                               .boundaries = boundaries,
                               .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
                               .velocity = [](const Point<2>&) { return Point<2>(1, 0); },
-                              .fastest = 2};
+                              .velocity_limit = 2};
     GridFluid<2, FullBox, Koren, float, Smagorinsky> single(params);
     Flow<2> flow(params);
     flow.advance(0.5), single.advance(0.5);
