@@ -57,7 +57,7 @@ inline const std::map<std::string, std::vector<std::string>, std::less<>> inner_
     {"sim/motion", {"sim/scene", "sim/state"}},
     {"sim/rest", {"sim/motion"}},
     {"sim/guards", {"sim/state", "sim/motion"}},
-    {"sim/engine", {"sim/scene", "sim/motion", "sim/rest", "sim/guards"}},
+    {"sim/engine", {"sim/scene", "sim/state", "sim/motion", "sim/rest", "sim/guards"}},
     {"sim", {"sim/scene", "sim/guards", "sim/engine"}},
 };
 /// All that dem/time/stepper.hpp, which every simulation includes, may take from odeint.
