@@ -1,5 +1,4 @@
 # How the site is made of the pages: see docs/run.
-import json
 import os
 import pathlib
 import re
@@ -18,7 +17,7 @@ html_theme = "furo"
 html_title = "Abrade"
 html_static_path = [os.environ["ABRADE_SITE_STATIC"]]
 html_css_files = ["katex/katex.min.css", "site.css"]
-html_js_files = ["katex/katex.min.js", "katex/contrib/auto-render.min.js", "formulas.js"]
+html_js_files = ["katex/katex.min.js", "katex/contrib/auto-render.js", "formulas.js"]
 mathjax_path = "formulas_none.js"  # KaTeX sets them, from files of this machine
 html_copy_source = False
 html_show_sphinx = False
@@ -58,22 +57,13 @@ def resolve(app, docname, source):
         if header in headers:
             html = headers[header]
             html = html if html.endswith(".html") else html + ".html"
-            return f"[{text}]({os.path.relpath(here / 'reference' / html, page)})".replace("](", "](ref:", 1)
+            href = os.path.relpath(here / "reference" / html, page)
+            shown = re.sub(r"`([^`]*)`", r"<code>\1</code>", text)
+            return f'<a class="reference external" href="{href}">{shown}</a>'
         return f"{text} (`{of_root}`)"
 
     source[0] = link.sub(change, source[0])
 
 
-def to_reference(app, doctree):
-    """The reference is beside the pages, and none of them."""
-    from docutils import nodes
-
-    for node in list(doctree.findall(nodes.reference)):
-        uri = node.get("refuri", "")
-        if uri.startswith("ref:"):
-            node["refuri"] = uri.removeprefix("ref:")
-
-
 def setup(app):
     app.connect("source-read", resolve)
-    app.connect("doctree-read", to_reference)
