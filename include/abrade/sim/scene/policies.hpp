@@ -39,7 +39,7 @@ struct Policies {
     [[no_unique_address]] W wear;
     [[no_unique_address]] F fluid;
     [[no_unique_address]] D drag;
-    [[no_unique_address]] U force;
+    [[no_unique_address]] U force{};
 
     /// Laws are what they are; a fluid that goes on may have much to list.
     static void fields(auto&& field) {
