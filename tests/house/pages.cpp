@@ -1,10 +1,11 @@
-// Programs that pages show are the tested ones, and the check of that can fail.
+// Programs that pages show are the tested ones and links lead somewhere, and the checks of that can fail.
 
 #include <doctest/doctest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -29,11 +30,44 @@ std::vector<std::string> not_shown(const fs::path& root) {
     return found;
 }
 
+/// Links of pages below `root` that lead to no file: "docs/a.md: b.md".
+std::vector<std::string> broken_links(const fs::path& root) {
+    std::vector<fs::path> pages;
+    for (const char* page : {"README.md", "CONTRIBUTING.md"})
+        if (fs::exists(root / page)) pages.push_back(root / page);
+    for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
+        if (entry.path().extension() == ".md") pages.push_back(entry.path());
+    static const std::regex link(R"(\]\(([^)\s"#]+)(#[^)\s"]*)?\))");
+    std::vector<std::string> found;
+    for (const fs::path& page : pages) {
+        const std::string text = read(page);
+        for (std::sregex_iterator one(text.begin(), text.end(), link), end; one != end; ++one)
+            if (const std::string target = (*one)[1];
+                target.find(':') == std::string::npos && !fs::exists(page.parent_path() / target))
+                found.push_back(page.lexically_relative(root).generic_string() + ": " + target);
+    }
+    return found;
+}
+
 }  // namespace
 
 TEST_CASE("what pages show is what is tested, to the letter") {
     for (const std::string& file : not_shown(fs::path(ABRADE_INCLUDE_DIR).parent_path()))
         FAIL_CHECK("tests/consumer/shown/" << file << " stands in no code block of README.md or of docs");
+}
+
+TEST_CASE("links of pages lead somewhere") {
+    for (const std::string& link : broken_links(fs::path(ABRADE_INCLUDE_DIR).parent_path())) FAIL_CHECK(link);
+}
+
+TEST_CASE("a link that leads nowhere is found") {
+    const fs::path root = "made_up_links";
+    fs::remove_all(root);
+    fs::create_directories(root / "docs/howto");
+    std::ofstream(root / "README.md") << "[a](docs/howto/a.md#top), [web](https://example.org), `f[0](x)`\n";
+    std::ofstream(root / "docs/howto/a.md") << "[up](../../README.md) and [gone](../gone.md)\n";
+    CHECK(broken_links(root) == std::vector<std::string>{"README.md: x", "docs/howto/a.md: ../gone.md"});
+    fs::remove_all(root);
 }
 
 TEST_CASE("a page that shows something else is found") {

@@ -34,6 +34,8 @@ void add_bodies(Numbers& to, const Sim& sim) {
             residual = value;  // round-off alone
             return;
         }
+        if (name == "force_work" || name == "wall_work")
+            return;  // younger than the scenes, which have neither
         to.add(value), to.figure(std::string(name), value);
     });
     to.kind("residual").add(residual);
