@@ -145,7 +145,7 @@ PatchAnswers answers_of(Sim sim, const Patch& patch) {
         a.grains += concrete.gone(s);
         if (!(concrete.fracture(s) < 1)) continue;
         a.loosened += concrete.gone(s);
-        a.untied += state.standing ? state.standing->ties().loose(s) : concrete.gone(s);
+        a.untied += state.standing ? state.standing->graph().loose(s) : concrete.gone(s);
     }
     // Over squares of one size, so that spheres of any size can be compared.
     const auto across = static_cast<std::size_t>(patch.side / Patch::square + 0.5);
