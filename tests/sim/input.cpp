@@ -248,11 +248,45 @@ TEST_CASE("the feed") {
     CHECK(has(said([](FeedParams& f) { f.region.high.z() = nan_; }), "Feed.region along z"));
 }
 
-TEST_CASE("an empty scene runs, and nothing happens") {
-    auto sim = simulate(Scene{}).contact(law);
+Scene one_that_stands() {
+    Scene scene;
+    scene.add_fixed(make_clump("ball", {{Vec3::Zero(), 0.01}}), Vec3::Zero());
+    return scene;
+}
+
+TEST_CASE("a scene in which nothing can move runs, and nothing happens; an empty one is named") {
+    auto sim = simulate(one_that_stands()).contact(law);
     CHECK_NOTHROW(sim.run({.end_time = 1}));
     CHECK(sim.time() == 1);
     CHECK(sim.ledger().kinetic == 0);
+    CHECK(run(Scene{}, {.end_time = 1}) ==
+          "Scene.stones must be at least one, or concrete or a feed, got none; add_sphere() and add_stone() "
+          "add "
+          "bodies");
+}
+
+TEST_CASE("what has no meaning is named, with a remedy") {
+    CHECK(run(one_stone(), {}) ==
+          "RunOptions.end_time must be given, got none; run({.end_time = 1}) goes on to 1 s from the start");
+    Scene scene = one_stone();
+    scene.stones[0].fixed = true, scene.stones[0].state.velocity = {1, 0, 0};
+    CHECK(run(scene, {.end_time = 1}) ==
+          "Scene.stones[0].velocity must be 0, for it is fixed, got 1 m/s; leave it out, or let the stone "
+          "move");
+    scene = one_stone();
+    scene.stones[0].state.material = 3;
+    CHECK(run(scene, {.end_time = 1}) ==
+          "Scene.stones[0].material must be 0 where one law serves all contacts, got 3; hand contact() a "
+          "MaterialPairs table, whose number(name) gives it");
+    CHECK(
+        message_of([] { HertzMindlin{{.youngs = 70}}; }) ==
+        "HertzMindlin.youngs must be at least 1000 Pa, got 70 Pa; granite has 7e10 Pa: was it meant in GPa?");
+    CHECK(message_of([] {
+              make_clump("two", {{{0, 0, 0}, 0.01}, {{0.03, 0, 0}, 0.01}});
+          }) ==
+          "Clump 'two'.members[1]: gap to those before it must be 0, so that they touch or overlap, got 0.01 "
+          "m; "
+          "move it nearer; ClumpParts::apart is for bodies of several pieces");
 }
 
 TEST_CASE("stones that overlap too far at the start are refused, both named") {
@@ -345,7 +379,7 @@ TEST_CASE("masses that no arithmetic can hold are refused") {
 }
 
 TEST_CASE("nothing moves: the observer is still called at its times") {
-    auto sim = simulate(Scene{}).contact(law);
+    auto sim = simulate(one_that_stands()).contact(law);
     int calls = 0;
     sim.run({.end_time = 1, .observe_every = 0.1}, [&](const auto&) { ++calls; });
     CHECK(calls == 11);

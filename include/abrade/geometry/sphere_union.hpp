@@ -117,7 +117,7 @@ inline void require_joined(std::span<const Sphere> members, const std::string& f
         fail({field + "[" + std::to_string(n) + "]: gap to those before it",
               "0, so that they touch or overlap", "m",
               "move it nearer; ClumpParts::apart is for bodies of several pieces"},
-             to_text(gap));
+             short_text(gap));
     }
 }
 

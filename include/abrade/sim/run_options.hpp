@@ -90,7 +90,7 @@ struct RunAtWork {
 /// Throws InputError for what cannot be asked for `now` [s].
 inline void validate(const RunOptions& options, Real now, bool weightless) {
     if (std::isnan(options.end_time))
-        fail({"RunOptions.end_time", "given", "s", "run({.end_time = 1}) goes on to 1 s from the start"},
+        fail({"RunOptions.end_time", "given", "", "run({.end_time = 1}) goes on to 1 s from the start"},
              "none");
     require(std::isfinite(options.end_time) && options.end_time >= now,
             {"RunOptions.end_time", "finite and not before now (" + to_text(now) + " s)", "s",

@@ -393,7 +393,15 @@ private:
 
     /// From a copy: a scene that is refused stays whole, to be asked again.
     void build_world() {
+        const bool empty =
+            std::same_as<F, NoFluid> && scene_.stones.empty() && !scene_.concrete && !scene_.feed;
         world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_, force_}));
+        if (empty) {
+            world_.reset();
+            fail({"Scene.stones", "at least one, or concrete or a feed", "",
+                  "add_sphere() and add_stone() add bodies"},
+                 "none");
+        }
         limits_.emplace(*world_);
     }
 

@@ -86,7 +86,7 @@ public:
         land(state_);  // what flies has flown under what was there until now
         rouse_all(state_);
         change(Changes<P>(state_));
-        state_.outline = SceneOutline(state_.scene, state_.policies);
+        state_.outline.renew(state_.scene, state_.policies);
         state_.loosened = true;
         evaluated_ = false, led_here_ = kicked_ = last_kick_ = 0;
     }
@@ -207,12 +207,13 @@ private:
             wall.moves = true;
             if (led > 0) wall.last = here.since(place(now_ - led), led);
             wall.now = place(now_ + 0.5 * dt).since(place(now_ - 0.5 * dt), dt);
+            const Plane::Motion next = place(now_ + dt).since(here, dt);  // what the step to come will be
             Real reach = 0;
-            if (!wall.now.spin.isZero(0))
+            if (!next.spin.isZero(0))
                 for (const SpherePlace& sphere :
                      std::span(state_.store.lines.place).first(at(state_.store.spheres())))
                     reach = std::max(reach, (sphere.centre - wall.point).norm());
-            wall_speed_ = std::max(wall_speed_, wall.now.velocity.norm() + reach * wall.now.spin.norm());
+            wall_speed_ = std::max(wall_speed_, next.velocity.norm() + reach * next.spin.norm());
         }
     }
 

@@ -19,17 +19,17 @@ public:
     SceneOutline() = default;
     template <class P>
     SceneOutline(const Scene& scene, const P& policies) {
-        const auto law = [&](std::string_view name, const std::string& text) { line(name, text, ""); };
-        law("contact law", describe(policies.contact)), law("bond law", describe(policies.bond));
-        law("wear law", describe(policies.wear)), law("fluid", describe(policies.fluid));
-        law("drag law", describe(policies.drag));
-        add_space(scene), add_walls(scene.walls);
-        number("Scene.moving_walls", scene.moving_walls.size());
-        add_stones(scene.stones);
-        line("Scene.concrete", scene.concrete ? "given" : "none", "");
-        if (scene.concrete) add_concrete(*scene.concrete);
-        line("Scene.feed", scene.feed ? "given" : "none", "");
-        if (scene.feed) add_feed(*scene.feed);
+        add_head(scene, policies);
+        const std::size_t head = built_.size();
+        add_rest(scene);
+        rest_ = built_.substr(head);
+    }
+    /// After walls or gravity have changed.
+    template <class P>
+    void renew(const Scene& scene, const P& policies) {
+        built_.clear();
+        add_head(scene, policies);
+        lines_ = built_ += rest_;
     }
 
     static void fields(auto&& field) { field("outline", &SceneOutline::lines_); }
@@ -47,6 +47,23 @@ public:
     }
 
 private:
+    template <class P>
+    void add_head(const Scene& scene, const P& policies) {
+        const auto law = [&](std::string_view name, const std::string& text) { line(name, text, ""); };
+        law("contact law", describe(policies.contact)), law("bond law", describe(policies.bond));
+        law("wear law", describe(policies.wear)), law("fluid", describe(policies.fluid));
+        law("drag law", describe(policies.drag));
+        add_space(scene), add_walls(scene.walls);
+        number("Scene.moving_walls", scene.moving_walls.size());
+    }
+    /// What no change between runs changes.
+    void add_rest(const Scene& scene) {
+        add_stones(scene.stones);
+        line("Scene.concrete", scene.concrete ? "given" : "none", "");
+        if (scene.concrete) add_concrete(*scene.concrete);
+        line("Scene.feed", scene.feed ? "given" : "none", "");
+        if (scene.feed) add_feed(*scene.feed);
+    }
     void line(std::string_view name, const std::string& value, std::string_view unit) {
         built_.append(name).append("\t").append(value);
         if (!unit.empty()) built_.append(" ").append(unit);
@@ -143,6 +160,7 @@ private:
     }
 
     std::string built_, lines_;  ///< of this scene; what is saved, or was read
+    std::string rest_;           ///< part of the first that no change between runs changes
 };
 
 static_assert(ListsFields<SceneOutline>);

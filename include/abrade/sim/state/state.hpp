@@ -34,10 +34,6 @@ struct State {
             require_laws_for(policies.contact, particles, scene);
         else
             require_one_material(scene);
-        if (!P::has_fluid && particles.bodies() == 0 && !scene.concrete && !scene.feed)
-            fail({"Scene.stones", "at least one, or concrete or a feed", "",
-                  "add_sphere() and add_stone() add bodies"},
-                 "none");
     }
 
     P policies;
