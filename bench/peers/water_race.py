@@ -13,7 +13,7 @@ sys.path.insert(0, str(root / "bench" / "peers" / "openfoam"))
 import runs as foam  # noqa: E402
 
 kept = root / "bench" / "peers" / "openfoam_limits.csv"
-schemes = ("Limited", "Central")
+schemes = ("Koren", "Central")
 in_float = tuple(f"{scheme} in float" for scheme in schemes)
 heights = tuple(f"{scheme}, height" for scheme in schemes)
 
@@ -38,7 +38,7 @@ cases = {
 short = 5  # runs below are repeated [s]
 
 
-def run_abrade(program, case, cells, variant="Limited", courant=0.5):
+def run_abrade(program, case, cells, variant="Koren", courant=0.5):
     text = call(["nice", "-n", "5", *pinned(1), program, "--case", case, "--cells", str(cells), "--variant", variant,
                  "--courant", str(courant)], f"{case}_abrade")
     return json.loads(text.splitlines()[-1])
