@@ -10,9 +10,9 @@ namespace abrade {
 
 /// Says of a failure which body is the reason, where, and what helps. `world` must have its places published.
 template <class World>
-class TroubleText {
+class FailureMessage {
 public:
-    TroubleText(const World& world, Real time_step) : world_(world), time_step_(time_step) {}
+    FailureMessage(const World& world, Real time_step) : world_(world), time_step_(time_step) {}
 
     std::string name_of(Index body) const {
         if (body < 0) return "Scene.walls[" + std::to_string(-1 - body) + "]";

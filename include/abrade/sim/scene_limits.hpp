@@ -19,7 +19,7 @@ public:
           standing_(world.state().sites.stand ? world.concrete().lattice().radius : 0),
           period_(world.particles(), world.scene().feed, standing_) {
         who_ = stable.limit;
-        if (stable.body >= 0) who_ += ", " + TroubleText(world, 0).name_of(stable.body);
+        if (stable.body >= 0) who_ += ", " + FailureMessage(world, 0).name_of(stable.body);
         const auto& radius = world.particles().radius;
         smallest_ = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
         if (standing_ == 0) return;

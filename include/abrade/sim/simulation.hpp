@@ -422,7 +422,7 @@ private:
     void open() {
         world_->open(time_);
         if (const Failure failure = world_->take_failure(); failure.cause == Failure::Cause::overlap) {
-            const TroubleText say(*world_, time_step_);
+            const FailureMessage say(*world_, time_step_);
             const std::string what =
                 "Scene: overlap of " + say.name_of(failure.body) + " with " + say.name_of(failure.other);
             world_.reset();
@@ -441,7 +441,7 @@ private:
         world_->step(t, time_step_, step_ % steps_between_checks == 0);
         ++step_;
         time_ = t + time_step_;
-        look_for_trouble();
+        look_for_failure();
     }
 
     void advance_fluid(Real t) {
@@ -452,14 +452,14 @@ private:
         }
     }
 
-    void look_for_trouble() {
+    void look_for_failure() {
         if (const Failure failure = world_->take_failure(); failure.cause != Failure::Cause::none)
             raise(failure);
     }
 
     [[noreturn]] void raise(const Failure& failure) {
         world_->publish_places();
-        raise(TroubleText(*world_, time_step_).of(failure),
+        raise(FailureMessage(*world_, time_step_).of(failure),
               particles().id[static_cast<std::size_t>(failure.body)]);
     }
     [[noreturn]] void raise(const std::string& what, Index id) const {
@@ -471,11 +471,11 @@ private:
 
     void balance() {
         ledger_ = world_->publish();
-        look_for_trouble();
+        look_for_failure();
     }
     void remember() {
         world_->publish();
-        look_for_trouble();
+        look_for_failure();
         renew_snapshot(last_good_, world_->particles(), world_->concrete(), time_, step_);
         remembered_ = step_;
     }

@@ -140,8 +140,8 @@ public:
         each_touching(visit, [](const SlotPair&) { return true; });
     }
     template <class Visit>
-    void each_candidate(Visit&& visit) const {
-        for (const ContactSection<Law>& section : sections_) section.each_candidate(visit);
+    void each_inner_pair(Visit&& visit) const {
+        for (const ContactSection<Law>& section : sections_) section.each_inner_pair(visit);
     }
     ContactCensus census() const noexcept {
         ContactCensus all;

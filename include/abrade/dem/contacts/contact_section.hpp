@@ -175,7 +175,7 @@ public:
     }
     /// Calls `visit(pair)` for each inner pair.
     template <class Visit>
-    void each_candidate(Visit&& visit) const {
+    void each_inner_pair(Visit&& visit) const {
         for (const Run& run : runs_)
             for (std::size_t l = run.first * lanes; l < run.last * lanes; ++l)
                 if (lane_[l] >= 0) visit(near_[static_cast<std::size_t>(lane_[l])].pair);

@@ -84,10 +84,10 @@ public:
             for (int b = 0; b < Dim; ++b) {
                 const int along = b == vertical;
                 lower_[a][b] = Table(grid, [&](int k) {
-                    return (a == b ? 0.5 : half(grid, a, k, false)) * per_carrier(grid, b, k - up);
+                    return (a == b ? 0.5 : half(grid, a, k, false)) * per_flux(grid, b, k - up);
                 });
                 upper_[a][b] = Table(grid, [&](int k) {
-                    return (a == b ? 0.5 : half(grid, a, k, true)) * per_carrier(grid, b, k);
+                    return (a == b ? 0.5 : half(grid, a, k, true)) * per_flux(grid, b, k);
                 });
                 friction_[a][b] = Table(grid, [&](int k) {
                     return (Eddies ? 1 : s_.viscosity) /
@@ -126,7 +126,7 @@ public:
 private:
     Offset room(int rows) const noexcept { return Offset{pitch_} * rows; }
     /// 1 over what turns an advecting flux of cells at a level into a velocity.
-    Real per_carrier(const Grid<Dim>& grid, int axis, int level) const noexcept {
+    Real per_flux(const Grid<Dim>& grid, int axis, int level) const noexcept {
         if (s_.carried_in == 0) return 1;
         Real area = 1;
         for (int a = 0; a < Dim; ++a)

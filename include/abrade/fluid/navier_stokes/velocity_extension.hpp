@@ -75,7 +75,7 @@ public:
                 if (face.axis == a) state_[a][face.face] = closed;
             for (int layer = 0; layer < layers; ++layer) {
                 find_layer(a, layer, water.rows);
-                if (layer == 0) find_riders(a, water);
+                if (layer == 0) find_slaved(a, water);
                 know(a, layer);
                 if (layer == 0) find_liquid(a, water);
             }
@@ -329,7 +329,7 @@ private:
     }
 
     /// Those of the first layer that hold liquid; and again by the planes of their master faces.
-    void find_riders(int a, const Water& water) {
+    void find_slaved(int a, const Water& water) {
         water.rows.for_each_plane([&](int plane) {
             std::vector<SlavedFace>& slaved = slaved_[a][static_cast<std::size_t>(plane)];
             slaved.clear();

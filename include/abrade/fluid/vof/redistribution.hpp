@@ -262,7 +262,7 @@ void VolumeOfFluid<Dim>::close_voids() {
     });
     for (const auto& plane : voids)
         for (const Offset c : plane) solids_.lag_by(c, (fraction_[c] - 1) * (*room())[c]), fraction_[c] = 1;
-    solids_.keep_surplus(fraction_, volume_defect_);
+    solids_.keep_volume_defect(fraction_, volume_defect_);
 }
 
 template <int Dim>

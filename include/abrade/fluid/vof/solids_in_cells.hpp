@@ -93,7 +93,7 @@ public:
     }
 
     /// Once it has settled: what full cells hold too much among solids they lag by.
-    void keep_surplus(const Field<Real>& fraction, Field<Real>& volume_defect) {
+    void keep_volume_defect(const Field<Real>& fraction, Field<Real>& volume_defect) {
         now_.clear();
         for (const Offset c : cells_) {
             if (fraction[c] == 1 && next_[c] != open_of(c))

@@ -228,7 +228,7 @@ void take_off(State<P>& state, Real horizon) {
         if (store.lines.motion[at(owner)].inverse_mass > 0)
             flight.held += state.particles.sphere_count[at(body)];
     };
-    state.contacts.each_candidate([&](const SlotPair& pair) {
+    state.contacts.each_inner_pair([&](const SlotPair& pair) {
         ground(pair.first), ground(pair.second);
         if (const Index other = state.awake_beside_sleeper(pair); other >= 0)
             set_mode(other, IntegrationMode::beside_sleeper);

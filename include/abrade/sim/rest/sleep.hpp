@@ -141,7 +141,7 @@ bool fall_asleep(State<P>& state, const Move& half, Real interval, MotionSums& s
     sleep.bodies.resize(at(bodies));
     std::vector<char> wanted(at(bodies), 0), beside(at(bodies), 0);
     if (sleep.count > 0)
-        state.contacts.each_candidate([&](const SlotPair& pair) {
+        state.contacts.each_inner_pair([&](const SlotPair& pair) {
             if (state.awake_beside_sleeper(pair) < 0) return;
             for (const Index slot : {pair.first, pair.second}) beside[at(state.body_in(slot))] = 1;
         });
@@ -206,7 +206,7 @@ bool wake_stirred(State<P>& state) {
     bool any = false;
     for (std::size_t b = 0; b < wakes.size(); ++b)
         any |= wakes[b] = sleep.bodies[b].asleep && sleep.bodies[b].rouse;
-    state.contacts.each_candidate([&](const SlotPair& pair) {
+    state.contacts.each_inner_pair([&](const SlotPair& pair) {
         const Index awake = state.awake_beside_sleeper(pair);
         if (awake < 0 || !sleep.is_fast(detail::speed_squared_of(state, awake))) return;
         const Index first = state.body_in(pair.first);
