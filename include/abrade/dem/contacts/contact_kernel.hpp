@@ -356,7 +356,12 @@ template <KernelKind kind, ContactLaw Law, class Wear>
             contact.inverse_turning = inverse_turning;
             pack.before.spin = spin;
         }
-        if constexpr (kind.wears) contact.touched = select(pack.touched, Pack(1), Pack(0));
+        if constexpr (kind.wears) {
+            PackMask touched = pack.touched;
+            if constexpr (ActsBeforeTouch<Law>)  // seen last, perhaps, while there was still a gap
+                touched = touched & (contact.overlap + contact.displacement.dot(contact.normal) > Pack(0));
+            contact.touched = select(touched, Pack(1), Pack(0));
+        }
         pack.before.velocity = velocity;  // at once, so that it need not be kept
         const ContactLoad<Pack> answer = detail::answer(law, contact, pack, touching);
         pack.touched = touching;
