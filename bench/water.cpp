@@ -207,7 +207,7 @@ void pressure(benchmark::State& state, const CellNumber<3>& cells, auto&& wet) {
     const Grid<3> grid({.cells = cells, .spacing = Vec3::Ones()});
     Multigrid<3> solver(grid.layout(), Vec3::Ones(), {});
     Poisson<3>& m = solver.matrix();
-    m.amid.fill(1);
+    m.interior.fill(1);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> value(-1, 1), distance(1e-4f, 1);
     grid.for_each([&](const CellNumber<3>& cell, Offset c) {

@@ -5,7 +5,7 @@
 #include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/fluid_model.hpp>
 #include <abrade/sim/run_options.hpp>
-#include <abrade/sim/scene/body_force.hpp>
+#include <abrade/sim/scene/policies.hpp>
 #include <abrade/sim/scene_limits.hpp>
 #include <abrade/sim/slots.hpp>
 #include <abrade/sim/snapshot.hpp>
@@ -33,10 +33,12 @@ public:
     template <class L, class One = PairLaw<L>>
     auto contact(L law) && {
         check_not_run();
-        static_assert(!ParamSet<L>,
-                      "Simulation::contact(law): these are a law's parameters; write contact(Law{...})");
-        static_assert(ParamSet<L> || ContactLaw<One>,
-                      "Simulation::contact(law): the law misses what the notes below name");
+        if constexpr (ParamSet<L>)
+            static_assert(detail::never<L>,
+                          "contact(law): these are a law's parameters; write contact(Law{...})");
+        else
+            static_assert(ContactLaw<One>,
+                          "Simulation::contact(law): the law misses what the notes below name");
         if constexpr (ContactPolicy<L>)
             return Simulation<L, B, W, F, D, U>{std::move(scene_), std::move(law),    std::move(bond_),
                                                 std::move(wear_),  std::move(fluid_), std::move(drag_),
@@ -47,10 +49,10 @@ public:
     template <class L>
     auto bond(L law) && {
         check_not_run();
-        static_assert(!ParamSet<L>,
-                      "Simulation::bond(law): these are a law's parameters; write bond(Law{...})");
-        static_assert(ParamSet<L> || BondLaw<L>,
-                      "Simulation::bond(law): the law misses what the notes below name");
+        if constexpr (ParamSet<L>)
+            static_assert(detail::never<L>, "bond(law): these are a law's parameters; write bond(Law{...})");
+        else
+            static_assert(BondLaw<L>, "Simulation::bond(law): the law misses what the notes below name");
         if constexpr (BondLaw<L>)
             return Simulation<C, L, W, F, D, U>{std::move(scene_), std::move(contact_), std::move(law),
                                                 std::move(wear_),  std::move(fluid_),   std::move(drag_),
@@ -61,10 +63,10 @@ public:
     template <class L>
     auto wear(L law) && {
         check_not_run();
-        static_assert(!ParamSet<L>,
-                      "Simulation::wear(law): these are a law's parameters; write wear(Law{...})");
-        static_assert(ParamSet<L> || WearLaw<L>,
-                      "Simulation::wear(law): the law misses what the notes below name");
+        if constexpr (ParamSet<L>)
+            static_assert(detail::never<L>, "wear(law): these are a law's parameters; write wear(Law{...})");
+        else
+            static_assert(WearLaw<L>, "Simulation::wear(law): the law misses what the notes below name");
         if constexpr (WearLaw<L>)
             return Simulation<C, B, L, F, D, U>{std::move(scene_), std::move(contact_), std::move(bond_),
                                                 std::move(law),    std::move(fluid_),   std::move(drag_),

@@ -29,11 +29,11 @@ struct AfterRejectedLaw {
 };
 
 template <class L>
-inline constexpr bool has_no_name = false;
+inline constexpr bool never = false;
 
 template <class L>
 AfterRejectedLaw no_slot_of_a_name() {
-    static_assert(has_no_name<L>,
+    static_assert(never<L>,
                   "fill the slots in one go, auto sim = simulate(scene).contact(law).bond(law), or "
                   "of what has a name: auto next = std::move(sim).contact(law)");
     return {};
