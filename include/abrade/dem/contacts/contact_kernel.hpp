@@ -232,7 +232,7 @@ inline Vec3Of<Pack> packs_of(const Vec3& v) noexcept { return {Pack(v.x()), Pack
 template <bool on_plane, class Lanes>
 QuadColumns gather_spins(const Lanes& pack, const LineReader& at) noexcept {
     const auto turning = [&](LineOffset sphere) {
-        const Quad* motion = at.motion(sphere);  // of the rim, and 1/r
+        const Quad* motion = at.motion(sphere);  // of the surface, and 1/r
         const Real curvature = motion[1].value[3];
         return motion[1] * Quad{{curvature, curvature, curvature, curvature * motion[0].value[3]}};
     };
@@ -241,7 +241,7 @@ QuadColumns gather_spins(const Lanes& pack, const LineReader& at) noexcept {
     });
 }
 
-/// Levers are torques over radii: a couple counts over each sphere's own.
+/// Loads hold torques over radii: a couple counts over each sphere's own radius.
 template <bool on_plane, class Lanes>
 void add_couples(const Vec3Of<Pack>& couple, const Lanes& pack, const LineReader& at) noexcept {
     const QuadRows couples = rows({couple.x(), couple.y(), couple.z(), Pack(0)});

@@ -21,6 +21,7 @@ public:
         Scene scene = empty_scene();
         scene.stones.push_back(stone);
         scene.validate();
+        if constexpr (!P::has_materials) require_one_material(scene);
         BodyState at = stone.state;
         at.position += state_.scene.periodic().way_back(at.position);
         Particles& p = state_.particles;
@@ -83,6 +84,7 @@ public:
         Scene scene = empty_scene();
         scene.add_wall(point, normal, material);
         scene.validate();
+        if constexpr (!P::has_materials) require_one_material(scene);
         state_.scene.walls.push_back(scene.walls.back());
         if constexpr (P::has_materials) {
             try {

@@ -69,8 +69,7 @@ public:
         });
         ledger_ = state_.accounts.total();
         book(ledger_, sums.motion);
-        const Real by_walls = half.kick * wall_power_;
-        ledger_.wall_work += by_walls;
+        ledger_.wall_work += half.kick * wall_power_;
         ledger_.kinetic = sums.kinetic, ledger_.potential = sums.potential;
         ledger_.stored_contacts = stored_contacts_ + at_rest();
         ledger_.stored_bonds = stored_bonds_;
