@@ -9,10 +9,12 @@ namespace {
 
 /// A flat four-footed body that slides without tipping.
 Clump block() {
-    return make_clump("block", {{{0.05, 0.05, 0}, 0.02},
-                                {{0.05, -0.05, 0}, 0.02},
-                                {{-0.05, 0.05, 0}, 0.02},
-                                {{-0.05, -0.05, 0}, 0.02}});
+    return make_clump("block",
+                      {{{0.05, 0.05, 0}, 0.02},
+                       {{0.05, -0.05, 0}, 0.02},
+                       {{-0.05, 0.05, 0}, 0.02},
+                       {{-0.05, -0.05, 0}, 0.02}},
+                      ClumpParts::apart);
 }
 
 }  // namespace

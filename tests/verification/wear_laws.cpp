@@ -47,10 +47,12 @@ auto slid(const Clump& body, Real mass, Real height, int feet, const ChosenWear&
 
 Clump ball() { return make_clump("ball", {{Vec3::Zero(), 0.02}}); }
 Clump block() {
-    return make_clump("block", {{{0.05, 0.05, 0}, 0.02},
-                                {{0.05, -0.05, 0}, 0.02},
-                                {{-0.05, 0.05, 0}, 0.02},
-                                {{-0.05, -0.05, 0}, 0.02}});
+    return make_clump("block",
+                      {{{0.05, 0.05, 0}, 0.02},
+                       {{0.05, -0.05, 0}, 0.02},
+                       {{-0.05, 0.05, 0}, 0.02},
+                       {{-0.05, -0.05, 0}, 0.02}},
+                      ClumpParts::apart);
 }
 
 }  // namespace
