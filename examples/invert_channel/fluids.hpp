@@ -20,6 +20,7 @@ struct ChannelRun {
     std::string went_wrong;        ///< empty: nothing
     int code = 0;                  ///< for the shell
     bool owns_checkpoint = false;  ///< it is of this run
+    std::filesystem::path left{};  ///< folder of a killed run, of no use once results are in place; or none
     Snapshot last_good{};          ///< where it went wrong
     /// Of the water then: name, unit and one number for each cell.
     struct WaterColumn {

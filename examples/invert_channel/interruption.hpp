@@ -70,7 +70,8 @@ public:
         here_.stem = std::filesystem::absolute(files_.series).string();
         save_state(files_.checkpoint, about_, StatePart{"series", std::as_const(here_)}, parts...);
         clock_.saved(), owns_ = true;
-        clear_left();
+        std::error_code ignored;
+        if (!left_.empty()) std::filesystem::remove_all(std::exchange(left_, {}), ignored);
     }
 
     /// Also brings the series here that was written until then. Throws InputError where the checkpoint is not
@@ -94,11 +95,9 @@ public:
         owns_ = true;
     }
 
-    /// The folder of the run that was killed is needed no more.
-    void clear_left() {
-        std::error_code ignored;
-        if (!left_.empty()) std::filesystem::remove_all(std::exchange(left_, {}), ignored);
-    }
+    /// The folder of the run that was killed, which the checkpoint still names; none: it names this run's. To
+    /// be removed with the checkpoint, or where that is written anew.
+    const std::filesystem::path& left() const noexcept { return left_; }
 
 private:
     static std::filesystem::path signature_path(std::filesystem::path stem) { return stem += ".run"; }
@@ -115,8 +114,8 @@ private:
     CheckpointClock clock_;
     std::string about_;
     SeriesPlace here_;
-    std::filesystem::path left_;  ///< the folder of the run that was killed, until the next checkpoint
-    bool owns_ = false;           ///< this run has written the checkpoint, or goes on from it
+    std::filesystem::path left_;
+    bool owns_ = false;  ///< this run has written the checkpoint, or goes on from it
 };
 
 }  // namespace abrade::examples

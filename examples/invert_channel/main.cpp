@@ -219,6 +219,7 @@ int run(const Options& options) {
     const std::filesystem::path place = folder.publish();
     std::error_code ignored;
     if (!results.stopped && run.owns_checkpoint) std::filesystem::remove(files.checkpoint, ignored);
+    if (!results.stopped && !run.left.empty()) std::filesystem::remove_all(run.left, ignored);
 
     std::cout << run.printed;
     if (results.stopped)

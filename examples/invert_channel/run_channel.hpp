@@ -112,7 +112,7 @@ ChannelRun run_channel(const ChannelConfig& config, const ChannelFiles& files, F
     const bool stopped = run.results.stopped;
     run.results = make_results(config, sim, std::move(history), bed);
     run.results.stopped = stopped;
-    interruption.clear_left();
+    run.left = interruption.left();
     std::ostringstream printed;
     printed << sim;
     run.printed = printed.str();

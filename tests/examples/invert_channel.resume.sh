@@ -33,8 +33,8 @@ took=$(($(now_ms) - began))
 go_on() { # to the end
     "$program" "${base[@]}" --threads 2 --set run.checkpoint_every=$every --out killed "${resume[@]}" > killed.log 2>&1 || fail "the run that goes on fails: $(cat killed.log)"
 }
-ended() { # ended: what the killed run has come to is that of the whole one
-    same_results "after $kill kills" whole killed
+ended() { # ended WHEN: what the killed run has come to is that of the whole one
+    same_results "$1" whole killed
     [ ! -e killed.checkpoint.h5 ] || fail "a run that came to its end leaves its checkpoint"
     rm -rf killed killed.checkpoint.h5
     resume=()
@@ -52,12 +52,30 @@ for ((kill = 0; kill < kills;)); do
         if [ -e killed.checkpoint.h5 ]; then resume=(--resume) resumed=$((resumed + 1)); fi
     else
         wait $pid || fail "the run that goes on fails: $(cat killed.log)"
-        ended
+        ended "after $kill kills"
     fi
 done
 [ $resumed -gt 20 ] || fail "only $resumed of $kills kills found a checkpoint"
 go_on
-ended
+ended "after $kill kills"
+
+# --- a run that is killed as it draws its pictures, which went on from one that was killed: its series is whole
+"$program" "${base[@]}" --threads 1 --set run.checkpoint_every=$every --out killed > killed.log 2>&1 &
+pid=$!
+sleep "$((took * 8 / 10000)).$(printf '%03d' $((took * 8 / 10 % 1000)))"
+kill -9 $pid || fail "the run is too short for this test"
+wait $pid 2> /dev/null || true
+for again in 1 2; do
+    "$program" "${base[@]}" --threads 1 --set run.checkpoint_every=60 --out killed --resume > killed.log 2>&1 &
+    pid=$!
+    until [ -n "$(find . -path './.killed.partial-*/summary.json')" ]; do sleep 0.02; done
+    kill -9 $pid || fail "the pictures are drawn too soon for this test"
+    wait $pid 2> /dev/null || true
+    rm -f .killed.partial-*/summary.json
+done
+resume=(--resume)
+go_on
+ended "killed as it drew"
 
 # --- what is lost is what came after the last checkpoint: no more than that time, and what a save takes
 "$program" "${base[@]}" --threads 1 --set run.checkpoint_every=$every --out young > young.log 2>&1 &
@@ -82,7 +100,7 @@ stopped_by() { # stopped_by SIGNAL OPTION...
     cp ended.checkpoint.h5 kept.h5
     "$program" "$@" --threads 1 --out ended --resume > ended.log 2>&1 || fail "after $signal it does not go on: $(cat ended.log)"
 }
-wet=(--fluid shallow --set run.end_time=8)  # water that feels the stones
+wet=("${base[@]}" --fluid shallow)  # water that feels the stones
 "$program" "${wet[@]}" --threads 1 --out wet > wet.log || fail "shallow water that is left alone: $(cat wet.log)"
 stopped_by TERM "${wet[@]}"
 same_results "in shallow water" wet ended
