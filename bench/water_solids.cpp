@@ -19,7 +19,7 @@ using namespace abrade;
 namespace {
 
 template <class Solids>
-using Water = GridFluid<3, HeightSurface, Koren, Real, MixingLength, Solids>;
+using Water = GridFluid<3, Among<Solids, Turbulent<MixingLength, HeightSurface>>>;
 using Stones = MonolithicSolids<>;
 
 /// The five classes by equal volumes, in the validation's shapes, on the bed and up to a few diameters above

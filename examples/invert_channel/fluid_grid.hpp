@@ -10,7 +10,7 @@ namespace abrade::examples {
 
 /// Below a FreeSurface or a HeightSurface, among stones that it resolves or not.
 template <class Surface, class Solids = NoSolids>
-using ChannelFlow = GridFluid<3, Surface, Koren, Real, MixingLength, Solids>;
+using ChannelFlow = GridFluid<3, Among<Solids, Turbulent<MixingLength, Surface>>>;
 
 template <class Flow>
 Flow grid_channel(const ChannelConfig& c, auto solids) {

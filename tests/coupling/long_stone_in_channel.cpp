@@ -28,7 +28,7 @@ Drag drag_of_stone(const Turbulence& turbulence, Real diameter, Real above_bed) 
     for (int place = 0; place < places; ++place) {
         const Real h = channel_water::spacing;
         const Vec3 x(0.5 + h * unit(random), h * unit(random), above_bed + h * (unit(random) - 0.5));
-        GridFluid<3, HeightSurface, Koren, Real, Turbulence, Solids> water(
+        GridFluid<3, Among<Solids, Turbulent<Turbulence, HeightSurface>>> water(
             channel_water::channel(1.2, true), turbulence, Solids({.resolved_from = 0}));
         const Real speed = water.sample(x, 0).velocity.x();
         const Sphere sphere{x, 0.5 * diameter};

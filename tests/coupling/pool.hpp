@@ -5,7 +5,7 @@
 namespace resolved {
 
 template <class Solids, class Surface = HeightSurface>
-using PoolAmong = GridFluid<3, Surface, Koren, Real, NoTurbulence, Solids>;
+using PoolAmong = GridFluid<3, Among<Solids, Surface>>;
 
 constexpr Real h = 0.05, level = 0.613;
 

@@ -16,7 +16,7 @@ using namespace abrade;
 constexpr Real g = 9.81;  // [m/s2]
 
 template <class Solids>
-using WaterAmong = GridFluid<3, FullBox, Koren, Real, NoTurbulence, Solids>;
+using WaterAmong = GridFluid<3, Among<Solids, FullBox>>;
 using Water = WaterAmong<MonolithicSolids<>>;
 
 /// A sphere that is free, or fixed where its density is 0 [kg/m3].
@@ -95,7 +95,7 @@ struct Drag {
 template <class Solids = MonolithicSolids<>, class Eddies = NoTurbulence>
 Drag drag_in(const Stream& stream, Real end, Solids solids = Solids({.resolved_from = 0}),
              const Eddies& eddies = {}) {
-    using Flow = GridFluid<3, FullBox, Koren, Real, Eddies, Solids>;
+    using Flow = GridFluid<3, Among<Solids, Turbulent<Eddies, FullBox>>>;
     const Real h = 1 / stream.cells;
     const int across = static_cast<int>(8 * stream.cells), along = static_cast<int>(12 * stream.cells);
     typename Flow::Params params{.grid = {.cells = {along, across, across}, .spacing = Vec3::Constant(h)},

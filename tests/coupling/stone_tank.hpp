@@ -30,7 +30,7 @@ struct Tank {
 
 template <class Surface, class Solids>
 auto water_in(const Tank& tank, Solids solids) {
-    using Flow = GridFluid<3, Surface, Koren, Real, NoTurbulence, Solids>;
+    using Flow = GridFluid<3, Among<Solids, Surface>>;
     typename Flow::Params params{.grid = {.cells = tank.cells,
                                           .low = Vec3(-0.5 * tank.size(0), -0.5 * tank.size(1), 0),
                                           .spacing = Vec3::Constant(tank.h)},

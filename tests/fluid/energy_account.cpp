@@ -274,7 +274,7 @@ TEST_CASE("a laminar film on a side and on a bed inside a cell: gravity's work i
 TEST_CASE("uniform flow with eddies over a rough bed: what gravity puts in") {
     BoundaryConditions<2> boundaries;
     boundaries[0] = {Boundary::periodic, Boundary::periodic}, boundaries[1][1] = Boundary::free_slip;
-    GridFluid<2, FullBox, Koren, Real, MixingLength> flow(
+    GridFluid<2, Turbulent<MixingLength, FullBox>> flow(
         {.grid = {.cells = {4, 16}, .spacing = {0.0125, 0.00625}},
          .boundaries = boundaries,
          .wall_law = {WallLaw::Kind::logarithmic, 3.5e-3},
@@ -303,7 +303,7 @@ TEST_CASE("a stream with a surface: in - out is what friction and eddies take, a
                               .tolerance = 1e-7};
     params.boundaries[0] = {Boundary::inflow, Boundary::outflow}, params.boundaries[1][0] = Boundary::wall;
     Inflow<2>({.discharge = speed * depth, .depth = depth}).give_to(params);
-    GridFluid<2, FreeSurface, Koren, Real, MixingLength> flow(params, {.depth = depth});
+    GridFluid<2, Turbulent<MixingLength>> flow(params, {.depth = depth});
     flow.open_energy_account();
     flow.advance(4);
     const Real kinetic = flow.energy().kinetic;

@@ -66,7 +66,7 @@ struct HalfASolid {
 static_assert(!SolidsInFlow<HalfASolid>);
 
 template <class Solids>
-using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, Solids>;
+using Flow = GridFluid<3, Among<Solids, FullBox>>;
 
 constexpr int n = 12;
 

@@ -9,7 +9,7 @@ using namespace abrade;
 namespace {
 
 template <int Dim, class Model = Smagorinsky, class Surface = FullBox>
-using Flow = GridFluid<Dim, Surface, Koren, Real, Model>;
+using Flow = GridFluid<Dim, Turbulent<Model, Surface>>;
 
 /// Velocity on all faces and ghosts, as a function of the place.
 template <int Dim>
@@ -288,7 +288,7 @@ TEST_CASE("single precision, and a full box along a logarithmic bed that goes wr
                               .wall_law = {WallLaw::Kind::logarithmic, 1e-3},
                               .velocity = [](const Point<2>&) { return Point<2>(1, 0); },
                               .velocity_limit = 2};
-    GridFluid<2, FullBox, Koren, float, Smagorinsky> single(params);
+    GridFluid<2, Turbulent<Smagorinsky, InPrecision<float, FullBox>>> single(params);
     Flow<2> flow(params);
     flow.advance(0.5), single.advance(0.5);
     const Offset low = flow.grid().layout().at({0, 0}), high = flow.grid().layout().at({0, 15});

@@ -16,7 +16,7 @@ namespace {
 
 template <class Surface, class Solids>
 auto stones_in_water() {
-    using Water = GridFluid<3, Surface, Koren, Real, NoTurbulence, Solids>;
+    using Water = GridFluid<3, Among<Solids, Surface>>;
     GridFluidParams<3> params{.grid = {.cells = {14, 12, 14}, .spacing = Vec3::Constant(0.05)},
                               .boundaries = BoundaryConditions<3>::all(Boundary::free_slip),
                               .gravity = {0, 0, -9.81}};

@@ -16,7 +16,7 @@ Numbers cavity(const Turbulence& turbulence, int along = 14) {
     params.boundary_velocity = [](const Vec3& x, Real) {
         return Vec3(x.z() >= 1 ? 1 : 0, x.z() >= 1 ? 0.3 : 0, 0);
     };
-    GridFluid<3, FullBox, Scheme, State, Turbulence> flow(params, turbulence);
+    GridFluid<3, Turbulent<Turbulence, InPrecision<State, Advected<Scheme, FullBox>>>> flow(params, turbulence);
     flow.open_energy_account();
     flow.advance(1.5);
     return state_of_water(flow).with({"fastest water", "water viscous", "water numerical"});

@@ -38,7 +38,7 @@ GridFluidParams<3> channel(const UniformFlow& uniform) {
 template <class Surface>
 Numbers run() {
     const UniformFlow uniform{{.section = {.length = 0.8}, .discharge = 0.5}};
-    GridFluid<3, Surface, Koren, Real, MixingLength> flow(
+    GridFluid<3, Turbulent<MixingLength, Surface>> flow(
         channel(uniform), {.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()});
     flow.open_energy_account();
     flow.advance(0.2);

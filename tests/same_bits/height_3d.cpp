@@ -20,7 +20,7 @@ GridFluidParams<3> tank(int along = 24) {
 }
 template <class Turbulence>
 Numbers run(const GridFluidParams<3>& params, const Turbulence& turbulence) {
-    GridFluid<3, HeightSurface, Koren, Real, Turbulence> flow(params, turbulence);
+    GridFluid<3, Turbulent<Turbulence, HeightSurface>> flow(params, turbulence);
     flow.open_energy_account();
     flow.advance(0.5);
     return state_of_water(flow).with({"fastest water", "water numerical"});

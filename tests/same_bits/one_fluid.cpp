@@ -9,7 +9,7 @@ namespace {
 
 template <class Surface, class Solids>
 Numbers run() {
-    return fall_in(GridFluid<3, Surface, Koren, Real, NoTurbulence, Solids>(stone_tank<Surface>()),
+    return fall_in(GridFluid<3, Among<Solids, Surface>>(stone_tank<Surface>()),
                    stones_above_floor(0), 0.2)
         .with({"flow_work"});
 }

@@ -9,7 +9,7 @@ namespace {
 
 template <class Solids>
 Numbers run() {
-    return fall_in(GridFluid<3, FreeSurface, Koren, Real, NoTurbulence, Solids>(stone_tank<FreeSurface>()),
+    return fall_in(GridFluid<3, Among<Solids>>(stone_tank<FreeSurface>()),
                    stones_above_floor(0), 0.2)
         .with({"flow_work"});
 }

@@ -8,7 +8,7 @@ using namespace same_bits;
 
 namespace {
 
-using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+using Flow = GridFluid<3, Among<MonolithicSolids<>, FullBox>>;
 
 Flow tank(MonolithicSolids<>::Params solids, int along = 14) {
     return Flow(stone_tank<FullBox>(along), {}, MonolithicSolids<>(solids));

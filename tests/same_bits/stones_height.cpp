@@ -8,7 +8,7 @@ using namespace same_bits;
 
 namespace {
 
-using Flow = GridFluid<3, HeightSurface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+using Flow = GridFluid<3, Among<MonolithicSolids<>, HeightSurface>>;
 
 Flow tank(MonolithicSolids<>::Params solids, int along = 14) {
     return Flow(stone_tank<HeightSurface>(along), {}, MonolithicSolids<>(solids));

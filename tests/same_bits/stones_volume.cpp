@@ -8,7 +8,7 @@ using namespace same_bits;
 
 namespace {
 
-using Flow = GridFluid<3, FreeSurface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+using Flow = GridFluid<3, Among<MonolithicSolids<>, FreeSurface>>;
 
 Flow tank(MonolithicSolids<>::Params solids, int along = 14) {
     return Flow(stone_tank<FreeSurface>(along), {}, MonolithicSolids<>(solids));

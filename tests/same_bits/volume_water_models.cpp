@@ -16,7 +16,7 @@ Numbers dam(const Turbulence& turbulence) {
     params.wall = BallWall<2>({1.0, 0.1}, 0.22);
     params.wall_law = {WallLaw::Kind::logarithmic, 0.01};
     params.water = [](const Point<2>& x) { return std::min(0.6 - x[0], 0.9 - x[1]); };
-    GridFluid<2, FreeSurface, Scheme, Real, Turbulence> flow(params, turbulence);
+    GridFluid<2, Turbulent<Turbulence, Advected<Scheme, FreeSurface>>> flow(params, turbulence);
     flow.open_energy_account();
     flow.advance(0.6);
     return state_of_water(flow).with({"fastest water", "water viscous"});

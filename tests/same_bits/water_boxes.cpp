@@ -11,7 +11,7 @@ namespace {
 /// A lid that moves along on top of a square.
 template <class Scheme>
 Numbers cavity() {
-    GridFluid<2, FullBox, Scheme> flow(
+    GridFluid<2, Advected<Scheme, FullBox>> flow(
         {.grid = {.cells = {24, 24}, .spacing = {1.0 / 24, 1.0 / 24}},
          .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] >= 1 ? 1 : 0, 0); },
          .density = 1,

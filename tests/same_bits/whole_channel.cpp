@@ -16,7 +16,7 @@ using namespace abrade;
 
 namespace {
 
-using Flow = GridFluid<3, HeightSurface, Koren, Real, MixingLength, MonolithicSolids<>>;
+using Flow = GridFluid<3, Among<MonolithicSolids<>, Turbulent<MixingLength, HeightSurface>>>;
 
 const Invert invert{.length = 1};
 

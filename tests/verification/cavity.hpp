@@ -16,7 +16,7 @@ struct Errors {
 
 template <AdvectionScheme Scheme>
 Errors errors(int n, int reynolds, Real end_time) {
-    GridFluid<2, FullBox, Scheme> flow(
+    GridFluid<2, Advected<Scheme, FullBox>> flow(
         {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)},
          .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
          .density = 1,

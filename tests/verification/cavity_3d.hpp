@@ -15,10 +15,10 @@ constexpr Real reynolds = 1000;
 /// The lid is the upper side and slides along x. The flow is its own mirror across the plane y = 1/2: half
 /// the cube, before a side that glides, is all of it.
 template <AdvectionScheme Scheme>
-GridFluid<3, FullBox, Scheme> half_cube(int n) {
+GridFluid<3, Advected<Scheme, FullBox>> half_cube(int n) {
     BoundaryConditions<3> boundaries;
     boundaries[1][1] = Boundary::free_slip;
-    return GridFluid<3, FullBox, Scheme>(
+    return GridFluid<3, Advected<Scheme, FullBox>>(
         {.grid = {.cells = {n, n / 2, n}, .spacing = Point<3>::Constant(1.0 / n)},
          .boundaries = boundaries,
          .boundary_velocity = [](const Point<3>& x, Real) { return Point<3>(x[2] > 1 - 1e-9 ? 1 : 0, 0, 0); },

@@ -13,7 +13,7 @@ namespace channel_water {
 using namespace abrade;
 
 template <class Turbulence = MixingLength>
-using Channel = GridFluid<3, FreeSurface, Koren, Real, Turbulence>;
+using Channel = GridFluid<3, Turbulent<Turbulence>>;
 
 constexpr Real spacing = 0.02, discharge = 0.5, manning = 0.015;  ///< [m], [m3/s], [s/m^(1/3)]
 

@@ -13,7 +13,7 @@ namespace {
 
 /// A closed box of water over the bed, its catching floor included, half as high again as the column.
 auto still_water(const Column& column) {
-    using Water = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+    using Water = GridFluid<3, Among<MonolithicSolids<>, FullBox>>;
     const int along = static_cast<int>(std::ceil(reach_of(column))) + 2,
               across = static_cast<int>(std::lround(column.width)),
               up = static_cast<int>(std::ceil(1.5 * column.height())) + 2;

@@ -26,7 +26,7 @@ struct Events {
 /// Spheres of 1/6 cm and 1.14 times the water's density in a box of 1 cm x 1 cm x 4 cm, as R. Glowinski et
 /// al. 2001, doi:10.1006/jcph.2000.6542, have them; frictionless contacts. Re 70 to 90.
 inline Events events_of(Real cells, Real end) {
-    using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+    using Flow = GridFluid<3, Among<MonolithicSolids<>, FullBox>>;
     const Real diameter = 0.01 / 6, h = diameter / cells;
     const int n = static_cast<int>(std::round(0.01 / h)), up = static_cast<int>(std::round(0.04 / h));
     const Flow water({.grid = {.cells = {n, n, up}, .spacing = Vec3(0.01 / n, 0.01 / n, 0.04 / up)},

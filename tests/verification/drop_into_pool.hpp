@@ -8,7 +8,7 @@ namespace drop_into_pool {
 using namespace resolved;
 
 template <class Surface>
-using Pool = GridFluid<3, Surface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+using Pool = GridFluid<3, Among<MonolithicSolids<>, Surface>>;
 
 constexpr Real diameter = 0.1, density = 2650, rho = 1000, g = 9.81;  // [m], [kg/m3], [m/s2]
 constexpr Real volume = pi / 6 * diameter * diameter * diameter, radius = 0.5 * diameter;

@@ -8,7 +8,7 @@ namespace heave {
 
 using namespace resolved;
 
-using Pool = GridFluid<3, HeightSurface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+using Pool = GridFluid<3, Among<MonolithicSolids<>, HeightSurface>>;
 
 /// Added mass of a floating hemisphere as it heaves, over the water in its place: 0.83 for long waves, 0.5
 /// for short ones, some 0.42 at its own frequency (A. Hulme 1982, doi:10.1017/S0022112082001980).

@@ -40,7 +40,7 @@ struct Rebound {
 /// From 3 diameters above the floor, at the speed at which its weight and its drag are equal, in a box 5
 /// diameters wide whose sides let the liquid glide. The contact gives way by a hundredth of a diameter.
 inline Rebound rebound(const Fall& fall) {
-    using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+    using Flow = GridFluid<3, Among<MonolithicSolids<>, FullBox>>;
     constexpr Real diameter = 0.01, rho = 1000, g = 9.81, dry = 0.97, above = 0.7 * diameter;
     const Real reynolds = 9 * fall.stokes / fall.ratio;
     const Real drag = reynolds > 1000 ? 0.44 : 24 / reynolds * (1 + 0.15 * std::pow(reynolds, 0.687));

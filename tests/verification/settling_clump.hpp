@@ -51,7 +51,7 @@ struct Settled {
 /// In a box 6 diameters wide, from rest through 15.5 diameters, whose sides let the water glide. `tilt`: of
 /// the clump's axis off the horizontal at the start [degree]; `clump`: or the sphere of its volume.
 inline Settled settle(bool clump, Real cells, Real tilt) {
-    using Flow = GridFluid<3, FullBox, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+    using Flow = GridFluid<3, Among<MonolithicSolids<>, FullBox>>;
     const Real h = diameter / cells;
     const int n = static_cast<int>(std::round(6 * cells)), up = static_cast<int>(std::round(20 * cells));
     const Flow water({.grid = {.cells = {n, n, up}, .spacing = Vec3::Constant(h)},

@@ -20,7 +20,7 @@ constexpr Real diameter = 0.015;  // [m]
 /// At rest; `cells`: to the sphere's diameter.
 template <class Solids>
 auto oil(const ReferenceRow& row, Real cells, Solids solids) {
-    using Oil = GridFluid<3, FullBox, Koren, Real, NoTurbulence, Solids>;
+    using Oil = GridFluid<3, Among<Solids, FullBox>>;
     const Real h = diameter / cells;
     const int across = static_cast<int>(std::ceil(0.1 / h)), up = static_cast<int>(std::ceil(0.16 / h));
     return Oil(

@@ -13,7 +13,7 @@ namespace stone_in_stream {
 
 using namespace abrade;
 
-using Flow = GridFluid<3, HeightSurface, Koren, Real, NoTurbulence, MonolithicSolids<>>;
+using Flow = GridFluid<3, Among<MonolithicSolids<>, HeightSurface>>;
 
 constexpr Real diameter = 0.2, length = 1.6, g = 9.81, density = 1000;  // [m], [m/s2], [kg/m3]
 

@@ -17,9 +17,9 @@ Point<2> exact(const Point<2>& x, Real t) {
 }
 
 template <AdvectionScheme Scheme, class State = Real>
-GridFluid<2, FullBox, Scheme, State> vortices(int n, Real shift = 0) {
+GridFluid<2, InPrecision<State, Advected<Scheme, FullBox>>> vortices(int n, Real shift = 0) {
     // Shifted by parts of a cell nothing may change.
-    return GridFluid<2, FullBox, Scheme, State>({.grid = {.cells = {n, n},
+    return GridFluid<2, InPrecision<State, Advected<Scheme, FullBox>>>({.grid = {.cells = {n, n},
                                                           .low = Point<2>::Constant(shift),
                                                           .spacing = Point<2>::Constant(2 * pi / n)},
                                                  .boundaries = BoundaryConditions<2>::all(Boundary::periodic),

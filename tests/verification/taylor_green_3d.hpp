@@ -19,9 +19,9 @@ enum class Part { whole, eighth };
 
 /// n cells to the period of 2 pi.
 template <AdvectionScheme Scheme>
-GridFluid<3, FullBox, Scheme> vortices(int n, Part part = Part::eighth) {
+GridFluid<3, Advected<Scheme, FullBox>> vortices(int n, Part part = Part::eighth) {
     const int cells = part == Part::whole ? n : n / 2;
-    return GridFluid<3, FullBox, Scheme>(
+    return GridFluid<3, Advected<Scheme, FullBox>>(
         {.grid = {.cells = {cells, cells, cells}, .spacing = Point<3>::Constant(2 * pi / n)},
          .boundaries =
              BoundaryConditions<3>::all(part == Part::whole ? Boundary::periodic : Boundary::free_slip),

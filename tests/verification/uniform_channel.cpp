@@ -36,7 +36,7 @@ Found found(const Bed& bed, int cells, Real length, Model model) {
     BoundaryConditions<2> boundaries;
     boundaries[0] = {Boundary::periodic, Boundary::periodic};
     boundaries[1] = {Boundary::wall, Boundary::free_slip};
-    GridFluid<2, FullBox, Koren, Real, Model> flow(
+    GridFluid<2, Turbulent<Model, FullBox>> flow(
         {.grid = {.cells = {4, cells}, .spacing = {length, h}},
          .boundaries = boundaries,
          .wall_law = {WallLaw::Kind::logarithmic, bed.roughness()},

@@ -53,7 +53,7 @@ struct CentreLines {
 /// The lid-driven cavity at Re 1000 after 40 s: a square of side 1, its lid moves along x at speed 1.
 template <AdvectionScheme Scheme, class State = Real>
 CentreLines cavity(int n, const Choice& choice) {
-    GridFluid<2, FullBox, Scheme, State> flow(
+    GridFluid<2, InPrecision<State, Advected<Scheme, FullBox>>> flow(
         {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(1.0 / n)},
          .boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 1 - 1e-9 ? 1 : 0, 0); },
          .density = 1,
@@ -85,7 +85,7 @@ struct Vortices {
 };
 template <AdvectionScheme Scheme, class State = Real>
 Vortices taylor_green(int n, const Choice& choice) {
-    GridFluid<2, FullBox, Scheme, State> flow(
+    GridFluid<2, InPrecision<State, Advected<Scheme, FullBox>>> flow(
         {.grid = {.cells = {n, n}, .spacing = Point<2>::Constant(2 * pi / n)},
          .boundaries = BoundaryConditions<2>::all(Boundary::periodic),
          .velocity = [](const Point<2>& x) { return Vortices::exact(x, 0); },
@@ -126,7 +126,7 @@ struct Collapse {
 template <AdvectionScheme Scheme>
 Collapse dam_break(int n, const Choice& choice) {
     constexpr Real width = Collapse::width;
-    GridFluid<2, FreeSurface, Scheme> flow(
+    GridFluid<2, Advected<Scheme>> flow(
         {.grid = {.cells = {8 * n, 3 * n}, .spacing = Point<2>::Constant(width / n)},
          .boundaries = BoundaryConditions<2>::all(choice.walls),
          .water = [](const Point<2>& x) { return std::min(width - x[0], 2 * width - x[1]); },
@@ -187,7 +187,7 @@ Bump bump(int n, const Choice& choice) {
         .tolerance = choice.tolerance};
     params.boundaries[0][1] = Boundary::outflow;
     Inflow<2>({.discharge = Bump::discharge, .depth = Bump::level}).give_to(params);
-    GridFluid<2, Surface, Scheme> flow(std::move(params));
+    GridFluid<2, Advected<Scheme, Surface>> flow(std::move(params));
     flow.advance(Bump::end);
     Bump found{.cost = {flow.grid().layout().cell_count(), flow.steps()}};
     for (int i = 0; i < flow.grid().cells(0); ++i) {

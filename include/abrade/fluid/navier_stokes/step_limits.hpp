@@ -79,4 +79,16 @@ Real smooth_step(const BodyForce<Dim>& force, Real time, Real longest) {
     }
 }
 
+/// The same, as long as a body force goes on as it does. A given force may not know the time beyond the run:
+/// it then fails the step that asks for it.
+template <int Dim>
+FluidStep step_of_body_force(FluidStep step, const GridFluidParams<Dim>& params, Real time) {
+    if (!params.body_force || !std::isfinite(step.seconds)) return step;
+    try {
+        step.lower(smooth_step<Dim>(params.body_force, time, step.seconds), "body force");
+    } catch (...) {
+    }
+    return step;
+}
+
 }  // namespace abrade::detail
