@@ -12,7 +12,8 @@ namespace abrade {
 
 /// All in joules, in two dimensions per metre of width. The balance over any time is
 ///   kinetic + potential - (kinetic_start + potential_start)
-///     = inflow - outflow + boundaries + body_force + reshaped + solids - viscous - turbulent - wall_friction
+///     = inflow - outflow + boundaries + body_force + forcing + sources + reshaped + solids
+///       - viscous - turbulent - wall_friction
 ///       - solid_friction - numerical.
 /// Every term but `numerical` is measured on its own; `numerical` is the remainder of each step: what
 /// advection, time steps, the surface's reconstruction and the pressure's tolerance lose (below 0: gain).
@@ -31,6 +32,8 @@ struct WaterEnergy {
     Real outflow = 0;         ///< the same through outflows; what comes back there is taken off
     Real boundaries = 0;      ///< work of sides that move along themselves
     Real body_force = 0;      ///< work of `body_force`, and of gravity along periodic axes
+    Real forcing = 0;         ///< work of a user's force per volume (Forcing)
+    Real sources = 0;         ///< what water brought that a user put in, less what it took away
     Real reshaped = 0;        ///< what `set_wall` changed, and solids that came took the place of
     Real solids = 0;          ///< work of solids that move in it, as `solids_took` has told it
     Real viscous = 0;         ///< dissipated by the molecular viscosity
@@ -47,9 +50,10 @@ struct WaterEnergy {
             field("potential_start", "J", &WaterEnergy::potential_start),
             field("inflow", "J", &WaterEnergy::inflow), field("outflow", "J", &WaterEnergy::outflow),
             field("boundaries", "J", &WaterEnergy::boundaries),
-            field("body_force", "J", &WaterEnergy::body_force),
-            field("reshaped", "J", &WaterEnergy::reshaped), field("solids", "J", &WaterEnergy::solids),
-            field("viscous", "J", &WaterEnergy::viscous), field("turbulent", "J", &WaterEnergy::turbulent),
+            field("body_force", "J", &WaterEnergy::body_force), field("forcing", "J", &WaterEnergy::forcing),
+            field("sources", "J", &WaterEnergy::sources), field("reshaped", "J", &WaterEnergy::reshaped),
+            field("solids", "J", &WaterEnergy::solids), field("viscous", "J", &WaterEnergy::viscous),
+            field("turbulent", "J", &WaterEnergy::turbulent),
             field("wall_friction", "J", &WaterEnergy::wall_friction),
             field("solid_friction", "J", &WaterEnergy::solid_friction),
             field("numerical", "J", &WaterEnergy::numerical),
@@ -58,7 +62,9 @@ struct WaterEnergy {
 
     Real total() const noexcept { return kinetic + potential; }
     Real gained() const noexcept { return total() - kinetic_start - potential_start; }
-    Real supplied() const noexcept { return inflow - outflow + boundaries + body_force + reshaped + solids; }
+    Real supplied() const noexcept {
+        return inflow - outflow + boundaries + body_force + forcing + sources + reshaped + solids;
+    }
     /// By physics; `numerical` is not.
     Real dissipated() const noexcept { return viscous + turbulent + wall_friction + solid_friction; }
 
@@ -77,7 +83,7 @@ struct WaterEnergy {
         f("kinetic", kinetic), f("potential", potential);
         f("kinetic_start", kinetic_start), f("potential_start", potential_start);
         f("inflow", inflow), f("outflow", outflow), f("boundaries", boundaries), f("body_force", body_force);
-        f("reshaped", reshaped), f("solids", solids);
+        f("forcing", forcing), f("sources", sources), f("reshaped", reshaped), f("solids", solids);
         f("viscous", viscous), f("turbulent", turbulent), f("wall_friction", wall_friction);
         f("solid_friction", solid_friction);
         f("numerical", numerical), f("advection", advection);

@@ -61,7 +61,14 @@ public:
         WaterEnergy change;
         body_force(flow, dt, change);
         viscous(flow, dt, change);
-        wall_friction(flow, change);
+        change.wall_friction =
+            work_at_faces(flow, [&](auto&& of_face) { flow.friction.for_each(taken_, of_face); });
+        if (flow.gains)
+            change.forcing = work_at_faces(flow, [&](auto&& of_face) {
+                for (int a = 0; a < Dim; ++a)
+                    for (const FaceGain& g : (*flow.gains)[a]) of_face(a, g.face, g.gain);
+            });
+        change.sources = brought_by_sources(flow);
         const Real carried = through_openings(flow, change);
         if (!flow.liquid)
             change.advection =
@@ -75,7 +82,8 @@ public:
         energy_.boundaries += change.boundaries, energy_.body_force += change.body_force;
         energy_.viscous += change.viscous, energy_.turbulent += change.turbulent;
         energy_.wall_friction += change.wall_friction, energy_.numerical += change.numerical;
-        energy_.reshaped += change.reshaped;
+        energy_.reshaped += change.reshaped, energy_.forcing += change.forcing;
+        energy_.sources += change.sources;
         energy_.advection += change.advection, energy_.solid_friction += change.solid_friction;
     }
 
@@ -301,22 +309,40 @@ private:
         return viscosity * work;
     }
 
-    void wall_friction(const View& flow, WaterEnergy& change) {
+    /// Work of velocities that faces gain, or lose, of which `each` tells.
+    Real work_at_faces(const View& flow, auto&& each) const {
         std::unordered_map<Offset, Real> solid;
         const auto key = [](int a, Offset c) { return Dim * c + a; };
         for (const SolidVolume& s : flow.solids) solid[key(s.axis, s.face)] += s.volume;
         Real work = 0;
-        flow.friction.for_each(taken_, [&](int a, Offset c, Real taken) {
-            if (taken == 0) return;
+        each([&](int a, Offset c, Real gained) {
+            if (gained == 0) return;
             const auto found = solid.find(key(a, c));
             const Real liquid =
                 content_.liquid_of_face(flow, a, c) - (found == solid.end() ? 0 : found->second);
             const CellNumber<Dim> cell = flow.grid.layout().number(c);
             const auto mid = static_cast<Real>(mid_[a][c]), now = static_cast<Real>(flow.velocity[a][c]);
-            work += share_of_openings(flow, a, cell) * std::max(liquid, Real(0)) * taken *
+            work += share_of_openings(flow, a, cell) * std::max(liquid, Real(0)) * gained *
                     (flow.liquid ? 0.5 * (mid + now) : mid);
         });
-        change.wall_friction = flow.params.density * work;
+        return flow.params.density * work;
+    }
+
+    /// Potential energy and work of the pressure of water that is put in; what is taken out has its own
+    /// motion, too.
+    Real brought_by_sources(const View& flow) const {
+        Real brought = 0;
+        for (const CellSource& s : flow.sources) {
+            if (s.volume == 0) continue;
+            const Point<Dim> x = flow.grid.centre(flow.grid.layout().number(s.cell));
+            Real squares = 0;
+            for (int a = 0; a < Dim; ++a)
+                for (const Offset c : {s.cell, s.cell + flow.grid.layout().stride[a]})
+                    squares += 0.5 * square(static_cast<Real>(mid_[a][c]));
+            brought += s.volume * (static_cast<Real>(flow.pressure[s.cell]) - content_.gravity().dot(x) +
+                                   (s.volume < 0 ? 0.5 * squares : 0));
+        }
+        return flow.params.density * brought;
     }
 
     /// Led on to the face from two cells, if the second one is wet.

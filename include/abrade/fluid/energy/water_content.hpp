@@ -6,6 +6,7 @@
 #include <abrade/fluid/mesh/level_table.hpp>
 #include <abrade/fluid/mesh/solid_parts.hpp>
 #include <abrade/fluid/mesh/wet_rows.hpp>
+#include <abrade/fluid/momentum/forcing.hpp>
 #include <abrade/fluid/setup/grid_fluid_params.hpp>
 
 #include <cstddef>
@@ -41,7 +42,9 @@ struct EnergyView {
     /// What carried momentum in the second stage among solids [m/s]; none: a stage's own velocity. Of a full
     /// box.
     const FaceField<Dim, State>* advecting_flux = nullptr;
-    Real solid_friction = 0;  ///< lost in the step [J]
+    Real solid_friction = 0;                                     ///< lost in the step [J]
+    const PerAxis<std::vector<FaceGain>, Dim>* gains = nullptr;  ///< by a user's force; none: nothing
+    std::span<const CellSource> sources{};
 };
 
 /// Sum of of_row(plane, row, range) over the rows that are not dry. The same bits for any number of threads.

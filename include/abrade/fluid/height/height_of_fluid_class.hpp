@@ -5,6 +5,7 @@
 #include <abrade/fluid/height/fluxes.hpp>
 #include <abrade/fluid/height/solids_in_columns.hpp>
 #include <abrade/fluid/mesh/ghost_cells.hpp>
+#include <abrade/fluid/mesh/water_cells.hpp>
 #include <abrade/fluid/vof/cell_marks.hpp>
 #include <abrade/fluid/vof/volume_of_fluid_class.hpp>
 
@@ -144,8 +145,11 @@ public:
         fluxes_.limit(flow);
         fluxes_.sum(flow, next_);
         add_solid(std::exchange(solid_fluxes_, {}), dt);
+        const std::span<CellSource> sources = std::exchange(sources_, {});
+        take_sources(sources, dt);
         hold_slopes(dt);
         renew();
+        raise_by(sources);
         ++steps_;
         if (rose_far_)
             wet_.find(fraction_);
@@ -163,6 +167,8 @@ public:
         solids_.set(parts, grid_, columns_);
         solid_fluxes_ = fluxes;
     }
+    /// As VolumeOfFluid's; within the next step, of the part of a cell that lies below the surface.
+    void set_sources(std::span<CellSource> sources) noexcept { sources_ = sources; }
     /// Solids that the water has been given around, up to its surface as it stands.
     void stand_solids(std::span<const SolidPart> parts) {
         solids_.set(parts, grid_, columns_);
@@ -308,6 +314,10 @@ private:
     void owe(Offset cell, int level, Real beyond);
     void owe_below(int plane, int j, const Surface& surface);
 
+    void take_sources(std::span<CellSource> sources, Real dt);
+    /// What they are goes up through level faces to the surface, beside what `renew` finds there.
+    void raise_by(std::span<const CellSource> sources);
+
     /// Holds slopes that are too steep back from growing.
     void hold_slopes(Real dt);
     /// Fills columns to their new volumes; what went through level faces.
@@ -390,6 +400,7 @@ private:
     detail::SolidsInColumns<Dim> solids_, solids_before_;
     std::vector<SolidVolume> solid_moved_;
     std::span<const SolidFlux> solid_fluxes_;  ///< of the step to come
+    std::span<CellSource> sources_;            ///< likewise
     Overturning overturning_;
     Point<Dim> gravity_ = Point<Dim>::Zero();
     Index steps_ = 0;

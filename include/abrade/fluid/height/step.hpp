@@ -71,6 +71,29 @@ void HeightOfFluid<Dim>::hold_slopes(Real dt) {
 }
 
 template <int Dim>
+void HeightOfFluid<Dim>::take_sources(std::span<CellSource> sources, Real dt) {
+    for (CellSource& s : sources) {
+        const CellNumber<Dim> cell = layout_.number(s.cell);
+        const Index n = columns_.column(cell);
+        const Real holds = fraction_[s.cell] * columns_.open(s.cell) * columns_.volume(cell[vertical]);
+        s.volume = std::max(s.rate * dt * holds, -next_[at(n)]);
+        next_[at(n)] += s.volume;
+    }
+}
+
+template <int Dim>
+void HeightOfFluid<Dim>::raise_by(std::span<const CellSource> sources) {
+    for (const CellSource& s : sources) {
+        if (s.volume == 0) continue;
+        const CellNumber<Dim> cell = layout_.number(s.cell);
+        const Offset up = layout_.stride[vertical];
+        Offset face = s.cell;
+        for (int k = cell[vertical] + 1; k <= top_[at(columns_.column(cell))]; ++k)
+            volume_flux_[vertical][face += up] += s.volume;
+    }
+}
+
+template <int Dim>
 void HeightOfFluid<Dim>::renew() {
     if (brim_) volume_defect_.fill(0);
     brim_ = false;

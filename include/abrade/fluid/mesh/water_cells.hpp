@@ -25,6 +25,13 @@ struct OpenFace {
         1;  ///< share of what moves through the face that lies below the surface, and has weight [-]
 };
 
+/// Water that is put into a cell, or taken out (below 0).
+struct CellSource {
+    Offset cell = 0;
+    Real rate = 0;    ///< of the cell's open volume [1/s]
+    Real volume = 0;  ///< in the last step [m3]
+};
+
 /// Cells that take part in a projection and what lies between them.
 template <int Dim>
 struct WaterCells {

@@ -16,6 +16,16 @@
 
 namespace abrade::detail {
 
+/// What of a Forcing a flow keeps.
+template <int Dim, class F>
+struct AppliedOf {
+    using type = std::optional<AppliedForcing<Dim, F>>;
+};
+template <int Dim>
+struct AppliedOf<Dim, NoForcing> {
+    struct type {};
+};
+
 /// What lasts from step to step, whatever fills the box. `stage` is the velocity after a step's first stage.
 template <int Dim, FlowOptions Options>
 struct FlowFields {
@@ -23,6 +33,7 @@ struct FlowFields {
     using Scheme = typename Options::Scheme;
     using Turbulence = typename Options::Turbulence;
     using Solids = typename Options::Solids;
+    using Forcing = typename Options::Forcing;
     using Params = GridFluidParams<Dim>;
     using Velocity = FaceField<Dim, Number>;
     using Stage = MomentumStage<Dim, Number>;
@@ -31,10 +42,13 @@ struct FlowFields {
     using Account = EnergyAccount<Dim, Number, Scheme, Liquid>;
     using Eddies = EddyViscosity<Dim, Number>;
     struct Nothing {};
+    static constexpr bool has_forcing = !std::same_as<Forcing, NoForcing>;
+    static constexpr bool has_sources = HasSource<Forcing, Dim>;
 
-    FlowFields(Params asked, Turbulence model, Solids among)
+    FlowFields(Params asked, Turbulence model, Solids among, Forcing acts)
         : params((asked.validate(), std::move(asked))), turbulence(std::move(model)),
-          solids(std::move(among)), grid(std::make_shared<const Grid<Dim>>(params.grid)),
+          solids(std::move(among)), forcing(std::move(acts)),
+          grid(std::make_shared<const Grid<Dim>>(params.grid)),
           boundaries(*grid, with_free_slip(params.boundaries, params.wall_law), params.boundary_velocity,
                      params.start_time),
           projection(*grid, params.boundaries), velocity(face_field<Dim, Number>(grid->layout())),
@@ -43,13 +57,15 @@ struct FlowFields {
     Params params;
     [[no_unique_address]] Turbulence turbulence;
     [[no_unique_address]] Solids solids;
+    [[no_unique_address]] Forcing forcing;
     std::shared_ptr<const Grid<Dim>> grid;  ///< shared among copies, parts of which point to it
     VelocityBoundaries<Dim> boundaries;
     Projection<Dim, Number> projection;
-    Velocity velocity, stage;             ///< [m/s]
-    std::span<const FlowBody> arriving;   ///< bodies of the step to come
-    Field<Number> pressure;               ///< over density [m2/s2]
+    Velocity velocity, stage;            ///< [m/s]
+    std::span<const FlowBody> arriving;  ///< bodies of the step to come
+    Field<Number> pressure;              ///< over density [m2/s2]
     std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies{};
+    typename AppliedOf<Dim, Forcing>::type forced{};
     std::optional<Account> energy;  ///< none: nobody asks
     typename Projection<Dim, Number>::Report report;
     Real time = 0, fastest = 0, enters = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
@@ -66,6 +82,7 @@ struct FlowFields {
         field("given", "J", &FlowFields::given), field("steps", &FlowFields::steps);
         if constexpr (Turbulence::has_eddies) field("eddies", &FlowFields::eddies);
         if constexpr (Solids::present) field("solids", &FlowFields::solids);
+        if constexpr (has_forcing) field("forced", &FlowFields::forced);
     }
 
     const Layout<Dim>& layout() const noexcept { return grid->layout(); }
@@ -90,6 +107,31 @@ struct FlowFields {
         if constexpr (Turbulence::has_eddies) eddies->find(velocity, boundaries, rows, liquid_fraction);
     }
 
+    /// Where the forcing acts; `walls` may be none.
+    void build_forcing([[maybe_unused]] const EmbeddedBoundary<Dim>* walls) {
+        if constexpr (has_forcing) forced.emplace(*grid, params.boundaries, forcing, walls);
+    }
+    /// What it does to the water as it is, without a step: that limits the first one.
+    void look_at_forcing() {
+        if constexpr (has_forcing) {
+            forced->find_sources(forcing, time);
+            forced->find(forcing, velocity, {params.density, 0, time});
+        }
+    }
+    /// In the first stage of a step; `middle`: the time that it stands for [s], `wet`: cells that have a
+    /// pressure, none: all.
+    void force_stage([[maybe_unused]] Real dt, [[maybe_unused]] Real middle,
+                     [[maybe_unused]] const Field<std::uint8_t>* wet) {
+        if constexpr (has_forcing) {
+            forced->find(forcing, stage, {params.density, dt, middle, wet});
+            forced->give(stage, 1);
+        }
+    }
+    /// In the second: half of the same, for the mean of both stages has the other half.
+    void force_second_stage([[maybe_unused]] Velocity& u) const {
+        if constexpr (has_forcing) forced->give(u, 0.5);
+    }
+
     /// How long a push upon solids has lasted of late [s].
     Real relaxation_time_of_solids(Real dt) const noexcept {
         return steps < 2 ? dt : history.relaxation_time(dt);
@@ -112,6 +154,9 @@ struct FlowFields {
     const Field<Number>* eddy_viscosity() const noexcept {
         if constexpr (Turbulence::has_eddies) return &eddies->field();
         return nullptr;
+    }
+    void add_forcing([[maybe_unused]] typename Account::View& view) const {
+        if constexpr (has_forcing) view.gains = &forced->gains(), view.sources = forced->sources();
     }
     /// The same of solids, in water that is `fraction` of each cell; none: all of it.
     void add_solids(typename Account::View& view, [[maybe_unused]] const Field<Real>* fraction) const {

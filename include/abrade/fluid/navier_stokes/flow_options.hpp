@@ -2,6 +2,7 @@
 // What water on a grid is made of: chosen at compile time, by name.
 
 #include <abrade/fluid/momentum/advection_schemes.hpp>
+#include <abrade/fluid/momentum/forcing.hpp>
 #include <abrade/fluid/momentum/turbulence.hpp>
 #include <abrade/fluid/pressure/solids_in_flow.hpp>
 
@@ -23,6 +24,7 @@ struct FullBox {
     using Number = Real;              ///< of velocity and pressure; float in a full box without solids alone
     using Turbulence = NoTurbulence;  ///< what eddies below a cell do
     using Solids = NoSolids;          ///< that move in it: how water and bodies are coupled
+    using Forcing = NoForcing;        ///< a user's force per volume, and water that is put in
 };
 /// Water below a surface (VolumeOfFluid); above it a void at pressure 0.
 struct FreeSurface : FullBox {
@@ -53,16 +55,21 @@ struct Among : Options {
     using Solids = S;
 };
 
-template <class O>
-concept FlowOptions =
-    requires {
-        { O::surface } -> std::convertible_to<SurfaceKind>;
-        typename O::Number;
-    } &&
-    std::floating_point<typename O::Number> && AdvectionScheme<typename O::Scheme> &&
-    TurbulenceModel<typename O::Turbulence> && SolidsInFlow<typename O::Solids>;
+template <class F, class Options = FreeSurface>
+struct Forced : Options {
+    using Forcing = F;
+};
 
-/// "volume of fluid, Koren, double, Smagorinsky, NoSolids".
+template <class O>
+concept FlowOptions = requires {
+    { O::surface } -> std::convertible_to<SurfaceKind>;
+    typename O::Number;
+    { O::Forcing::name } -> std::convertible_to<std::string_view>;
+}
+&&std::floating_point<typename O::Number>&& AdvectionScheme<typename O::Scheme>&&
+    TurbulenceModel<typename O::Turbulence>&& SolidsInFlow<typename O::Solids>;
+
+/// "volume of fluid, Koren, double, Smagorinsky, NoSolids, NoForcing".
 template <FlowOptions O>
 std::string option_names() {
     std::string text = O::surface == SurfaceKind::none              ? "full box"
@@ -71,6 +78,7 @@ std::string option_names() {
     text.append(", ").append(O::Scheme::name);
     text.append(std::same_as<typename O::Number, float> ? ", float" : ", double");
     text.append(", ").append(O::Turbulence::name).append(", ").append(O::Solids::name);
+    text.append(", ").append(O::Forcing::name);
     return text;
 }
 

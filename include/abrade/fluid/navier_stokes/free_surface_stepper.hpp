@@ -85,7 +85,7 @@ public:
         find_surface(flow, dt);
         push_solids(flow, dt);
         flow.project(
-            {dt, flow.params.tolerance, true, volume_defect(), flow.history.relaxation_time(dt)});
+            {dt, flow.params.tolerance, true, volume_defect(flow, dt), flow.history.relaxation_time(dt)});
         if constexpr (is_height) slow_thin_water(flow.velocity, water_.liquid(), dt, flow.nu());
         if constexpr (Solids::present) flow.solids.settle(flow.velocity, flow.pressure);
         extend(flow, flow.velocity);
@@ -154,7 +154,7 @@ public:
                                           .liquid_fraction = &water_.liquid_fraction(),
                                           .wet = &water_.wet(),
                                           .open_friction = water_.open_friction()};
-        flow.add_solids(view, &water_.liquid().fraction());
+        flow.add_forcing(view), flow.add_solids(view, &water_.liquid().fraction());
         return view;
     }
     /// The velocity by which the liquid came to where it is, ghosts filled [m/s].
@@ -173,10 +173,18 @@ public:
 
 private:
     /// What the pressure is to drive out; none: nothing.
-    const Field<Real>* volume_defect() const noexcept {
+    const Field<Real>* volume_defect([[maybe_unused]] const Flow& flow, [[maybe_unused]] Real dt) {
+        const Liquid& liquid = water_.liquid();
+        if constexpr (is_height && Flow::has_sources) {  // columns have had theirs, cells are to drive it out
+            sources_ = liquid.volume_defect();
+            const Real within = std::max(dt, flow.history.relaxation_time(dt));
+            for (const CellSource& s : flow.forced->sources())
+                if (s.volume != 0) sources_[s.cell] += s.rate * within;
+            return &sources_;
+        }
         if constexpr (is_height)
-            if (!water_.liquid().has_volume_defect()) return nullptr;
-        return &water_.liquid().volume_defect();
+            if (!liquid.has_volume_defect()) return nullptr;
+        return &liquid.volume_defect();
     }
 
     /// Velocities of the air beside the water, ghosts.
@@ -189,6 +197,7 @@ private:
     void look_at_walls(Flow& flow) {
         heights_ = SurfaceHeights<Dim>(*flow.grid, flow.params.boundaries.periodic_axes(), water_.walls());
         flow.build_eddies(water_.walls());
+        flow.build_forcing(water_.walls());
     }
     void find_heights(const Flow& flow) {
         heights_.find(*flow.grid, water_.rows(), water_.liquid_fraction());
@@ -266,6 +275,8 @@ private:
     }
 
     void move_liquid(Flow& flow, Real dt) {
+        if constexpr (Flow::has_sources)
+            water_.set_sources(flow.forced->find_sources(flow.forcing, flow.time + dt));
         while_seeping(flow, [&] { water_.move(flow.velocity, dt); });
         if (flow.energy) flow.energy->liquid_moved(energy_view(flow));
     }
@@ -282,6 +293,7 @@ private:
         if constexpr (Solids::present)
             flow.solids.slow(flow.stage,
                              {.dt = dt, .viscosity = flow.nu(), .liquid_fraction = liquid_fraction()});
+        flow.force_stage(dt, flow.time + dt, &water_.wet());
         if (flow.energy) flow.energy->walls_took(taken);
         if (!flow.params.steady_boundaries) flow.boundaries.set_time(flow.time + dt);
         flow.boundaries.fill(flow.stage, rows());
@@ -291,6 +303,7 @@ private:
         water_.clear_surface_push(flow.projection.open_faces());
         water_.friction().take(flow.velocity, &water_.rows(), taken, 0.5);
         if constexpr (Solids::present) flow.solids.give_back(flow.velocity, 0.5);
+        flow.force_second_stage(flow.velocity);
         water_.let_go(flow.velocity);
     }
 
@@ -300,8 +313,11 @@ private:
     };
     void stage(Flow& flow, const StageOf& s) {
         water_.fill_closed(s.by);
-        typename Flow::Stage momentum{s.by, water_.advecting_flux(), flow.velocity, s.result, flow.pressure,
-                                      s.dt, s.kept,                  s.push,        flow.nu(), falls_};
+        typename Flow::Stage momentum{s.by,          water_.advecting_flux(),
+                                      flow.velocity, s.result,
+                                      flow.pressure, s.dt,
+                                      s.kept,        s.push,
+                                      flow.nu(),     falls_};
         momentum.carried_in = s.dt, momentum.liquid_fraction_before = &water_.liquid_fraction_before(),
         momentum.liquid_fraction = &water_.liquid_fraction();
         momentum.aperture = water_.aperture(), momentum.open_friction = water_.open_friction();
@@ -367,6 +383,8 @@ private:
     StateBackup<Dim, Liquid> backup_;
     SurfaceHeights<Dim> heights_;
     Outflows<Dim> outflows_;
+    std::conditional_t<is_height && Flow::has_sources, Field<Real>, typename Flow::Nothing>
+        sources_{};                          ///< [-]
     Point<Dim> falls_ = Point<Dim>::Zero();  ///< acceleration by gravity and body force in the step [m/s2]
     Real first_step_ = 0;                    ///< in which what first moves it does not cross a cell [s]
 };

@@ -35,6 +35,7 @@ public:
 
     /// Once the flow has the velocity of its start: makes it one.
     void begin(Flow& flow) {
+        flow.build_forcing(nullptr);
         if (flow.params.velocity)
             free_of_divergence(flow, 1e-12);
         else
@@ -56,7 +57,8 @@ public:
         place_solids(flow);
         predict(flow, dt, falls);
         push_solids(flow, dt, falls);
-        flow.project({dt, flow.params.tolerance, false, nullptr, flow.history.relaxation_time(dt)});
+        flow.project(
+            {dt, flow.params.tolerance, false, find_sources(flow, dt), flow.history.relaxation_time(dt)});
         if constexpr (Solids::present) flow.solids.settle(flow.velocity, flow.pressure);
         fill_ghosts(flow, flow.velocity);
         if (flow.history.is_sub_step(dt))
@@ -83,16 +85,14 @@ public:
                                           .pressure = flow.pressure,
                                           .time = flow.time,
                                           .eddies = flow.eddy_viscosity()};
-        flow.add_solids(view, nullptr);
+        flow.add_forcing(view), flow.add_solids(view, nullptr);
         if constexpr (Solids::present) view.advecting_flux = &mixture_;
         return view;
     }
     /// The velocity by which the water came to where it is, ghosts filled [m/s].
     Velocity velocity_that_carried(const Flow& flow) const { return flow.velocity; }
 
-    static void fields(auto&& field) {
-        field("velocity_before", "m/s", &FullBoxStepper::velocity_before_);
-    }
+    static void fields(auto&& field) { field("velocity_before", "m/s", &FullBoxStepper::velocity_before_); }
     void restored(Flow&) const noexcept {}
 
 private:
@@ -137,14 +137,16 @@ private:
     void predict(Flow& flow, Real dt, const Point<Dim>& falls) {
         flow.boundaries.fill_cells(flow.pressure);
         stage(flow, {flow.velocity, flow.stage, 0, dt, falls});
-        if (!friction_.empty()) flow.boundaries.join(flow.stage);
+        if (!friction_.empty() || Flow::has_forcing) flow.boundaries.join(flow.stage);
         const auto taken = friction_.apply(flow.stage, nullptr, dt, flow.nu());
         if (flow.energy) flow.energy->walls_took(taken);
         if constexpr (Solids::present) flow.solids.slow(flow.stage, {.dt = dt, .viscosity = flow.nu()});
+        flow.force_stage(dt, flow.time + 0.5 * dt, nullptr);
         flow.boundaries.fill(flow.stage);
         stage(flow, {flow.stage, velocity_before_, 0.5, dt, falls});
         friction_.take(velocity_before_, nullptr, taken, 0.5);
         if constexpr (Solids::present) flow.solids.give_back(velocity_before_, 0.5);
+        flow.force_second_stage(velocity_before_);
         std::swap(flow.velocity, velocity_before_);
         if (!flow.params.steady_boundaries) flow.boundaries.fill(flow.velocity);
     }
@@ -160,11 +162,24 @@ private:
             if (s.kept > 0) mix(flow, s.by, [&] { flow.solids.mix(mixture_); });
             advecting_flux = &mixture_;
         }
-        typename Flow::Stage momentum{s.by,   *advecting_flux, flow.velocity, s.result,
-                                      flow.pressure, s.dt,     s.kept,        -s.dt * (1 - s.kept),
-                                      flow.nu(),     s.falls};
+        typename Flow::Stage momentum{s.by, *advecting_flux, flow.velocity,        s.result,  flow.pressure,
+                                      s.dt, s.kept,          -s.dt * (1 - s.kept), flow.nu(), s.falls};
         flow.advance(flow.projection.faces(), momentum);
         flow.boundaries.leave(s.result);
+    }
+
+    /// What the pressure is to drive out of cells; none: nothing.
+    const Field<Real>* find_sources([[maybe_unused]] Flow& flow, [[maybe_unused]] Real dt) {
+        if constexpr (Flow::has_sources) {
+            if (sources_.size() == 0) sources_ = Field<Real>(flow.layout().total);
+            const Real within = std::max(dt, flow.history.relaxation_time(dt));
+            for (CellSource& s : flow.forced->find_sources(flow.forcing, flow.time + dt)) {
+                s.volume = s.rate * dt * flow.grid->volume(flow.layout().number(s.cell));
+                sources_[s.cell] = s.rate * within;
+            }
+            return &sources_;
+        }
+        return nullptr;
     }
 
     /// The advecting velocity of water and solids, from the water's.
@@ -189,7 +204,8 @@ private:
     WallFriction<Dim> friction_;  ///< of sides
     Velocity velocity_before_;
     Field<typename Flow::Number> pressure_before_;
-    std::conditional_t<Solids::present, Velocity, typename Flow::Nothing> mixture_{};  ///< at work
+    std::conditional_t<Flow::has_sources, Field<Real>, typename Flow::Nothing> sources_{};  ///< [-]
+    std::conditional_t<Solids::present, Velocity, typename Flow::Nothing> mixture_{};       ///< at work
 };
 
 }  // namespace abrade::detail

@@ -33,19 +33,24 @@ public:
     using Number = typename Options::Number;
     using Turbulence = typename Options::Turbulence;
     using Solids = typename Options::Solids;
+    using Forcing = typename Options::Forcing;
     using Params = GridFluidParams<Dim>;
     using Liquid = typename Flow::Liquid;
     static_assert(!has_surface || std::same_as<Number, Real>, "a surface is kept in double precision");
     static_assert(!Solids::present || (Dim == 3 && std::same_as<Number, Real>),
                   "solids that move: in 3-D, in double precision");
+    static_assert(!Flow::has_forcing || abrade::Forcing<Forcing, Dim>,
+                  "GridFluid: a Forcing has a name, acts_at(x) and force(x, u, t), which gives a "
+                  "FlowForce<Dim>; see fluid/momentum/forcing.hpp");
 
     static constexpr std::string_view name = "GridFluid";
     /// What it was made of at compile time, in words.
     static std::string options() { return option_names<Options>(); }
 
     /// Throws InputError where parameters make no flow, and what given functions throw.
-    explicit GridFluid(Params params, Turbulence turbulence = {}, Solids solids = {})
-        : flow_(std::move(params), std::move(turbulence), std::move(solids)), stepper_(flow_) {
+    explicit GridFluid(Params params, Turbulence turbulence = {}, Solids solids = {}, Forcing forcing = {})
+        : flow_(std::move(params), std::move(turbulence), std::move(solids), std::move(forcing)),
+          stepper_(flow_) {
         if constexpr (!has_surface) flow_.build_eddies(nullptr);
         detail::give_velocity(*flow_.grid, flow_.params, flow_.velocity);
         flow_.boundaries.fill(flow_.velocity);
@@ -53,6 +58,7 @@ public:
         flow_.enters = flow_.boundaries.rate_of_inflow(flow_.velocity);
         flow_.fastest = std::max(flow_.fastest, flow_.enters);
         find_eddies();
+        flow_.look_at_forcing();
         if constexpr (has_surface)
             stepper_.begin_history(flow_, stable_step().seconds);
         else
@@ -73,6 +79,7 @@ public:
         return flow_.eddies->field();
     }
     const Solids& solids() const noexcept { return flow_.solids; }
+    const Forcing& forcing() const noexcept { return flow_.forcing; }
     Index wet_cells() const noexcept { return flow_.projection.wet_cells(); }
     Real time() const noexcept { return flow_.time; }  ///< [s]
     const auto& last_projection() const noexcept { return flow_.report; }
@@ -86,9 +93,10 @@ public:
         if constexpr (Turbulence::has_eddies)
             causes.viscosity += flow_.eddies->largest(), causes.together = flow_.eddies->rate();
         Point<Dim> gravity;
-        if constexpr (has_surface)
-            gravity = flow_.params.acceleration(flow_.time), causes.gravity = &gravity;
+        if constexpr (has_surface) gravity = flow_.params.acceleration(flow_.time), causes.gravity = &gravity;
+        if constexpr (Flow::has_forcing) causes.hastens = flow_.forced->hastens();
         FluidStep step = detail::limit_of_step<Dim>(*flow_.grid, flow_.params, causes);
+        if constexpr (Flow::has_sources) step.lower(0.5 / flow_.forced->largest_rate(), "source");
         if constexpr (has_surface) step = stepper_.limit(flow_, step);
         if constexpr (Solids::present)
             step = detail::step_among_solids(step, *flow_.grid, flow_.params, flow_.solids.fastest());
@@ -279,17 +287,17 @@ void GridFluid<Dim, Options>::check(Real dt) {
     for (int a = 0; a < Dim; ++a) size = std::max(size, grid().largest(a));
     // Without a surface and an outflow the pressure is known but for a constant, and takes no volume.
     const bool found = flow_.is_projected();
-    const bool brimful =
-        !found && (flow_.enters > 0 || has_surface) && flow_.projection.multigrid().floating();
+    const bool brimful = !found && (flow_.enters > 0 || has_surface || Flow::has_sources) &&
+                         flow_.projection.multigrid().floating();
     // The bound is cheap, the speed itself is not.
     if (found && (flow_.report.courant / dt * size <= flow_.params.velocity_limit ||
                   detail::FastFace<Dim>(grid(), velocity()).speed <= flow_.params.velocity_limit))
         return;
     const std::string cause =
-        brimful ? "more flows in than out, or solids take more room, and no surface is left to rise; make a "
-                  "side that it reaches an outflow, or leave air above it"
-                : detail::wrong_flow(grid(), velocity(), flow_.report.after, flow_.most_left(),
-                                     flow_.enters > 0);
+        brimful
+            ? "more flows in than out, or solids take more room, and no surface is left to rise; make a "
+              "side that it reaches an outflow, or leave air above it"
+            : detail::wrong_flow(grid(), velocity(), flow_.report.after, flow_.most_left(), flow_.enters > 0);
     stepper_.restore(flow_);
     throw FluidError(detail::place_in_time(flow_.steps, flow_.time, dt) + cause);
 }

@@ -18,6 +18,7 @@ struct StepCauses {
     /// Largest of what both make of a cell, where it is known: eddies are seldom where water is fastest
     /// [1/s].
     Real together = std::numeric_limits<Real>::infinity();
+    Real hastens = 0;  ///< sum of what a user's force hastens it by along each axis, over h_a [1/s2]
     const Point<Dim>* gravity = nullptr;  ///< below a surface, body forces included [m/s2]
 };
 
@@ -40,7 +41,7 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
     const Real friction = 2 * causes.viscosity * per_h2;
     const Real rate = std::max(causes.fastest, std::min(causes.fastest + friction, causes.together));
     // At its end gravity may have made the water faster by g dt.
-    const Real twice = rate + std::sqrt(square(rate) + 4 * fall * params.courant);
+    const Real twice = rate + std::sqrt(square(rate) + 4 * (fall + causes.hastens) * params.courant);
     if (twice > 0) {
         const Real dt = 2 * params.courant / twice;
         step.lower(dt, dt * friction > 0.5 * params.courant ? "viscosity" : "CFL");

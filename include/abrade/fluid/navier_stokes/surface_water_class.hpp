@@ -89,6 +89,8 @@ public:
         liquid_.stand_solids(parts);
         find_rows(), find_liquid_fraction();
     }
+    /// Of the step to come; told what cells got of them.
+    void set_sources(std::span<CellSource> sources) { liquid_.set_sources(sources); }
     void take_back_solids() { liquid_.take_back_solids(); }
 
     /// Moves the liquid with the velocity over a step.

@@ -266,6 +266,20 @@ void VolumeOfFluid<Dim>::close_voids() {
 }
 
 template <int Dim>
+void VolumeOfFluid<Dim>::take_sources(Real dt) {
+    for (CellSource& s : std::exchange(sources_, {})) {
+        const Real holds = fraction_[s.cell] + volume_defect_[s.cell];
+        if (!(fraction_[s.cell] > 0)) continue;
+        const Real share = std::max(s.rate * dt, -holds);
+        s.volume = share * open_volume(s.cell, layout_.number(s.cell)[vertical]);
+        if (fraction_[s.cell] == 1)
+            volume_defect_[s.cell] += share;
+        else
+            set_cell(s.cell, holds + share), settled_.push_back(static_cast<Index>(s.cell));
+    }
+}
+
+template <int Dim>
 void VolumeOfFluid<Dim>::make_room() {
     grid_.for_each([&](const CellNumber<Dim>& cell, Offset c) {
         if (volume_defect_[c] > params_.largest_volume_defect)

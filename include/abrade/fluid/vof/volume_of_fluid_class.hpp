@@ -2,6 +2,7 @@
 // The class VolumeOfFluid: what it holds and answers. What a step does stands in sweeps.hpp and
 // redistribution.hpp; users include volume_of_fluid.hpp, which has all.
 
+#include <abrade/fluid/mesh/water_cells.hpp>
 #include <abrade/fluid/vof/band.hpp>
 #include <abrade/fluid/vof/cell_marks.hpp>
 #include <abrade/fluid/vof/normals.hpp>
@@ -150,6 +151,7 @@ public:
         if (solids_.any()) move_solids(dt);
         settle(step);
         if (solids_.any()) close_voids();
+        take_sources(dt);
         ++steps_;
         wet_.find_within(active_, fraction_);
         locate();
@@ -172,6 +174,9 @@ public:
         if (solids_.any() || !parts.empty()) solids_.set(grid_, parts);
         solid_fluxes_ = fluxes;
     }
+    /// Water that is put into cells that hold some, or taken out of them, at the end of the next step; told
+    /// how much that was.
+    void set_sources(std::span<CellSource> sources) noexcept { sources_ = sources; }
     /// Solids that the liquid has been given around, up to its surface as it stands.
     void stand_solids(std::span<const SolidPart> parts) { solids_.stand(grid_, parts); }
     /// After a step that went wrong.
@@ -335,6 +340,7 @@ private:
     void even_out_rims(int axis);
     void move_solids(Real dt);
     void close_voids();
+    void take_sources(Real dt);
     void settle(VolumeStep& step);
     Real share_out(Offset c, Index level, Real amount);
     void push_volume_defect(Offset c, Index level, std::size_t reach);
@@ -375,6 +381,7 @@ private:
     std::vector<std::vector<CellAt>> overfull_;  ///< [plane] of the bulk, beyond `largest_volume_defect`
     std::vector<SolidVolume> solid_moved_;
     std::span<const SolidFlux> solid_fluxes_;  ///< of the step to come
+    std::span<CellSource> sources_;            ///< likewise
     /// Cells outside of the last band that may have to be closed: set from outside, or given what was moved
     /// aside.
     std::vector<Index> settled_;
