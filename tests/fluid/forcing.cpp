@@ -175,7 +175,7 @@ TEST_CASE("a pump: what it does is what stems take, in the account as well") {
     flow.open_energy_account();
     flow.advance(30);
     // 500 N/m3 on a quarter of the box against rho u^2 on all of it.
-    CHECK(speed_along(flow) == doctest::Approx(std::sqrt(500 * 0.25 / density)).epsilon(1e-4).scale(0));
+    CHECK(speed_along(flow) == doctest::Approx(std::sqrt(500 * 0.25 / density)).epsilon(1e-6).scale(0));
     const WaterEnergy& e = flow.energy();
     MESSAGE("forcing " << e.forcing << ", numerical " << e.numerical << ", kinetic " << e.kinetic << " J");
     CHECK(std::abs(e.forcing - e.gained()) < 1e-6 * e.kinetic);
@@ -203,7 +203,7 @@ TEST_CASE("a spring in a full box: all of it leaves at the outflow") {
     flow.advance(3);
     Real leaves = 0;
     for (int k = 0; k < 10; ++k) leaves += 0.03 * flow.velocity()[0][flow.grid().layout().at({32, k})];
-    CHECK(leaves == doctest::Approx(spring.rate * areas(flow, spring).first).epsilon(1e-4).scale(0));
+    CHECK(leaves == doctest::Approx(spring.rate * areas(flow, spring).first).epsilon(1e-6).scale(0));
     const WaterEnergy& e = flow.energy();
     MESSAGE("sources " << e.sources << ", outflow " << e.outflow << ", numerical " << e.numerical << " J");
     CHECK(e.sources > 0);

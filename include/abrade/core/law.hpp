@@ -38,10 +38,12 @@ struct NoParams {
     void visit(auto&&) const noexcept {}
 };
 
-/// "LinearSpring(stiffness = 5e+06 N/m, restitution = 0.6)".
+/// "LinearSpring(stiffness = 5e+06 N/m, restitution = 0.6)"; of a law that was chosen options at compile time
+/// these come first, "GridFluid[height, Koren, ...](...)".
 template <Law L>
 std::string describe(const L& law) {
     std::string text{L::name};
+    if constexpr (requires { L::options(); }) text.append("[").append(L::options()).append("]");
     std::string_view separator = "(";
     law.params().visit([&](std::string_view name, Real value, std::string_view unit) {
         text.append(separator).append(name).append(" = ").append(to_text(value));
