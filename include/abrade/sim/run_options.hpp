@@ -22,6 +22,12 @@ struct RunError : std::runtime_error {
     Index id;    ///< of the body; -1: it is the fluid
 };
 
+/// Where a run is.
+struct RunTime {
+    Index step = 0;
+    Real time = 0, time_step = 0;  ///< [s]
+};
+
 /// How far a run goes, in which steps, and when it is looked at.
 struct RunOptions {
     Real end_time = std::numeric_limits<Real>::quiet_NaN();  ///< [s]; must be given
@@ -86,6 +92,14 @@ struct RunAtWork {
             field("done", &RunAtWork::done), field("under_way", &RunAtWork::under_way);
     }
 };
+
+/// Throws InputError: a step that was asked for is longer than `stable`, which `limit` sets [s].
+[[noreturn]] inline void refuse_time_step(Real asked, Real stable, std::string_view limit) {
+    fail({"RunOptions.time_step",
+          "at most the stable step of " + to_text(stable) + " s (" + std::string(limit) + ")", "s",
+          "take a smaller step, softer springs or heavier spheres"},
+         to_text(asked));
+}
 
 /// Throws InputError for what cannot be asked for `now` [s].
 inline void validate(const RunOptions& options, Real now, bool weightless) {

@@ -1,7 +1,9 @@
 #pragma once
 // What a scene, as it begins, allows: how long a step, how wide lists, how short a period.
 
+#include <abrade/sim/engine/world.hpp>
 #include <abrade/sim/failure_message.hpp>
+#include <abrade/sim/guards/stability.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +21,7 @@ public:
           standing_(world.state().sites.stand ? world.concrete().lattice().radius : 0),
           period_(world.particles(), world.scene().feed, standing_) {
         who_ = stable.limit;
-        if (stable.body >= 0) who_ += ", " + FailureMessage(world, 0).name_of(stable.body);
+        if (stable.body >= 0) who_ += ", " + name_of(world.particles(), stable.body);
         const auto& radius = world.particles().radius;
         smallest_ = radius.empty() ? 0.01 : *std::min_element(radius.begin(), radius.end());
         if (standing_ == 0) return;

@@ -1,11 +1,7 @@
 #pragma once
 // One simulation from four policies: the builder, the loop and its guards.
 
-#include <abrade/bond/bond_law.hpp>
 #include <abrade/dem/laws/linear_spring.hpp>
-#include <abrade/fluid/fluid_model.hpp>
-#include <abrade/sim/run_options.hpp>
-#include <abrade/sim/scene/policies.hpp>
 #include <abrade/sim/scene_limits.hpp>
 #include <abrade/sim/slots.hpp>
 #include <abrade/sim/snapshot.hpp>
@@ -17,114 +13,13 @@ namespace abrade {
 
 /// Made by `simulate(scene)`, completed by `.contact()`, `.bond()`, `.wear()`, `.fluid()` and `.force()`,
 /// then run. The policies are part of the type; an absent one costs nothing.
-template <class C = ContactLawIsMissing, BondLaw B = NoBond, WearLaw W = NoWear, FluidModel F = NoFluid,
-          DragLaw D = NoDrag, ForceOnBodies U = NoForceOnBodies>
-class Simulation {
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+class Simulation : public Slots<C, B, W, F, D, U> {
+    using Laws = Slots<C, B, W, F, D, U>;
+    using Laws::scene_, Laws::contact_, Laws::bond_, Laws::wear_, Laws::fluid_, Laws::drag_, Laws::force_;
+
 public:
-    Simulation(Scene scene, C contact, B bond, W wear, F fluid, D drag, U force)
-        : scene_(std::move(scene)), contact_(std::move(contact)), bond_(std::move(bond)),
-          wear_(std::move(wear)), fluid_(std::move(fluid)), drag_(std::move(drag)), force_(std::move(force)) {
-    }
-
-    // --- the slots -------------------------------------------------------------------------------
-    // Each gives back a simulation of another type with its slot filled, and throws std::logic_error once
-    // the simulation has run.
-
-    template <class L, class One = PairLaw<L>>
-    auto contact(L law) && {
-        check_not_run();
-        if constexpr (ParamSet<L>)
-            static_assert(detail::never<L>,
-                          "contact(law): these are a law's parameters; write contact(Law{...})");
-        else
-            static_assert(ContactLaw<One>,
-                          "Simulation::contact(law): the law misses what the notes below name");
-        if constexpr (ContactPolicy<L>)
-            return Simulation<L, B, W, F, D, U>{std::move(scene_), std::move(law),    std::move(bond_),
-                                                std::move(wear_),  std::move(fluid_), std::move(drag_),
-                                                std::move(force_)};
-        else
-            return detail::AfterRejectedLaw{};
-    }
-    template <class L>
-    auto bond(L law) && {
-        check_not_run();
-        if constexpr (ParamSet<L>)
-            static_assert(detail::never<L>, "bond(law): these are a law's parameters; write bond(Law{...})");
-        else
-            static_assert(BondLaw<L>, "Simulation::bond(law): the law misses what the notes below name");
-        if constexpr (BondLaw<L>)
-            return Simulation<C, L, W, F, D, U>{std::move(scene_), std::move(contact_), std::move(law),
-                                                std::move(wear_),  std::move(fluid_),   std::move(drag_),
-                                                std::move(force_)};
-        else
-            return detail::AfterRejectedLaw{};
-    }
-    template <class L>
-    auto wear(L law) && {
-        check_not_run();
-        if constexpr (ParamSet<L>)
-            static_assert(detail::never<L>, "wear(law): these are a law's parameters; write wear(Law{...})");
-        else
-            static_assert(WearLaw<L>, "Simulation::wear(law): the law misses what the notes below name");
-        if constexpr (WearLaw<L>)
-            return Simulation<C, B, L, F, D, U>{std::move(scene_), std::move(contact_), std::move(bond_),
-                                                std::move(law),    std::move(fluid_),   std::move(drag_),
-                                                std::move(force_)};
-        else
-            return detail::AfterRejectedLaw{};
-    }
-    template <class L, class Drag = UsualDrag<L>>
-    auto fluid(L law, Drag drag = Drag{}) && {
-        check_not_run();
-        static_assert(FluidModel<L>, "Simulation::fluid(law): the fluid misses what the notes below name");
-        static_assert(!goes_on<L> || AdvancingFluid<L>, "fluid(law): advance() needs a stable_step()");
-        static_assert(DragLaw<Drag>,
-                      "Simulation::fluid(law, drag): the drag law misses what the notes below name");
-        if constexpr (FluidModel<L> && DragLaw<Drag>)
-            return Simulation<C, B, W, L, Drag, U>{std::move(scene_), std::move(contact_), std::move(bond_),
-                                                   std::move(wear_),  std::move(law),      std::move(drag),
-                                                   std::move(force_)};
-        else
-            return detail::AfterRejectedLaw{};
-    }
-    /// A force on each body that moves, beside all others: see ForceOnBodies. Its work is
-    /// `Ledger::force_work`. Bodies under it take each step: none flies freely or sleeps.
-    template <class L>
-    auto force(L law) && {
-        check_not_run();
-        static_assert(ForceOnBodies<L>,
-                      "Simulation::force(law): needs law(const BodyView&, Real t) const "
-                      "noexcept, which gives a BodyLoad or a Vec3 [N]");
-        if constexpr (ForceOnBodies<L>)
-            return Simulation<C, B, W, F, D, L>{std::move(scene_), std::move(contact_), std::move(bond_),
-                                                std::move(wear_),  std::move(fluid_),   std::move(drag_),
-                                                std::move(law)};
-        else
-            return detail::AfterRejectedLaw{};
-    }
-
-    // A filled slot makes a simulation of another type, so none is filled of one that has a name.
-    template <class L>
-    auto contact(L&&) & {
-        return detail::no_slot_of_a_name<L>();
-    }
-    template <class L>
-    auto bond(L&&) & {
-        return detail::no_slot_of_a_name<L>();
-    }
-    template <class L>
-    auto wear(L&&) & {
-        return detail::no_slot_of_a_name<L>();
-    }
-    template <class L>
-    auto fluid(L&&, auto&&...) & {
-        return detail::no_slot_of_a_name<L>();
-    }
-    template <class L>
-    auto force(L&&) & {
-        return detail::no_slot_of_a_name<L>();
-    }
+    using Laws::Laws;
 
     // --- running -------------------------------------------------------------------------------
 
@@ -242,12 +137,8 @@ public:
     template <class... All>
     friend std::ostream& operator<<(std::ostream& out, const Simulation<All...>& sim);  // sim/print.hpp
 
-    const C& contact_law() const noexcept { return contact_; }
-    const B& bond_law() const noexcept { return bond_; }
-    const W& wear_law() const noexcept { return wear_; }
     /// As it stands now, where it changes.
     const F& fluid_model() const noexcept { return world_ ? world_->state().policies.fluid : fluid_; }
-    const D& drag_law() const noexcept { return drag_; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -263,10 +154,6 @@ private:
         if (!limits_) throw std::logic_error("Simulation: run it before asking for its stable step");
         return *limits_;
     }
-    void check_not_run() const {
-        if (world_) throw std::logic_error("Simulation: fill the slots before the first run");
-    }
-
     void advance(const RunOptions& options, auto&& observer) {
         const bool resumes = std::exchange(resumes_, false) && run_.options.asks_the_same_as(options);
         if (resumes)
@@ -374,12 +261,7 @@ private:
         if (options.time_step > 0) {
             if (stable_now(options.time_step).seconds < options.time_step) {
                 const StableStep now = stable_step_now();
-                require(false,
-                        {"RunOptions.time_step",
-                         "at most the stable step of " + to_text(now.seconds) + " s (" +
-                             std::string(now.limit) + ")",
-                         "s", "take a smaller step, softer springs or heavier spheres"},
-                        options.time_step);
+                refuse_time_step(options.time_step, now.seconds, now.limit);
             }
             time_step_ = options.time_step;
         } else {
@@ -404,6 +286,7 @@ private:
                   "add_sphere() and add_stone() add bodies"},
                  "none");
         }
+        this->in_use_ = true;
         limits_.emplace(*world_);
     }
 
@@ -424,10 +307,9 @@ private:
     void open() {
         world_->open(time_);
         if (const Failure failure = world_->take_failure(); failure.cause == Failure::Cause::overlap) {
-            const FailureMessage say(*world_, time_step_);
-            const std::string what =
-                "Scene: overlap of " + say.name_of(failure.body) + " with " + say.name_of(failure.other);
-            world_.reset();
+            const std::string what = "Scene: overlap of " + name_of(world_->particles(), failure.body) +
+                                     " with " + name_of(world_->particles(), failure.other);
+            world_.reset(), this->in_use_ = false;
             require(false,
                     {what, "at most " + to_text(100 * World::overlap_limit) + " % of the smaller radius", "%",
                      "move them apart"},
@@ -461,14 +343,20 @@ private:
 
     [[noreturn]] void raise(const Failure& failure) {
         world_->publish_places();
-        raise(FailureMessage(*world_, time_step_).of(failure),
-              particles().id[static_cast<std::size_t>(failure.body)]);
+        FailureMessage message{.failure = failure,
+                               .particles = particles(),
+                               .time_step = time_step_,
+                               .overlap_limit = World::overlap_limit,
+                               .stable = StableStepNow(world_->state()).of_touching(time_step_).seconds};
+        if (failure.cause == Failure::Cause::overlap && !failure.bonded)
+            message.remedy =
+                ImpactInquiry(law_between(world_->state().policies.contact, failure.contact.materials),
+                              failure.contact, time_step_, World::overlap_limit)
+                    .remedy();
+        raise(message.text(), particles().id[static_cast<std::size_t>(failure.body)]);
     }
     [[noreturn]] void raise(const std::string& what, Index id) const {
-        throw RunError("step " + std::to_string(step_) + " (t = " + short_text(time_) +
-                           " s, dt = " + short_text(time_step_) + " s): " + what +
-                           "; the last good state is that of t = " + short_text(last_good_.time) + " s",
-                       step_, time_, id);
+        throw run_error({step_, time_, time_step_}, what, id, last_good_.time);
     }
 
     void balance() {
@@ -485,13 +373,6 @@ private:
     using PoliciesOf = Policies<std::conditional_t<ContactPolicy<C>, C, LinearSpring>, B, W, F, D, U>;
     using World = abrade::World<PoliciesOf>;
 
-    Scene scene_;
-    [[no_unique_address]] C contact_;
-    [[no_unique_address]] B bond_;
-    [[no_unique_address]] W wear_;
-    [[no_unique_address]] F fluid_;
-    [[no_unique_address]] D drag_;
-    [[no_unique_address]] U force_;
     std::optional<World> world_;
     Ledger ledger_;
     std::optional<SceneLimits> limits_;

@@ -43,53 +43,24 @@ public:
             repack(state);
     }
 
-    /// Renews what changes seldom: bodies that left, supply, the Verlet list.
+    /// Renews what changes seldom, stage by stage: who is near concrete that stands, who leaves, who arrives;
+    /// then all are sorted, paired and looked at for who is active.
     void renew(State<P>& state, Real t, Real dt) {
         const auto start = std::chrono::steady_clock::now();
         land(state);
         if (!state.flight.sound) return;  // the step that follows tells
         wrap(state);
-        const bool has_broken_bonds = P::has_bonds && state.broken_tension + state.broken_shear > 0;
-        if (state.feed || has_broken_bonds || state.sites.stand) publish_places(state);
+        if (state.feed || has_broken_bonds(state) || state.sites.stand) publish_places(state);
         choose_skin(state, dt);
         detail::SiteMarks near(state.sites.marks);
-        near_sites_.clear();
-        if (state.sites.stand) mark_near(state, 0, near);
-        if (!state.sites.worn_out.empty()) mark_touched(state, near);
-        reshape(state, near);
+        look_at_sites(state, near);
         const Departure departure = departing(state, dt, near);
-        state.accounts.sum.left_stored +=
-            state.contacts.keep(state.policies.contact, state.store, state.scene.walls, departure.moved);
-        if (departure.any) remove(state, departure);
-        if (has_broken_bonds || (P::has_bonds && departure.any))
-            state.accounts.sum.left_stored +=
-                state.network.prune(state.particles, departure.moved, state.particles.centre);
-        const Index known = state.particles.bodies();
-        supply(state, t, dt);
-        for (const Fragment& fragment : departure.fragments) add_fragment(state, fragment);
-        if (state.sites.stand) {
-            const auto left =
-                static_cast<Index>(std::count(departure.moved.begin(), departure.moved.end(), -1));
-            const auto known_spheres = static_cast<Index>(departure.moved.size());  // those after are new
-            for (SitePair& pair : near_sites_)
-                pair.sphere =
-                    pair.sphere < known_spheres ? departure.moved[at(pair.sphere)] : pair.sphere - left;
-            mark_near(state, known, near), stand_by(state, near);
-        }
-        grow_columns(state);
-        state.store.arrange(state.particles, departure.moved, list_skin_ + film(state),
-                            state.scene.periodic());
-        const auto [smallest, largest] =
-            std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
-        if (largest != state.particles.radius.end())
-            state.smallest_radius = *smallest, state.size_ratio = *smallest / *largest;
+        take_out(state, departure);
+        bring_in(state, departure, near, t, dt);
+        sort(state, departure);
         find_flyers(state);
         find_pairs(state);
-        built_at_.resize(at(state.store.spheres()));
-        parallel_for(state.store.spheres(),
-                     [&](Index s) { built_at_[at(s)] = state.store.lines.place[at(s)].centre; });
-        state.loosened = false;
-        age_ = 0, walls_moved_ = 0;
+        begin_life(state);
         refine(state, dt);
         seconds_ += std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
     }
@@ -140,6 +111,64 @@ private:
             return *this;
         }
     };
+
+    static bool has_broken_bonds(const State<P>& state) noexcept {
+        return P::has_bonds && state.broken_tension + state.broken_shear > 0;
+    }
+
+    /// Sites of concrete that something is near or touches; worn ones of them sink.
+    void look_at_sites(State<P>& state, detail::SiteMarks& near) {
+        near_sites_.clear();
+        if (state.sites.stand) mark_near(state, 0, near);
+        if (!state.sites.worn_out.empty()) mark_touched(state, near);
+        reshape(state, near);
+    }
+
+    /// Contacts, bonds and bodies of those that leave. Contacts that stay keep what they remember.
+    static void take_out(State<P>& state, const Departure& departure) {
+        state.accounts.sum.left_stored +=
+            state.contacts.keep(state.policies.contact, state.store, state.scene.walls, departure.moved);
+        if (departure.any) remove(state, departure);
+        if (has_broken_bonds(state) || (P::has_bonds && departure.any))
+            state.accounts.sum.left_stored +=
+                state.network.prune(state.particles, departure.moved, state.particles.centre);
+    }
+
+    /// Stones that are due, pieces of concrete that go on as clumps, and bodies of standing spheres that
+    /// something is near.
+    void bring_in(State<P>& state, const Departure& departure, detail::SiteMarks& near, Real t, Real dt) {
+        const Index known = state.particles.bodies();
+        supply(state, t, dt);
+        for (const Fragment& fragment : departure.fragments) add_fragment(state, fragment);
+        if (state.sites.stand) {
+            const auto left =
+                static_cast<Index>(std::count(departure.moved.begin(), departure.moved.end(), -1));
+            const auto known_spheres = static_cast<Index>(departure.moved.size());  // those after are new
+            for (SitePair& pair : near_sites_)
+                pair.sphere =
+                    pair.sphere < known_spheres ? departure.moved[at(pair.sphere)] : pair.sphere - left;
+            mark_near(state, known, near), stand_by(state, near);
+        }
+        grow_columns(state);
+    }
+
+    /// Slots in the order of slabs, wide enough for the skin.
+    void sort(State<P>& state, const Departure& departure) {
+        state.store.arrange(state.particles, departure.moved, list_skin_ + film(state),
+                            state.scene.periodic());
+        const auto [smallest, largest] =
+            std::minmax_element(state.particles.radius.begin(), state.particles.radius.end());
+        if (largest != state.particles.radius.end())
+            state.smallest_radius = *smallest, state.size_ratio = *smallest / *largest;
+    }
+
+    void begin_life(State<P>& state) {
+        built_at_.resize(at(state.store.spheres()));
+        parallel_for(state.store.spheres(),
+                     [&](Index s) { built_at_[at(s)] = state.store.lines.place[at(s)].centre; });
+        state.loosened = false;
+        age_ = 0, walls_moved_ = 0;
+    }
 
     /// Finds what stands near the bodies from `first` on. Of such a pair one alone comes nearer.
     void mark_near(const State<P>& state, Index first, detail::SiteMarks& near) {

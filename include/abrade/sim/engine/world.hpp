@@ -193,20 +193,12 @@ private:
         wall_speed_ = 0;
         for (const MovingWall& moving : state_.scene.moving_walls) {
             Plane& wall = state_.scene.walls[at(moving.wall)];
-            const auto place = [&](Real t) {
-                const PlanePlace found = moving.place(t);
-                const std::string name = "Scene.moving_walls: wall " + std::to_string(moving.wall) +
-                                         " at t = " + short_text(t) + " s, ";
-                require_finite(found.displacement, name + "displacement", "m");
-                require_finite(found.rotation, name + "rotation", "rad");
-                return found;
-            };
-            const PlanePlace here = place(now_);
+            const PlanePlace here = moving.at(now_);
             wall = here.of(moving.start);
             wall.moves = true;
-            if (led > 0) wall.last = here.since(place(now_ - led), led);
-            wall.now = place(now_ + 0.5 * dt).since(place(now_ - 0.5 * dt), dt);
-            const Plane::Motion next = place(now_ + dt).since(here, dt);  // what the step to come will be
+            if (led > 0) wall.last = here.since(moving.at(now_ - led), led);
+            wall.now = moving.at(now_ + 0.5 * dt).since(moving.at(now_ - 0.5 * dt), dt);
+            const Plane::Motion next = moving.at(now_ + dt).since(here, dt);  // what the step to come will be
             Real reach = 0;
             if (!next.spin.isZero(0))
                 for (const SpherePlace& sphere :

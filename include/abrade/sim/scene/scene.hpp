@@ -39,6 +39,17 @@ struct MovingWall {
     Index wall = 0;  ///< number of the wall
     std::function<PlanePlace(Real)> place{};
     Plane start{};
+
+    /// Throws InputError where that is no number.
+    PlanePlace at(Real t) const {
+        const PlanePlace found = place(t);
+        if (found.displacement.allFinite() && found.rotation.allFinite()) return found;
+        const std::string name =
+            "Scene.moving_walls: wall " + std::to_string(wall) + " at t = " + short_text(t) + " s, ";
+        require_finite(found.displacement, name + "displacement", "m");
+        require_finite(found.rotation, name + "rotation", "rad");
+        return found;
+    }
 };
 
 /// The inputs of a simulation. Plain data: fill it in, hand it to `simulate`.
