@@ -205,7 +205,7 @@ BENCHMARK(water_threads<SettledReach>)
 /// Random right sides until four digits are found. `wet` tells of a cell's number; none dry: a closed box.
 void pressure(benchmark::State& state, const CellNumber<3>& cells, auto&& wet) {
     const Grid<3> grid({.cells = cells, .spacing = Vec3::Ones()});
-    Multigrid<3> solver(grid.layout(), Vec3::Ones(), {});
+    ConjugateGradients<3> solver(grid.layout(), Vec3::Ones(), {});
     Poisson<3>& m = solver.matrix();
     m.interior.fill(1);
     std::mt19937 random(7);
@@ -223,7 +223,7 @@ void pressure(benchmark::State& state, const CellNumber<3>& cells, auto&& wet) {
     solver.build();
     double count = 0;
     grid.for_each([&](const CellNumber<3>&, Offset c) { count += m.inverse_diagonal[c] > 0; });
-    typename Multigrid<3>::Report report;
+    typename ConjugateGradients<3>::Report report;
     for (auto _ : state) {
         state.PauseTiming();
         grid.for_each([&](const CellNumber<3>&, Offset c) {

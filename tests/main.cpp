@@ -3,6 +3,8 @@
 // doctest::Approx(x).epsilon(e) lets pass what is within e (1 + |x|): far below 1 an absolute tolerance. With
 // .scale(0) it is e |x|.
 #define DOCTEST_CONFIG_IMPLEMENT
+#include <abrade/core/parallel.hpp>
+
 #include <doctest/doctest.h>
 
 #include <iostream>
@@ -34,6 +36,7 @@ struct CountCases : doctest::IReporter {
 REGISTER_LISTENER("count_cases", 1, CountCases);
 
 int main(int argc, char** argv) {
+    abrade::detail::share_every_loop = true;  // small as our scenes are, tests of threads are to have some
     doctest::Context context(argc, argv);
     const int result = context.run();
     if (context.shouldExit()) return result;

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -84,3 +85,36 @@ TEST_CASE("asking for fewer than one thread gives one") {
     const Threads scope(-3);
     CHECK(thread_count() == 1);
 }
+
+#if defined(_OPENMP)
+TEST_CASE("a loop asks for other threads where it has work for them, however many items that is") {
+    const Threads scope(2);
+    detail::share_every_loop = false;
+    // How many of 1000 calls were shared.
+    const auto shared = [](Index items, auto&& body) {
+        int calls = 0;
+        for (int call = 0; call < 1000; ++call) {
+            std::atomic<bool> by_two{false};
+            body(items, by_two);
+            calls += by_two;
+        }
+        return calls;
+    };
+    const int light = shared(2000, [](Index items, std::atomic<bool>& by_two) {
+        parallel_for(items, [&](Index i) {
+            if (i == 0) by_two = omp_get_num_threads() == 2;
+        });
+    });
+    const int heavy = shared(4, [](Index items, std::atomic<bool>& by_two) {
+        parallel_tasks(items, [&](Index i) {
+            if (i == 0) by_two = omp_get_num_threads() == 2;
+            const auto until = std::chrono::steady_clock::now() + std::chrono::microseconds(50);
+            while (std::chrono::steady_clock::now() < until) continue;
+        });
+    });
+    detail::share_every_loop = true;
+    MESSAGE("shared: " << light << " of 1000 light loops, " << heavy << " of 1000 heavy ones");
+    CHECK(light < 50);   // one that was held up as it was timed
+    CHECK(heavy > 950);  // all but those that are timed alone
+}
+#endif

@@ -1,10 +1,14 @@
 #pragma once
 // The one seam to threads. Results are the same bits for every number of threads: work is cut into
-// blocks of fixed size and sums are added up in block order.
+// blocks of fixed size and sums are added up in block order. How much there is to do decides whether a loop
+// asks for other threads at all.
 
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <vector>
 
 #if defined(_OPENMP)
@@ -39,14 +43,72 @@ constexpr Index block_count(Index items, Index size = block_size) noexcept {
     return (items + size - 1) / size;
 }
 
+namespace detail {
+
+/// Whether loops ask for all threads, however little there is to do: for tests.
+inline std::atomic<bool> share_every_loop{false};
+
+/// What an item of one loop of a program takes alone, measured at its calls 1, 2, 4, 8, ..., later each
+/// 4096th: so a small loop costs no look at the clock, and a large one no thread that waits. A call that
+/// something else on the machine has held up is not believed: the shorter of the last two counts.
+class LoopWork {
+    using Clock = std::chrono::steady_clock;
+
+public:
+    /// One call, over `items`: `together` says whether by all threads.
+    class Call {
+    public:
+        Call(LoopWork& work, Index items) : work_(work), items_(items) {
+            const int threads = thread_count();
+            if (threads == 1) return;
+            if (share_every_loop.load(std::memory_order_relaxed)) {
+                together = true;
+                return;
+            }
+            const std::uint32_t call = 1 + work.calls_.fetch_add(1, std::memory_order_relaxed);
+            timed_ = (call & (call - 1)) == 0 || call % 4096 == 0;
+            if (timed_) start_ = Clock::now();
+            // Less than this for each of them, and waking them costs more than they save [s].
+            constexpr double least = 10e-6;
+            together = !timed_ && work.per_item_.load(std::memory_order_relaxed) * items > least * threads;
+        }
+        ~Call() {
+            if (timed_) work_.took(std::chrono::duration<double>(Clock::now() - start_).count() / items_);
+        }
+        Call(const Call&) = delete;
+        Call& operator=(const Call&) = delete;
+
+        bool together = false;
+
+    private:
+        LoopWork& work_;
+        Index items_;
+        bool timed_ = false;
+        Clock::time_point start_{};
+    };
+
+private:
+    void took(double per_item) noexcept {
+        const double last = last_.exchange(per_item, std::memory_order_relaxed);
+        per_item_.store(std::min(per_item, last), std::memory_order_relaxed);
+    }
+
+    std::atomic<std::uint32_t> calls_{0};
+    std::atomic<double> last_{1}, per_item_{0};  ///< [s]
+};
+
+}  // namespace detail
+
 /// Calls `body(block, first, last)` for each block of [0, items); blocks run in any order, in parallel.
 /// `body` must not throw.
 template <class Body>
 void parallel_blocks(Index items, Body&& body, Index size = block_size) {
+    if (items <= 0) return;
     const Index blocks = block_count(items, size);
-    // Below a few blocks waking the other threads costs more than it saves.
+    static constinit detail::LoopWork work;
+    const detail::LoopWork::Call call(work, items);
 #if defined(_OPENMP)
-#pragma omp parallel for schedule(dynamic) if (blocks > 2)
+#pragma omp parallel for schedule(dynamic) if (call.together && blocks > 1)
 #endif
     for (Index block = 0; block < blocks; ++block) {
         const Index first = block * size;
@@ -58,8 +120,11 @@ void parallel_blocks(Index items, Body&& body, Index size = block_size) {
 /// time, so that what they work on stays in its cache. `body` must not throw.
 template <class Body>
 void parallel_tasks(Index tasks, Body&& body) {
+    if (tasks <= 0) return;
+    static constinit detail::LoopWork work;
+    const detail::LoopWork::Call call(work, tasks);
 #if defined(_OPENMP)
-#pragma omp parallel for schedule(static) if (tasks > 1)
+#pragma omp parallel for schedule(static) if (call.together && tasks > 1)
 #endif
     for (Index task = 0; task < tasks; ++task) body(task);
 }

@@ -41,6 +41,7 @@ struct FlowFields {
     using Liquid = std::conditional_t<is_height, HeightOfFluid<Dim>, VolumeOfFluid<Dim>>;
     using Account = EnergyAccount<Dim, Number, Scheme, Liquid>;
     using Eddies = EddyViscosity<Dim, Number>;
+    using Projects = Projection<Dim, Number, typename Options::template Pressure<Dim>>;
     struct Nothing {};
     static constexpr bool has_forcing = !std::same_as<Forcing, NoForcing>;
     static constexpr bool has_sources = HasSource<Forcing, Dim>;
@@ -60,14 +61,14 @@ struct FlowFields {
     [[no_unique_address]] Forcing forcing;
     std::shared_ptr<const Grid<Dim>> grid;  ///< shared among copies, parts of which point to it
     VelocityBoundaries<Dim> boundaries;
-    Projection<Dim, Number> projection;
+    Projects projection;
     Velocity velocity, stage;            ///< [m/s]
     std::span<const FlowBody> arriving;  ///< bodies of the step to come
     Field<Number> pressure;              ///< over density [m2/s2]
     std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies{};
     typename AppliedOf<Dim, Forcing>::type forced{};
     std::optional<Account> energy;  ///< none: nobody asks
-    typename Projection<Dim, Number>::Report report;
+    typename Projects::Report report;
     Real time = 0, fastest = 0, enters = 0;  ///< [s]; largest sum |u_a| / h_a, inside and at inflows [1/s]
     Real given = 0;                          ///< to solids [J]
     StepHistory history;                     ///< when steps grow is told from them
@@ -142,7 +143,7 @@ struct FlowFields {
     bool is_projected() const noexcept { return report.after <= most_left(); }
 
     /// What is left beyond `most_left` is solved for once more: single precision may have lost its way.
-    void project(typename Projection<Dim, Number>::Demand demand) {
+    void project(typename Projects::Demand demand) {
         report = projection.project(velocity, pressure, demand, solids);
         if (is_projected()) return;
         demand.push = false;

@@ -4,6 +4,7 @@
 #include <abrade/fluid/momentum/advection_schemes.hpp>
 #include <abrade/fluid/momentum/forcing.hpp>
 #include <abrade/fluid/momentum/turbulence.hpp>
+#include <abrade/fluid/pressure/conjugate_gradients.hpp>
 #include <abrade/fluid/pressure/solids_in_flow.hpp>
 
 #include <concepts>
@@ -23,8 +24,10 @@ struct FullBox {
     using Scheme = Koren;             ///< that advects momentum
     using Number = Real;              ///< of velocity and pressure; float in a full box without solids alone
     using Turbulence = NoTurbulence;  ///< what eddies below a cell do
-    using Solids = NoSolids;          ///< that move in it: how water and bodies are coupled
-    using Forcing = NoForcing;        ///< a user's force per volume, and water that is put in
+    template <int Dim>
+    using Pressure = ConjugateGradients<Dim>;  ///< who solves for it: a PressureSolver
+    using Solids = NoSolids;                   ///< that move in it: how water and bodies are coupled
+    using Forcing = NoForcing;                 ///< a user's force per volume, and water that is put in
 };
 /// Water below a surface (VolumeOfFluid); above it a void at pressure 0.
 struct FreeSurface : FullBox {
@@ -49,6 +52,11 @@ struct InPrecision : Options {
 template <TurbulenceModel T, class Options = FreeSurface>
 struct Turbulent : Options {
     using Turbulence = T;
+};
+template <template <int> class S, class Options = FreeSurface>
+struct SolvedBy : Options {
+    template <int Dim>
+    using Pressure = S<Dim>;
 };
 template <SolidsInFlow S, class Options = FreeSurface>
 struct Among : Options {

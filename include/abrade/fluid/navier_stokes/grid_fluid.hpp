@@ -288,7 +288,7 @@ void GridFluid<Dim, Options>::check(Real dt) {
     // Without a surface and an outflow the pressure is known but for a constant, and takes no volume.
     const bool found = flow_.is_projected();
     const bool brimful = !found && (flow_.enters > 0 || has_surface || Flow::has_sources) &&
-                         flow_.projection.multigrid().floating();
+                         flow_.projection.solver().floating();
     // The bound is cheap, the speed itself is not.
     if (found && (flow_.report.courant / dt * size <= flow_.params.velocity_limit ||
                   detail::FastFace<Dim>(grid(), velocity()).speed <= flow_.params.velocity_limit))

@@ -40,10 +40,9 @@ public:
         bool from_rest = false;        ///< the velocity is how water at rest is accelerated
     };
     /// Pushes what leaves in a step: as the faces before it are about to be, or by the tailwater.
-    void push(FaceField<Dim>& u, const Field<Real>& pressure, const Projection<Dim, Real>& projection,
-              const Step& step) {
+    void push(FaceField<Dim>& u, const Field<Real>& pressure, const auto& projection, const Step& step) {
         const Real dt = step.seconds;
-        const Poisson<Dim>& m = projection.multigrid().matrix();
+        const Poisson<Dim>& m = projection.solver().matrix();
         for (OutflowSide& side : boundaries_) {
             const Real raised = held_ && !step.from_rest ? rise(side, u, m, step) : 0;
             for (const Face& f : side.faces) {
@@ -108,7 +107,7 @@ private:
         boundaries_.push_back(std::move(side));
     }
 
-    static Real carried(const Projection<Dim, Real>& projection, int axis, const Face& f) noexcept {
+    static Real carried(const auto& projection, int axis, const Face& f) noexcept {
         const FaceField<Dim>* const open = projection.aperture();
         return open ? carried_share((*open)[axis], f.inside, f.face) : 1;
     }

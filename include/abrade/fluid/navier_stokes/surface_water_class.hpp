@@ -113,8 +113,8 @@ public:
 
     /// Which cells are wet below the present surface and where it crosses the lines between centres; takes
     /// the pressure from dry cells.
-    template <class Solids = const NoSolids>
-    void find(Projection<Dim, Real>& projection, Field<Real>& pressure, Solids& solids = no_solids) {
+    template <class Projects, class Solids = const NoSolids>
+    void find(Projects& projection, Field<Real>& pressure, Solids& solids = no_solids) {
         WetRows<Dim> rows = rows_;
         rows.include(rows_before_);
         const Field<Real>& f = liquid_.fraction();
@@ -259,7 +259,7 @@ public:
             field.bytes("open", &SurfaceWater::open_), field.bytes("still", &SurfaceWater::still_);
     }
     /// The pressure's operator, of what has been found; nothing stays of what it was before.
-    void show(Projection<Dim, Real>& projection) const {
+    void show(auto& projection) const {
         WetRows<Dim> rows = rows_;
         rows.include(rows_before_);
         for (const WetRows<Dim>& all : {WetRows<Dim>::whole(layout()), rows})
@@ -312,7 +312,7 @@ private:
     void find_rows();
 
     /// Between wet cells and dry ones, and where water leaves the box.
-    void find_open_faces(const Projection<Dim, Real>& projection) {
+    void find_open_faces(const auto& projection) {
         rows_.for_each_plane([&](int plane) {
             auto& open = open_in_[static_cast<std::size_t>(plane)];
             open.clear();

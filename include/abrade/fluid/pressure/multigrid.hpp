@@ -1,13 +1,12 @@
 #pragma once
-// Conjugate gradients preconditioned by geometric multigrid, for the pressure.
+// Geometric multigrid for the pressure's operator: a preconditioner.
 
 #include <abrade/fluid/pressure/coarse_poisson.hpp>
-#include <abrade/fluid/pressure/solids_in_flow.hpp>
 #include <abrade/fluid/pressure/wavefront.hpp>
 
 namespace abrade {
 
-/// Solves A e = b (Poisson) by conjugate gradients with one V-cycle of multigrid as preconditioner.
+/// One V-cycle on A z = b (Poisson).
 ///
 /// - Two red-black Gauss-Seidel sweeps before and two after, in reverse, so that the preconditioner is
 /// symmetric.
@@ -15,10 +14,7 @@ namespace abrade {
 /// conducts half
 ///   the sum of its fine faces, since the distance doubles; so does what is tied to e = 0. Only axes whose
 ///   cells are about as short as the shortest are paired, so stretched and flat cells keep the rate of cubes.
-/// - All of it in single precision: the caller computes what is left in double and calls again.
-/// Source: U. Trottenberg, C. Oosterlee, A. Schueller, Multigrid, Academic Press 2001; O. Tatebe, The
-/// multigrid preconditioned conjugate gradient method, 6th Copper Mountain Conference on Multigrid Methods,
-/// NASA CP-3224 (1993).
+/// Source: U. Trottenberg, C. Oosterlee, A. Schueller, Multigrid, Academic Press 2001.
 template <int Dim>
 class Multigrid {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner;
@@ -40,19 +36,15 @@ public:
             }
             levels_.emplace_back(Layout<Dim>(cells), periodic);
         }
-        search_ = Field<float>(fine.total);
-        product_ = Field<float>(fine.total);
-        solution_ = Field<float>(fine.total);
     }
 
     /// The finest operator, to be filled: `face`, `dirichlet`; then `build()`.
     Poisson<Dim>& matrix() noexcept { return levels_[0].matrix; }
     const Poisson<Dim>& matrix() const noexcept { return levels_[0].matrix; }
     Field<float>& right_side() noexcept { return levels_[0].b; }
-    const Field<float>& solution() const noexcept { return solution_; }
+    const Field<float>& right_side() const noexcept { return levels_[0].b; }
     /// Of planes of the finest level, for threads.
     const detail::PlaneRuns& runs() const noexcept { return levels_[0].runs; }
-    int level_count() const noexcept { return static_cast<int>(levels_.size()); }
     /// No cell is tied to a fixed value: e is known but for a constant.
     bool floating() const noexcept { return floating_; }
 
@@ -66,44 +58,13 @@ public:
         floating_ = levels_.back().matrix.dirichlet[levels_.back().matrix.layout.at({})] == 0;
     }
 
-    struct Report {
-        int iterations = 0;
-        Real before = 0, after = 0;  ///< norm of the residual: root of the sum of squares
-    };
-
-    /// Fills `solution()` from `right_side()`, which is overwritten, until the residual's norm is at most
-    /// `target` or `limit` iterations are done.
-    template <class Solids = const NoSolids>
-    Report solve(Real target, int limit, [[maybe_unused]] Solids& solids = no_solids) {
-        Level& fine = levels_[0];
-        const Poisson<Dim>& a = fine.matrix;
-        if (floating_) remove_mean();
-        Report report;
-        report.before = report.after =
-            std::sqrt(sum_over_planes([&](int plane) { return squares(fine.b, plane); }));
-        detail::parallel_planes(fine.runs, [&](int plane) {
-            for_rows(plane, [&](Offset start, RowRange r) {
-                std::fill_n(solution_.data() + start + r.begin, r.length(), 0.0f);
-            });
-        });
-        Real rho_before = 0;
-        while (report.after > target && report.iterations < limit) {
-            const Real rho = cycle(0);
-            const float beta = rho_before > 0 ? static_cast<float>(rho / rho_before) : 0;
-            rho_before = rho;
-            Real curvature = search_along(a, beta);
-            if constexpr (Solids::present) curvature += solids.add_product(search_, product_);
-            if (!(curvature > 0) || !(rho > 0)) {
-                // What is not a number must not outlive the solution that it came from.
-                for (Level& level : levels_) level.x.fill(0), level.b.fill(0);
-                for (Field<float>* field : {&search_, &product_, &solution_}) field->fill(0);
-                break;
-            }
-            const float step = static_cast<float>(rho / curvature);
-            report.after = std::sqrt(sum_over_planes([&](int plane) { return take(step, plane); }));
-            ++report.iterations;
-        }
-        return report;
+    /// One V-cycle from the right side b, which it leaves: fills `correction()`, z, and returns b . z.
+    Real precondition() { return cycle(0); }
+    /// z is worked on in between: its ghosts may be written.
+    Field<float>& correction() noexcept { return levels_[0].x; }
+    /// Forgets what is not a number: it must not outlive the solution that it came from.
+    void clear() {
+        for (Level& level : levels_) level.x.fill(0), level.b.fill(0);
     }
 
 private:
@@ -155,7 +116,7 @@ private:
         detail::wavefront(level.colour_runs, l == 0 ? 6 : 5, m.periodic[outer], [&](int stage, int plane) {
             if (stage == 0) return prolong_plane(level, coarse, plane);
             if (stage == 5) {
-                partial_[static_cast<std::size_t>(plane)] = dot(level.b, level.x, plane);
+                partial_[static_cast<std::size_t>(plane)] = m.dot(level.b, level.x, plane);
                 return;
             }
             for (int row = 0; row < rows; ++row) m.smooth(level.x, level.b, plane, row, stage & 1);
@@ -210,103 +171,7 @@ private:
         }
     }
 
-    Real dot(const Field<float>& x, const Field<float>& y, int plane) const noexcept {
-        Real total = 0;
-        for_rows(plane, [&](Offset start, RowRange r) {
-            const float *const p = x.data() + start, *const q = y.data() + start;
-            float sum = 0;
-#pragma omp simd reduction(+ : sum)
-            for (int i = r.begin; i < r.end; ++i) sum += p[i] * q[i];
-            total += static_cast<Real>(sum);
-        });
-        return total;
-    }
-    Real squares(const Field<float>& x, int plane) const noexcept { return dot(x, x, plane); }
-
-    /// Turns the search direction, p = z + beta p, and returns p . A p.
-    Real search_along(const Poisson<Dim>& a, float beta) {
-        const Field<float>& z = levels_[0].x;
-        partial_.assign(static_cast<std::size_t>(a.layout.planes()), 0);
-        detail::wavefront(levels_[0].runs, 2, a.periodic[outer], [&](int stage, int plane) {
-            if (stage == 0) {
-                for_rows(plane, [&](Offset start, RowRange r) {
-                    float* const __restrict p = search_.data() + start;
-                    const float* const __restrict from = z.data() + start;
-                    if (beta == 0) {  // what is there may be no number
-                        std::copy(from + r.begin, from + r.end, p + r.begin);
-                        return;
-                    }
-#pragma omp simd
-                    for (int i = r.begin; i < r.end; ++i) p[i] = from[i] + beta * p[i];
-                });
-                return;
-            }
-            Real sum = 0;
-            for (int row = 0; row < a.layout.rows_per_plane(); ++row)
-                sum += a.apply(search_, product_, plane, row);
-            partial_[static_cast<std::size_t>(plane)] = sum;
-        });
-        Real sum = 0;
-        for (const Real p : partial_) sum += p;
-        return sum;
-    }
-
-    /// Goes a step along the search direction on a plane; returns the square of the residual's norm there.
-    Real take(float step, int plane) noexcept {
-        Real total = 0;
-        for_rows(plane, [&](Offset start, RowRange r) {
-            float* const __restrict e = solution_.data() + start;
-            float* const __restrict b = levels_[0].b.data() + start;
-            const float* const __restrict p = search_.data() + start;
-            const float* const __restrict q = product_.data() + start;
-            float sum = 0;
-#pragma omp simd reduction(+ : sum)
-            for (int i = r.begin; i < r.end; ++i) {
-                e[i] += step * p[i];
-                b[i] -= step * q[i];
-                sum += b[i] * b[i];
-            }
-            total += static_cast<Real>(sum);
-        });
-        return total;
-    }
-
-    void remove_mean() {
-        const Poisson<Dim>& m = levels_[0].matrix;
-        Field<float>& b = levels_[0].b;
-        Index cells = 0;
-        Real sum = 0;
-        const auto each = [&](auto&& body) {
-            for (int plane = 0; plane < m.layout.planes(); ++plane)
-                for_rows(plane, [&](Offset start, RowRange r) {
-                    for (int i = r.begin; i < r.end; ++i)
-                        if (m.inverse_diagonal[start + i] > 0) body(start + i);
-                });
-        };
-        each([&](Offset c) { sum += static_cast<Real>(b[c]), ++cells; });
-        if (cells == 0) return;
-        const float mean = static_cast<float>(sum / cells);
-        each([&](Offset c) { b[c] -= mean; });
-    }
-
-    void for_rows(int plane, auto&& body) const noexcept {
-        const Poisson<Dim>& m = levels_[0].matrix;
-        for (int row = 0; row < m.layout.rows_per_plane(); ++row)
-            if (const RowRange r = m.range(plane, row); !r.empty()) body(m.layout.row_start(plane, row), r);
-    }
-    template <class Term>
-    Real sum_over_planes(Term&& term) {
-        const int planes = levels_[0].matrix.layout.planes();
-        partial_.assign(static_cast<std::size_t>(planes), 0);
-        detail::parallel_planes(levels_[0].runs,
-                                [&](int plane) { partial_[static_cast<std::size_t>(plane)] = term(plane); });
-        Real sum = 0;
-        for (const Real p : partial_) sum += p;
-        return sum;
-    }
-
     std::vector<Level> levels_;
-    Field<float> search_, product_, solution_;
     std::vector<Real> partial_;
     bool floating_ = false;
 };

@@ -120,6 +120,24 @@ struct Poisson {
         return static_cast<double>(sum);
     }
 
+    /// Over the cells of a plane that take part.
+    double dot(const Field<float>& x, const Field<float>& y, int plane) const noexcept {
+        double total = 0;
+        for_rows(plane, [&](Offset start, RowRange r) {
+            const float *const p = x.data() + start, *const q = y.data() + start;
+            float sum = 0;
+#pragma omp simd reduction(+ : sum)
+            for (int i = r.begin; i < r.end; ++i) sum += p[i] * q[i];
+            total += static_cast<double>(sum);
+        });
+        return total;
+    }
+    /// Calls body(start, range) for the rows of a plane that are not empty.
+    void for_rows(int plane, auto&& body) const noexcept {
+        for (int row = 0; row < layout.rows_per_plane(); ++row)
+            if (const RowRange r = range(plane, row); !r.empty()) body(layout.row_start(plane, row), r);
+    }
+
     /// Before `complete`: which cells of a row may take part, those of the last time included.
     void look_at(int plane, int row, RowRange cells) noexcept { rows[index(plane, row)] = cells; }
 

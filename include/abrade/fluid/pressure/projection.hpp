@@ -2,8 +2,9 @@
 // Makes a velocity free of divergence, and finds the pressure that does it.
 
 #include <abrade/fluid/mesh/water_cells.hpp>
-#include <abrade/fluid/pressure/multigrid.hpp>
+#include <abrade/fluid/pressure/conjugate_gradients.hpp>
 #include <abrade/fluid/pressure/net_outflow.hpp>
+#include <abrade/fluid/pressure/pressure_solver.hpp>
 
 #include <cstdint>
 
@@ -12,9 +13,9 @@ namespace abrade {
 /// Solves  div(grad phi) = div(u) - target  and takes grad phi from u; phi = p dt / density.
 ///
 /// Tolerance: root mean square over the wet cells of |div u| dt, the share of its volume that a cell gains or
-/// loses in a step. Solved in single precision by Multigrid; what is left is computed from the velocity
+/// loses in a step. Solved in single precision (PressureSolver); what is left is computed from the velocity
 /// itself in double, and solved for again, so the tolerance means what it says.
-template <int Dim, class State>
+template <int Dim, class State, PressureSolver<Dim> Solver = ConjugateGradients<Dim>>
 class Projection {
     static constexpr int outer = Layout<Dim>::outer, inner = Layout<Dim>::inner,
                          vertical = Grid<Dim>::vertical;
@@ -23,7 +24,7 @@ public:
     /// A box full of water.
     Projection(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries)
         : grid_(&grid), boundaries_(boundaries), outflow_(grid),
-          multigrid_(grid.layout(), mean_size(grid), boundaries.periodic_axes()) {
+          solver_(grid.layout(), mean_size(grid), boundaries.periodic_axes()) {
         for (int b = 0; b < Dim; ++b) {
             const auto level_along = [b](int k) { return b == vertical ? k : 0; };
             per_gap_[b] = Table(grid, [&](int k) { return 1 / grid.gap(b, level_along(k)); });
@@ -66,7 +67,7 @@ public:
         open_.assign(water.open.begin(), water.open.end());
         aperture_ = water.aperture;
         open_fraction_ = water.open_fraction;
-        Poisson<Dim>& m = multigrid_.matrix();
+        Poisson<Dim>& m = solver_.matrix();
         const Layout<Dim>& l = grid_->layout();
         for (int a = 0; a < Dim; ++a) m.interior[a] = static_cast<float>(area(a, 0) / grid_->gap(a, 0));
         water.rows.for_each_plane([&](int plane) {
@@ -79,7 +80,7 @@ public:
             if constexpr (Solids::present) area *= solids.water_share(n);
             m.dirichlet[open.cell] += static_cast<float>(area * std::abs(open.slope));
         }
-        multigrid_.build();
+        solver_.build();
         if constexpr (Solids::present) solids.keep_wet(m);
         find_faces();
     }
@@ -87,7 +88,7 @@ public:
     /// Faces between two wet cells.
     const PerAxis<WetRows<Dim>, Dim>& faces() const noexcept { return faces_; }
     std::span<const OpenFace> open_faces() const noexcept { return open_; }
-    const Multigrid<Dim>& multigrid() const noexcept { return multigrid_; }
+    const Solver& solver() const noexcept { return solver_; }
     const FaceField<Dim>* aperture() const noexcept { return aperture_; }  ///< none: all open
     Index wet_cells() const noexcept { return wet_cells_; }
 
@@ -127,7 +128,7 @@ public:
         while (report.after > tolerance && report.rounds < most_rounds) {
             // Half of what is allowed, since single precision promises more than it keeps.
             const auto solved =
-                multigrid_.solve(std::max(0.5 * tolerance / unit, 1e-5 * norm), most_iterations, solids);
+                solver_.solve(std::max(0.5 * tolerance / unit, 1e-5 * norm), most_iterations, solids);
             report.iterations += solved.iterations;
             ++report.rounds;
             const Real last = norm;
@@ -157,7 +158,7 @@ private:
 
     /// Conductances of a row's lower faces.
     void conduct(const WaterCells<Dim>& water, int plane, int row) {
-        Poisson<Dim>& m = multigrid_.matrix();
+        Poisson<Dim>& m = solver_.matrix();
         const RowRange r = water.rows.row(plane, row);
         m.look_at(plane, row, r);
         if (r.empty()) return;
@@ -191,10 +192,10 @@ private:
     }
 
     void find_faces() {
-        const Poisson<Dim>& m = multigrid_.matrix();
+        const Poisson<Dim>& m = solver_.matrix();
         const Layout<Dim>& l = grid_->layout();
         std::vector<Index> counts(static_cast<std::size_t>(l.planes()), 0);
-        detail::parallel_planes(multigrid_.runs(), [&](int plane) {
+        detail::parallel_planes(solver_.runs(), [&](int plane) {
             for (int row = 0; row < l.rows_per_plane(); ++row) {
                 const Offset start = l.row_start(plane, row);
                 const RowRange cells = m.range(plane, row);
@@ -216,7 +217,7 @@ private:
     /// Fills the right side on a plane; returns the square sum of what it lacks.
     Real diverge(const FaceField<Dim, State>& u, int plane) {
         const auto found = outflow_.of(u, {aperture_, open_fraction_, volume_defect_, relaxation_time_},
-                                       multigrid_.matrix(), multigrid_.right_side(), plane);
+                                       solver_.matrix(), solver_.right_side(), plane);
         rates_[static_cast<std::size_t>(plane)] = found.fastest;
         return found.squares;
     }
@@ -229,7 +230,7 @@ private:
 
     Real start(FaceField<Dim, State>& u) {
         make_room();
-        detail::parallel_planes(multigrid_.runs(), [&](int plane) {
+        detail::parallel_planes(solver_.runs(), [&](int plane) {
             join_upper_faces(u, plane);
             squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
         });
@@ -242,8 +243,8 @@ private:
     Real correct(FaceField<Dim, State>& u, Field<State>& pressure, bool push,
                  [[maybe_unused]] Solids& solids) {
         make_room();
-        const Poisson<Dim>& m = multigrid_.matrix();
-        const Field<float>& e = multigrid_.solution();
+        const Poisson<Dim>& m = solver_.matrix();
+        const Field<float>& e = solver_.solution();
         const auto rate = static_cast<State>(1 / step_), dt = static_cast<State>(step_);
         for (const OpenFace& open : open_) {
             if (push && open.plain == 0) continue;
@@ -252,7 +253,7 @@ private:
         }
         if constexpr (Solids::present) push ? solids.push(pressure, step_) : solids.push(e, 1);
         // Stage 1 reads the next plane's lower faces, which stage 0 has corrected.
-        detail::wavefront(multigrid_.runs(), 2, boundaries_.periodic(outer), [&](int stage, int plane) {
+        detail::wavefront(solver_.runs(), 2, boundaries_.periodic(outer), [&](int stage, int plane) {
             if (stage == 1) {
                 join_upper_faces(u, plane);
                 squares_[static_cast<std::size_t>(plane)] = diverge(u, plane);
@@ -279,7 +280,7 @@ private:
 
     template <class Number>
     void take_gradient(FaceField<Dim, State>& u, const Field<Number>& of, State factor, int plane, int row) {
-        const Poisson<Dim>& m = multigrid_.matrix();
+        const Poisson<Dim>& m = solver_.matrix();
         const Offset start = m.layout.row_start(plane, row);
         const Number* const __restrict from = of.data() + start;
         const auto neighbours = m.neighbours(plane, row);
@@ -334,7 +335,7 @@ private:
     detail::NetOutflow<Dim, State> outflow_;
     PerAxis<Table, Dim> per_gap_;  ///< [1/m]
     PerAxis<detail::LevelTable<Dim, float>, Dim> conductance_;
-    Multigrid<Dim> multigrid_;
+    Solver solver_;
     PerAxis<WetRows<Dim>, Dim> faces_;
     std::vector<OpenFace> open_;
     const FaceField<Dim>* aperture_ = nullptr;
