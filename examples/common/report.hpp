@@ -111,9 +111,6 @@ inline std::vector<ReportRow> build_versions() {
 #elif defined(__GNUC__)
     rows.push_back({"compiler", "g++ " __VERSION__});
 #endif
-#if defined(_OPENMP)
-    rows.push_back({"OpenMP", std::to_string(_OPENMP)});
-#endif
 #if defined(NDEBUG)
     rows.push_back({"assertions", "off"});
 #else

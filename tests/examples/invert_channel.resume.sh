@@ -5,7 +5,6 @@ set -euo pipefail
 program="$1"
 kills=50
 failures=0
-export GOMP_SPINCOUNT=3000  # tests share their cores
 
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 # What two runs of the same may differ in: wall times, and how many threads there were.

@@ -6,10 +6,6 @@
 
 #include "height_cells.hpp"
 
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
-
 #include <cmath>
 
 using namespace abrade;
@@ -79,10 +75,8 @@ TEST_CASE("rest in an invert, its surface tilted with gravity") {
 TEST_CASE(
     "a dam that runs over a dry hill: volume to round-off, bounded speeds, the same bits for two threads") {
     const auto run = [](int threads) {
-#if defined(_OPENMP)
-        const int before = omp_get_max_threads();
-        omp_set_num_threads(threads);
-#endif
+        const int before = thread_count();
+        set_thread_count(threads);
         Flow flow(tank(16, hill, [](const Vec3& x) { return std::min(0.6 - x[2], 0.5 - x[0]); }));
         const Real volume = volume_in_cells(flow);
         Real most = 0, worst = 0;
@@ -94,9 +88,7 @@ TEST_CASE(
         CHECK(worst < 1e-12);  // round-off of sums over some thousand cells in some hundred steps
         // Twice what it falls by: a dam runs ahead at 2 sqrt(g h), and splashes no faster.
         CHECK(most < 2 * std::sqrt(g * 0.6));
-#if defined(_OPENMP)
-        omp_set_num_threads(before);
-#endif
+        set_thread_count(before);
         return flow;
     };
     const Flow one = run(1), two = run(2);

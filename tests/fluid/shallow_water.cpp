@@ -7,10 +7,6 @@
 
 #include <doctest/doctest.h>
 
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
-
 using namespace abrade;
 
 namespace {
@@ -148,16 +144,12 @@ TEST_CASE("rows of a plane that are all alike are the one-dimensional flow") {
 TEST_CASE("the same bits with one thread and with two") {
     std::vector<Real> depth[2];
     for (const int threads : {1, 2}) {
-#if defined(_OPENMP)
-        const int before = omp_get_max_threads();
-        omp_set_num_threads(threads);
-#endif
+        const int before = thread_count();
+        set_thread_count(threads);
         ShallowWater<2> water = puddle(300);  // several tiles
         water.advance(0.15);
         depth[threads - 1] = water.columns().depth;
-#if defined(_OPENMP)
-        omp_set_num_threads(before);
-#endif
+        set_thread_count(before);
     }
     CHECK(depth[0] == depth[1]);
 }

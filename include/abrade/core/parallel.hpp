@@ -3,6 +3,7 @@
 // blocks of fixed size and sums are added up in block order. How much there is to do decides whether a loop
 // asks for other threads at all.
 
+#include <abrade/core/helpers.hpp>
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
@@ -11,25 +12,13 @@
 #include <cstdint>
 #include <vector>
 
-#if defined(_OPENMP)
-#include <omp.h>
-#endif
-
 namespace abrade {
 
-/// Threads that a loop may use: 1 without OpenMP, else OMP_NUM_THREADS or the machine's cores.
-inline int thread_count() noexcept {
-#if defined(_OPENMP)
-    return omp_get_max_threads();
-#else
-    return 1;
-#endif
-}
+/// Threads that a loop may use: what OMP_NUM_THREADS says, else as many as the machine has for the program.
+inline int thread_count() noexcept { return detail::threads_of_loops().load(std::memory_order_relaxed); }
 
-inline void set_thread_count([[maybe_unused]] int count) noexcept {
-#if defined(_OPENMP)
-    omp_set_num_threads(std::max(1, count));
-#endif
+inline void set_thread_count(int count) noexcept {
+    detail::threads_of_loops().store(std::max(1, count), std::memory_order_relaxed);
 }
 
 /// Items per block. Small enough to share out, large enough that a block repays its bookkeeping.
@@ -55,37 +44,28 @@ class LoopWork {
     using Clock = std::chrono::steady_clock;
 
 public:
-    /// One call, over `items`: `together` says whether by all threads.
-    class Call {
-    public:
-        Call(LoopWork& work, Index items) : work_(work), items_(items) {
-            const int threads = thread_count();
-            if (threads == 1) return;
-            if (share_every_loop.load(std::memory_order_relaxed)) {
-                together = true;
-                return;
-            }
-            const std::uint32_t call = 1 + work.calls_.fetch_add(1, std::memory_order_relaxed);
-            timed_ = (call & (call - 1)) == 0 || call % 4096 == 0;
-            if (timed_) start_ = Clock::now();
-            // Less than this for each of them, and waking them costs more than they save [s].
-            constexpr double least = 10e-6;
-            together = !timed_ && work.per_item_.load(std::memory_order_relaxed) * items > least * threads;
+    /// Calls task(k) for 0 <= k < tasks, of `items` altogether, by as many threads as are worth waking.
+    template <class Task>
+    void run(Index tasks, Index items, Task&& task) {
+        const auto alone = [&] {
+            for (Index k = 0; k < tasks; ++k) task(k);
+        };
+        const int threads = static_cast<int>(std::min<Index>(thread_count(), tasks));
+        if (threads <= 1) return alone();
+        if (share_every_loop.load(std::memory_order_relaxed)) return Helpers::one().run(tasks, threads, task);
+        const std::uint32_t call = 1 + calls_.fetch_add(1, std::memory_order_relaxed);
+        if ((call & (call - 1)) == 0 || call % 4096 == 0) {
+            const auto start = Clock::now();
+            alone();
+            took(std::chrono::duration<double>(Clock::now() - start).count() / items);
+            return;
         }
-        ~Call() {
-            if (timed_) work_.took(std::chrono::duration<double>(Clock::now() - start_).count() / items_);
-        }
-        Call(const Call&) = delete;
-        Call& operator=(const Call&) = delete;
-
-        bool together = false;
-
-    private:
-        LoopWork& work_;
-        Index items_;
-        bool timed_ = false;
-        Clock::time_point start_{};
-    };
+        // Less than this for each of them, and waking them costs more than they save [s].
+        constexpr double least = 20e-6;
+        const double share = per_item_.load(std::memory_order_relaxed) * items / least;
+        const int worth = share < threads ? static_cast<int>(share) : threads;
+        worth > 1 ? Helpers::one().run(tasks, worth, task) : alone();
+    }
 
 private:
     void took(double per_item) noexcept {
@@ -103,32 +83,20 @@ private:
 /// `body` must not throw.
 template <class Body>
 void parallel_blocks(Index items, Body&& body, Index size = block_size) {
-    if (items <= 0) return;
-    const Index blocks = block_count(items, size);
     static constinit detail::LoopWork work;
-    const detail::LoopWork::Call call(work, items);
-#if defined(_OPENMP)
-#pragma omp parallel for schedule(dynamic) if (call.together && blocks > 1)
-#endif
-    for (Index block = 0; block < blocks; ++block) {
+    work.run(block_count(items, size), items, [&](Index block) {
         const Index first = block * size;
         body(block, first, std::min(items, first + size));
-    }
+    });
 }
 
-/// Calls `body(task)` for each of a few large tasks, in parallel; the same thread gets the same tasks each
-/// time, so that what they work on stays in its cache. `body` must not throw.
+/// Calls `body(task)` for each of a few large tasks, in parallel; the same thread begins with the same tasks
+/// each time, so that what they work on stays in its cache. `body` must not throw.
 template <class Body>
 void parallel_tasks(Index tasks, Body&& body) {
-    if (tasks <= 0) return;
     static constinit detail::LoopWork work;
-    const detail::LoopWork::Call call(work, tasks);
-#if defined(_OPENMP)
-#pragma omp parallel for schedule(static) if (call.together && tasks > 1)
-#endif
-    for (Index task = 0; task < tasks; ++task) body(task);
+    work.run(tasks, tasks, body);
 }
-
 /// Calls `body(i)` for each i in [0, items), in parallel. `body` must not throw.
 template <class Body>
 void parallel_for(Index items, Body&& body, Index size = block_size) {

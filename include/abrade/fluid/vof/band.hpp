@@ -39,9 +39,7 @@ public:
             const std::uint8_t* mark = marks.data() + start;
             std::uint8_t* air = air_.data() + start;
             const Real full = 1 - smallest_void_;
-#if defined(_OPENMP)
 #pragma omp simd
-#endif
             for (int i = range.begin; i < range.end; ++i)
                 air[i] = static_cast<std::uint8_t>((f[i] < full) & ((mark[i] & cell_mark::open) != 0));
         });
@@ -57,9 +55,7 @@ public:
             const std::uint8_t* air = air_.data() + start;
             std::uint8_t* edge = edge_.data() + start;
             const PerAxis<Offset, Dim> s = layout_.stride;
-#if defined(_OPENMP)
 #pragma omp simd
-#endif
             for (int i = range.begin; i < range.end; ++i) {
                 int near = air[i] | air[i - s[0]] | air[i + s[0]] | air[i - s[1]] | air[i + s[1]];
                 if constexpr (Dim == 3) near |= air[i - s[2]] | air[i + s[2]];
