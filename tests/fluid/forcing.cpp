@@ -65,6 +65,18 @@ struct Shaken {
     }
 };
 
+/// A drain and, half of the box away, a spring, in a box of 1 m that is periodic along x.
+struct AcrossTheSeam {
+    static constexpr std::string_view name = "AcrossTheSeam";
+    Real drain = 0.5;  ///< [m]
+    static Real way(Real from, Real to) noexcept { return std::remainder(to - from, 1.0); }
+    bool acts_at(const Point<2>&) const noexcept { return true; }
+    FlowForce<2> force(const Point<2>&, const Point<2>&, Real) const noexcept { return {}; }
+    Real source(const Point<2>& x, Real) const noexcept {
+        return std::abs(way(drain, x[0])) < 0.1 ? -0.5 : std::abs(way(drain + 0.5, x[0])) < 0.1 ? 0.5 : 0;
+    }
+};
+
 /// Goes wrong after a while.
 struct Wrong {
     static constexpr std::string_view name = "Wrong";
@@ -226,6 +238,37 @@ TEST_CASE("a spring and a drain in a closed box: as much goes as comes; a spring
 
     GridFluid<2, Forced<Spring, FullBox>> filled(params, {}, {}, Spring{});
     CHECK(error_of([&] { filled.advance(1); }).find("more flows in than out") != std::string::npos);
+}
+
+TEST_CASE("a drain across a periodic seam takes as one in the middle does") {
+    const auto run = [](Real drain) {
+        GridFluidParams<2> params = periodic_box(16);
+        params.velocity = [](const Point<2>&) { return Point<2>(0.3, 0); };
+        GridFluid<2, Forced<AcrossTheSeam, FullBox>> flow(params, {}, {}, {.drain = drain});
+        for (int k = 0; k < 50; ++k) flow.step(0.02);
+        return flow;
+    };
+    const auto middle = run(0.5), seam = run(0);
+    Real off = 0;
+    middle.grid().for_each([&](const CellNumber<2>& cell, Offset c) {
+        const Offset there = middle.grid().layout().at({(cell[0] + 8) % 16, cell[1]});
+        off = std::max(off, std::abs(middle.velocity()[0][c] - seam.velocity()[0][there]));
+    });
+    CHECK(off < 1e-9);
+}
+
+TEST_CASE("walls that change leave a force where it acts, and its limit of the step") {
+    const auto floor_at = [](Real z) { return [z](const Point<2>& x) { return x[1] - z; }; };
+    GridFluidParams<2> params = periodic_box(16);
+    params.gravity = {0, -g};
+    params.wall = floor_at(0.03);
+    params.water = [](const Point<2>& x) { return 0.27 - x[1]; };
+    GridFluid<2, Forced<PumpAmongStems>> flow(params, {}, {}, {.push = 2e6});
+    const Real before = flow.stable_step().seconds;
+    flow.set_wall(floor_at(0.031));
+    CHECK(flow.stable_step().seconds == doctest::Approx(before).epsilon(1e-6).scale(0));
+    flow.step(flow.stable_step().seconds);
+    CHECK(flow.velocity()[0][flow.grid().layout().at({2, 2})] > 0);
 }
 
 TEST_CASE_TEMPLATE("a spring under water fills a tank, a drain empties it", Surface, FreeSurface,

@@ -2,13 +2,14 @@
 // What a user does to the water of a place: a force per volume, and water that is put in or taken out.
 
 #include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
-#include <abrade/fluid/mesh/boundary_conditions.hpp>
+#include <abrade/fluid/mesh/ghost_cells.hpp>
 #include <abrade/fluid/mesh/water_cells.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -68,7 +69,7 @@ public:
 
     AppliedForcing(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries, const F& forcing,
                    const EmbeddedBoundary<Dim>* walls)
-        : layout_(grid.layout()) {
+        : layout_(grid.layout()), boundaries_(boundaries) {
         if constexpr (HasSource<F, Dim>) rate_ = Field<Real>(layout_.total);
         grid.for_each([&](const CellNumber<Dim>& cell, Offset c) {
             for (int a = 0; a < Dim; ++a) {
@@ -139,6 +140,7 @@ public:
                 rate_[s.cell] = s.rate;
                 largest_rate_ = std::max(largest_rate_, std::abs(s.rate));
             }
+            fill_periodic(rate_, layout_, boundaries_);
         }
         return sources_;
     }
@@ -215,6 +217,7 @@ private:
     }
 
     Layout<Dim> layout_;
+    BoundaryConditions<Dim> boundaries_;
     PerAxis<std::vector<Place>, Dim> places_;    ///< of faces
     PerAxis<std::vector<FaceGain>, Dim> gains_;  ///< of the same
     std::vector<Point<Dim>> centres_;            ///< of cells

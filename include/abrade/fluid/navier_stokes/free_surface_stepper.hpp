@@ -133,6 +133,7 @@ public:
         extend(flow, flow.velocity);
         free_of_divergence(flow, 1e-6);  // or the liquid would flow into the new walls
         flow.find_eddies(rows(), liquid_fraction());
+        flow.look_at_forcing();
         if (flow.energy) flow.energy->reshaped(energy_view(flow));
     }
 
