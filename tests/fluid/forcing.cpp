@@ -153,6 +153,10 @@ TEST_CASE_TEMPLATE("the same below a surface", Surface, FreeSurface, HeightSurfa
     flow.open_energy_account();
     flow.advance(20);
     CHECK(speed_along(flow) == doctest::Approx(expected).epsilon(1e-4).scale(0));
+    // The topmost row is a third full: its water has no pressure of its own, and feels the stems all the same.
+    for (int k = 0; k < 5; ++k)
+        CHECK(flow.velocity()[0][flow.grid().layout().at({3, k})] ==
+              doctest::Approx(expected).epsilon(1e-3).scale(0));
     const WaterEnergy& e = flow.energy();
     MESSAGE("body force " << e.body_force << " J, forcing " << e.forcing << " J, numerical " << e.numerical);
     CHECK(e.forcing < 0);
@@ -254,7 +258,7 @@ TEST_CASE("a drain across a periodic seam takes as one in the middle does") {
         const Offset there = middle.grid().layout().at({(cell[0] + 8) % 16, cell[1]});
         off = std::max(off, std::abs(middle.velocity()[0][c] - seam.velocity()[0][there]));
     });
-    CHECK(off < 1e-9);
+    CHECK(off < 1e-7);  // what the tolerance leaves
 }
 
 TEST_CASE("walls that change leave a force where it acts, and its limit of the step") {

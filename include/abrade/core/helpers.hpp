@@ -9,6 +9,7 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace abrade::detail {
@@ -32,12 +33,13 @@ inline std::atomic<int>& threads_of_loops() noexcept {
 
 /// A few threads that sleep until there is a loop to help with. Who asks works, too, and waits at its end for
 /// those alone who have begun: a thread that the machine has no core for costs nothing. A helper looks for
-/// the next loop for some ten microseconds before it sleeps, so loops that follow each other need not wake
-/// it.
+/// the next loop for some ten to a hundred microseconds before it sleeps, so loops that follow each other
+/// need not wake it.
 class Helpers {
 public:
+    /// Never destroyed: threads that sleep end with the program.
     static Helpers& one() {
-        static Helpers helpers;
+        static Helpers& helpers = *new Helpers;
         return helpers;
     }
 
@@ -81,15 +83,9 @@ private:
         Index end = 0;
     };
     static constexpr int closed = 1 << 30, most = 256;
-    static constexpr int looks = 2000;  ///< before a thread sleeps: some ten to fifty microseconds
+    static constexpr int looks = 2000;  ///< before a thread sleeps: some ten to a hundred microseconds
 
     Helpers() : fronts_(index(most)) {}
-    ~Helpers() {
-        ends_.store(true, std::memory_order_release);
-        loop_.fetch_add(1, std::memory_order_release);
-        loop_.notify_all();
-        for (std::thread& thread : threads_) thread.join();
-    }
 
     static std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
     static bool& within_loop() noexcept {
@@ -113,7 +109,6 @@ private:
                 relax();
             loop_.wait(known, std::memory_order_acquire);
             known = loop_.load(std::memory_order_acquire);
-            if (ends_.load(std::memory_order_acquire)) return;
             int within = gate_.load(std::memory_order_relaxed);
             while ((within & closed) == 0 &&
                    !gate_.compare_exchange_weak(within, within + 1, std::memory_order_acq_rel))
@@ -144,7 +139,6 @@ private:
     int parts_ = 1;
     std::atomic<int> loop_{0};       ///< counts loops
     std::atomic<int> gate_{closed};  ///< helpers within the loop, and whether it is closed
-    std::atomic<bool> ends_{false};
 };
 
 }  // namespace abrade::detail

@@ -1,9 +1,11 @@
 #pragma once
 // One simulation from four policies: the builder, the loop and its guards.
 
+// First, so that a message about a law shows a short way to what it misses.
+#include <abrade/sim/slots.hpp>
+
 #include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/sim/scene_limits.hpp>
-#include <abrade/sim/slots.hpp>
 #include <abrade/sim/snapshot.hpp>
 
 #include <chrono>

@@ -66,7 +66,7 @@ public:
         if (flow.gains)
             change.forcing = work_at_faces(flow, [&](auto&& of_face) {
                 for (int a = 0; a < Dim; ++a)
-                    for (const FaceGain& g : (*flow.gains)[a]) of_face(a, g.face, g.gain);
+                    for (const FaceGain& g : (*flow.gains)[a]) of_face(a, g.face, g.gain - g.drained);
             });
         change.sources = brought_by_sources(flow);
         const Real carried = through_openings(flow, change);

@@ -88,7 +88,13 @@ void HeightOfFluid<Dim>::raise_by(std::span<const CellSource> sources) {
         const CellNumber<Dim> cell = layout_.number(s.cell);
         const Offset up = layout_.stride[vertical];
         Offset face = s.cell;
-        for (int k = cell[vertical] + 1; k <= top_[at(columns_.column(cell))]; ++k)
+        // As far as `renew` has counted: what it filled the column by above, it took for gone.
+        const auto counted = [&](int k) {
+            const RowRange r = touched_.row(cell[0], Dim == 3 ? k : 0);
+            const int i = Dim == 3 ? cell[1] : k;
+            return k <= top_[at(columns_.column(cell))] || (i >= r.begin && i < r.end);
+        };
+        for (int k = cell[vertical] + 1; k < columns_.levels() && counted(k); ++k)
             volume_flux_[vertical][face += up] += s.volume;
     }
 }

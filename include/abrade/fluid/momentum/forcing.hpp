@@ -1,6 +1,7 @@
 #pragma once
 // What a user does to the water of a place: a force per volume, and water that is put in or taken out.
 
+#include <abrade/core/parallel.hpp>
 #include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
 #include <abrade/fluid/mesh/ghost_cells.hpp>
 #include <abrade/fluid/mesh/water_cells.hpp>
@@ -32,7 +33,7 @@ struct FlowForce {
 /// - `source(x, t)`, which may be left out: volume that is put in per volume of cell and second, < 0: taken
 ///   out [1/s]. It acts where there is water. What comes in is at rest (`push` gives it a velocity), what is
 ///   taken out leaves with the water's own.
-/// All are called from many threads.
+/// `force` is called from many threads, and none of them may throw.
 template <class F, int Dim>
 concept Forcing = std::copyable<F> && requires(const F& f, const Point<Dim>& x, Real t) {
     { F::name } -> std::convertible_to<std::string_view>;
@@ -56,6 +57,7 @@ namespace detail {
 struct FaceGain {
     Offset face = 0;
     Real gain = 0;
+    Real drained = 0;  ///< part of it: what water that is taken out took along
 };
 
 /// A Forcing on the faces and cells of a grid.
@@ -63,9 +65,13 @@ template <int Dim, Forcing<Dim> F>
 class AppliedForcing {
 public:
     struct Step {
-        Real density = 1, dt = 0, time = 0;        ///< [kg/m3], [s], [s]
-        const Field<std::uint8_t>* wet = nullptr;  ///< faces between others are left alone; none: all wet
+        Real density = 1, dt = 0, time = 0;            ///< [kg/m3], [s], [s]
+        const Field<Real>* liquid_fraction = nullptr;  ///< faces without are left alone; none: all is full
     };
+
+    static_assert(
+        !requires { &F::source; } || HasSource<F, Dim>,
+        "a Forcing's source(x, t) is const, takes a Point<Dim> and a Real, and gives a Real");
 
     AppliedForcing(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries, const F& forcing,
                    const EmbeddedBoundary<Dim>* walls)
@@ -76,7 +82,7 @@ public:
                 if ((cell[a] == 0 && !boundaries.periodic(a)) || (walls && !(walls->aperture()[a][c] > 0)))
                     continue;
                 if (const Point<Dim> x = grid.face_centre(a, cell); forcing.acts_at(x))
-                    places_[a].push_back({x, 1 / grid.gap(a, cell[a])}), gains_[a].push_back({c, 0});
+                    places_[a].push_back({x, 1 / grid.gap(a, cell[a])}), gains_[a].push_back({c});
             }
             if constexpr (HasSource<F, Dim>)
                 if (const Point<Dim> x = grid.centre(cell);
@@ -89,14 +95,16 @@ public:
     /// InputError where a force is no number or a resistance below 0.
     template <class State>
     void find(const F& forcing, const FaceField<Dim, State>& u, const Step& step) {
-        hastens_ = 0;
+        Real hastens = 0;
         for (int a = 0; a < Dim; ++a) {
             std::vector<Real> pushes(places_[a].size(), 0);
             parallel_for(static_cast<Index>(places_[a].size()), [&](Index n) {
                 const auto k = static_cast<std::size_t>(n);
                 const Offset c = gains_[a][k].face, back = layout_.stride[a];
-                gains_[a][k].gain = 0;
-                if (step.wet && ((*step.wet)[c] | (*step.wet)[c - back]) == 0) return;
+                gains_[a][k].gain = gains_[a][k].drained = 0;
+                if (step.liquid_fraction &&
+                    !((*step.liquid_fraction)[c] + (*step.liquid_fraction)[c - back] > liquid_of_a_face))
+                    return;
                 const Place& place = places_[a][k];
                 const Point<Dim> at_face = velocity_at_face(u, a, c);
                 const FlowForce<Dim> now = forcing.force(place.x, at_face, step.time);
@@ -106,7 +114,9 @@ public:
                     const Real k_of = forcing.force(place.x, share * pushed, step.time).resistance;
                     return step.dt * (k_of / step.density + sink_at(a, c));
                 };
-                gains_[a][k].gain = share_kept(slows) * pushed[a] - at_face[a];
+                const Real left = share_kept(slows) * pushed[a];
+                gains_[a][k].gain = left - at_face[a];
+                gains_[a][k].drained = -step.dt * sink_at(a, c) * left;
                 if (!(now.resistance >= 0)) gains_[a][k].gain = std::numeric_limits<Real>::quiet_NaN();
             });
             Real most = 0;
@@ -114,8 +124,9 @@ public:
                 if (!std::isfinite(gains_[a][k].gain)) fail_at(forcing, u, a, k, step);
                 most = std::max(most, pushes[k]);
             }
-            hastens_ += most;
+            hastens += most;
         }
+        hastens_ = hastens;
     }
     /// Gives a share of that.
     template <class State>
@@ -137,14 +148,24 @@ public:
                                    std::string(F::name) + ".source at " + place_text<Dim>(centres_[k]) +
                                        ", t = " + short_text(time) + " s",
                                    "1/s");
-                rate_[s.cell] = s.rate;
                 largest_rate_ = std::max(largest_rate_, std::abs(s.rate));
             }
-            fill_periodic(rate_, layout_, boundaries_);
         }
         return sources_;
     }
     std::span<const CellSource> sources() const noexcept { return sources_; }
+    /// Once cells have had theirs in a step of dt, of the liquid that they hold (none: all of them): drains
+    /// that found less take less of the motion along.
+    void know_taken(const Grid<Dim>& grid, const Field<Real>* liquid_fraction, Real dt) {
+        if constexpr (HasSource<F, Dim>) {
+            for (const CellSource& s : sources_) {
+                const Real holds =
+                    (liquid_fraction ? (*liquid_fraction)[s.cell] : 1) * grid.volume(layout_.number(s.cell));
+                rate_[s.cell] = holds > 0 ? s.volume / (dt * holds) : 0;
+            }
+            fill_periodic(rate_, layout_, boundaries_);
+        }
+    }
 
     /// Sum over axes of the largest push over density and distance of cells [1/s2], and the largest source
     /// [1/s]: they limit the step.
@@ -222,7 +243,7 @@ private:
     PerAxis<std::vector<FaceGain>, Dim> gains_;  ///< of the same
     std::vector<Point<Dim>> centres_;            ///< of cells
     std::vector<CellSource> sources_;            ///< of the same
-    Field<Real> rate_;                           ///< of sources, everywhere [1/s]
+    Field<Real> rate_;                           ///< of sources, over the liquid of a cell [1/s]
     Real hastens_ = 0, largest_rate_ = 0;
 };
 

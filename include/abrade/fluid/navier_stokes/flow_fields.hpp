@@ -10,6 +10,7 @@
 #include <abrade/fluid/navier_stokes/step_history.hpp>
 #include <abrade/fluid/pressure/projection.hpp>
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -119,12 +120,11 @@ struct FlowFields {
             forced->find(forcing, velocity, {params.density, 0, time});
         }
     }
-    /// In the first stage of a step; `middle`: the time that it stands for [s], `wet`: cells that have a
-    /// pressure, none: all.
+    /// In the first stage of a step; `middle`: the time that it stands for [s].
     void force_stage([[maybe_unused]] Real dt, [[maybe_unused]] Real middle,
-                     [[maybe_unused]] const Field<std::uint8_t>* wet) {
+                     [[maybe_unused]] const Field<Real>* liquid_fraction) {
         if constexpr (has_forcing) {
-            forced->find(forcing, stage, {params.density, dt, middle, wet});
+            forced->find(forcing, stage, {params.density, dt, middle, liquid_fraction});
             forced->give(stage, 1);
         }
     }

@@ -279,6 +279,7 @@ private:
         if constexpr (Flow::has_sources)
             water_.set_sources(flow.forced->find_sources(flow.forcing, flow.time + dt));
         while_seeping(flow, [&] { water_.move(flow.velocity, dt); });
+        if constexpr (Flow::has_sources) flow.forced->know_taken(*flow.grid, liquid_fraction(), dt);
         if (flow.energy) flow.energy->liquid_moved(energy_view(flow));
     }
 
@@ -294,7 +295,8 @@ private:
         if constexpr (Solids::present)
             flow.solids.slow(flow.stage,
                              {.dt = dt, .viscosity = flow.nu(), .liquid_fraction = liquid_fraction()});
-        flow.force_stage(dt, flow.time + dt, &water_.wet());
+        if constexpr (Flow::has_forcing)
+            water_.of_its_own(flow.stage, [&] { flow.force_stage(dt, flow.time + dt, liquid_fraction()); });
         if (flow.energy) flow.energy->walls_took(taken);
         if (!flow.params.steady_boundaries) flow.boundaries.set_time(flow.time + dt);
         flow.boundaries.fill(flow.stage, rows());

@@ -54,11 +54,11 @@ public:
         const Point<Dim> falls = flow.params.acceleration(flow.time + 0.5 * dt);
         if (!flow.params.steady_boundaries) flow.boundaries.set_time(flow.time + dt);
         pressure_before_ = flow.pressure;  // the velocity is kept by the second stage
+        const Field<Real>* const sources = find_sources(flow, dt);  // first, since they may be no number
         place_solids(flow);
         predict(flow, dt, falls);
         push_solids(flow, dt, falls);
-        flow.project(
-            {dt, flow.params.tolerance, false, find_sources(flow, dt), flow.history.relaxation_time(dt)});
+        flow.project({dt, flow.params.tolerance, false, sources, flow.history.relaxation_time(dt)});
         if constexpr (Solids::present) flow.solids.settle(flow.velocity, flow.pressure);
         fill_ghosts(flow, flow.velocity);
         if (flow.history.is_sub_step(dt))
@@ -177,6 +177,7 @@ private:
                 s.volume = s.rate * dt * flow.grid->volume(flow.layout().number(s.cell));
                 sources_[s.cell] = s.rate * within;
             }
+            flow.forced->know_taken(*flow.grid, nullptr, dt);
             return &sources_;
         }
         return nullptr;

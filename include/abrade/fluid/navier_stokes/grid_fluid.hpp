@@ -119,7 +119,7 @@ public:
 
     /// The same among bodies that stand at `to_time` as they are given, and came there straight
     /// (ResolvedFluid). Throws as that does, and leaves the flow as it was before the step that went wrong.
-    void advance(Real to_time, std::span<FlowBody> bodies) requires Solids::present;
+    void advance(Real to_time, std::span<FlowBody> bodies) requires Options::Solids::present;
 
     /// One step of dt [s]. Throws FluidError where it is longer than `stable_step` or goes wrong, and leaves
     /// the flow as it was.
@@ -181,7 +181,7 @@ public:
         return flow_.energy->energy();
     }
     /// All that solids were given so far, by the ledger of who moves them [J].
-    void solids_took(Real work) requires Solids::present {
+    void solids_took(Real work) requires Options::Solids::present {
         const Real before = std::exchange(flow_.given, work);
         if (flow_.energy) flow_.energy->solids_took(work - before);
     }
@@ -225,7 +225,8 @@ void GridFluid<Dim, Options>::step(Real dt) {
 }
 
 template <int Dim, FlowOptions Options>
-void GridFluid<Dim, Options>::advance(Real to_time, std::span<FlowBody> bodies) requires Solids::present {
+void GridFluid<Dim, Options>::advance(Real to_time,
+                                      std::span<FlowBody> bodies) requires Options::Solids::present {
     require_finite(to_time, "GridFluid.advance: to_time", "s");
     if (!(flow_.time < to_time)) return;
     detail::refuse_lost(grid(), flow_.params.boundaries, bodies, has_surface);

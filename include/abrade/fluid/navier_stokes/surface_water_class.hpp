@@ -195,10 +195,15 @@ public:
 
     /// What walls take in a step, of what is given to the liquid in the air, too.
     auto slow(FaceField<Dim>& u, Real step, Real viscosity) {
-        extension_.add_to_own(u, -1);
-        auto taken = friction_.apply(u, &rows_, step, viscosity);
-        extension_.add_to_own(u, 1);
+        typename WallFriction<Dim>::PerFace taken;
+        of_its_own(u, [&] { taken = friction_.apply(u, &rows_, step, viscosity); });
         return taken;
+    }
+    /// Calls act() while slaved faces have what the liquid in the air has of its own.
+    void of_its_own(FaceField<Dim>& u, auto&& act) {
+        extension_.add_to_own(u, -1);
+        act();
+        extension_.add_to_own(u, 1);
     }
 
     /// In a step's second stage: in the first one the old pressure pushed master faces. The new one is yet to
