@@ -97,6 +97,14 @@ void parallel_tasks(Index tasks, Body&& body) {
     static constinit detail::LoopWork work;
     work.run(tasks, tasks, body);
 }
+/// The same of tasks that are known to be worth other threads: of runs of a large grid's planes.
+template <class Body>
+void parallel_runs(Index runs, Body&& body) {
+    const int threads = static_cast<int>(std::min<Index>(thread_count(), runs));
+    if (threads > 1) return detail::Helpers::one().run(runs, threads, body);
+    for (Index run = 0; run < runs; ++run) body(run);
+}
+
 /// Calls `body(i)` for each i in [0, items), in parallel. `body` must not throw.
 template <class Body>
 void parallel_for(Index items, Body&& body, Index size = block_size) {

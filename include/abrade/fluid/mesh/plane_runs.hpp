@@ -53,7 +53,7 @@ void parallel_parts(const PlaneRuns& runs, int least, Body&& body) {
     };
     std::vector<Front> fronts(count);
     for (std::size_t run = 0; run < count; ++run) fronts[run].plane = runs[run];
-    parallel_tasks(static_cast<Index>(count), [&](Index task) {
+    parallel_runs(static_cast<Index>(count), [&](Index task) {
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t run = (static_cast<std::size_t>(task) + k) % count;
             const int end = runs[run + 1], part = std::max(least, (end - runs[run]) / 32 * 2);

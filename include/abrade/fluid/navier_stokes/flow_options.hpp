@@ -77,7 +77,7 @@ concept FlowOptions = requires {
 &&std::floating_point<typename O::Number>&& AdvectionScheme<typename O::Scheme>&&
     TurbulenceModel<typename O::Turbulence>&& SolidsInFlow<typename O::Solids>;
 
-/// "volume of fluid, Koren, double, Smagorinsky, NoSolids, NoForcing".
+/// "volume of fluid, Koren, double, ConjugateGradients, Smagorinsky, NoSolids, NoForcing".
 template <FlowOptions O>
 std::string option_names() {
     std::string text = O::surface == SurfaceKind::none              ? "full box"
@@ -85,6 +85,7 @@ std::string option_names() {
                                                                     : "height";
     text.append(", ").append(O::Scheme::name);
     text.append(std::same_as<typename O::Number, float> ? ", float" : ", double");
+    text.append(", ").append(O::template Pressure<3>::name);
     text.append(", ").append(O::Turbulence::name).append(", ").append(O::Solids::name);
     text.append(", ").append(O::Forcing::name);
     return text;

@@ -4,7 +4,10 @@
 #include <abrade/fluid/pressure/multigrid.hpp>
 #include <abrade/fluid/pressure/solids_in_flow.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 namespace abrade {
 
@@ -17,6 +20,8 @@ class ConjugateGradients {
     static constexpr int outer = Layout<Dim>::outer;
 
 public:
+    static constexpr std::string_view name = "ConjugateGradients";
+
     /// As Multigrid's.
     ConjugateGradients(const Layout<Dim>& layout, const Point<Dim>& lengths,
                        const PerAxis<bool, Dim>& periodic)

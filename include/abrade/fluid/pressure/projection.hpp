@@ -127,8 +127,7 @@ public:
         constexpr int most_rounds = 6, most_iterations = 60;
         while (report.after > tolerance && report.rounds < most_rounds) {
             // Half of what is allowed, since single precision promises more than it keeps.
-            const auto solved =
-                solver_.solve(std::max(0.5 * tolerance / unit, 1e-5 * norm), most_iterations, solids);
+            const auto solved = solve(std::max(0.5 * tolerance / unit, 1e-5 * norm), most_iterations, solids);
             report.iterations += solved.iterations;
             ++report.rounds;
             const Real last = norm;
@@ -141,6 +140,14 @@ public:
     }
 
 private:
+    template <class Solids>
+    auto solve(Real target, int limit, [[maybe_unused]] Solids& solids) {
+        if constexpr (Solids::present)
+            return solver_.solve(target, limit, solids);
+        else
+            return solver_.solve(target, limit);
+    }
+
     static Point<Dim> mean_size(const Grid<Dim>& grid) {
         Point<Dim> mean;
         for (int a = 0; a < Dim; ++a) mean[a] = (grid.high(a) - grid.low(a)) / grid.cells(a);

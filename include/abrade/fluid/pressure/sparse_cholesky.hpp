@@ -8,16 +8,19 @@
 
 #include <cmath>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 namespace abrade {
 
 /// Solves A e = b (Poisson) by a sparse L D L^T in double precision (Eigen::SimplicialLDLT): exact, and slow
-/// from some ten thousand cells on. Where e is known but for a constant, it is the one of least size to
-/// 1e-12.
+/// from some ten thousand cells on. Where e is known but for a constant, the one without a mean is found; one
+/// connected body of water is assumed.
 template <int Dim>
 class SparseCholesky {
 public:
+    static constexpr std::string_view name = "SparseCholesky";
+
     SparseCholesky(const Layout<Dim>& layout, const Point<Dim>& /*lengths*/,
                    const PerAxis<bool, Dim>& periodic)
         : matrix_(layout, periodic), right_side_(layout.total), solution_(layout.total),
@@ -75,7 +78,8 @@ public:
         Report report{limit > 0, b.norm(), 0};
         if (limit == 0) return report;
         if (floating_) b.array() -= b.mean();
-        const Eigen::VectorXd e = factor_->solve(b);
+        Eigen::VectorXd e = factor_->solve(b);
+        if (floating_) e.array() -= e.mean();
         for (std::size_t k = 0; k < cells_.size(); ++k)
             solution_[cells_[k]] = static_cast<float>(e[static_cast<Eigen::Index>(k)]);
         return report;

@@ -26,7 +26,7 @@ void wavefront(const PlaneRuns& runs, int stages, bool joined, Stage&& stage) {
     }
     const auto count = static_cast<Index>(runs.size()) - 1;
     const auto start = [&](Index run) { return runs[static_cast<std::size_t>(run)]; };
-    parallel_tasks(count, [&](Index run) {
+    parallel_runs(count, [&](Index run) {
         const int first = start(run), last = start(run + 1);
         const int open_below = run > 0 || joined, open_above = run + 1 < count || joined;
         for (int front = first; front < last + stages - 1; ++front)
@@ -36,7 +36,7 @@ void wavefront(const PlaneRuns& runs, int stages, bool joined, Stage&& stage) {
             }
     });
     if (stages == 1 || (count == 1 && !joined)) return;
-    parallel_tasks(joined ? count : count - 1, [&](Index wedge) {
+    parallel_runs(joined ? count : count - 1, [&](Index wedge) {
         const int seam = start(wedge + 1);
         for (int s = 1; s < stages; ++s)
             for (int plane = seam - s; plane < seam + s; ++plane) stage(s, plane % planes);
