@@ -113,6 +113,8 @@ void add_grid_water(Numbers& to, const Flow& flow) {
     to.kind("water energy").add(flow.kinetic_energy());
     if (flow.has_energy_account())
         flow.energy().visit([&](std::string_view name, Real value) {
+            if (name == "forcing" || name == "sources")
+                return;  // younger than the scenes, which have neither
             to.add(value), to.figure("water " + std::string(name), std::abs(value));
         });
     to.kind("water time").add(flow.time()), to.add(flow.stable_step().seconds);
