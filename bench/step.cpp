@@ -48,6 +48,23 @@ void gravel_with_empty_slots(benchmark::State& state) {
     measure(state, simulate(gravel(32)).contact(contact()).bond(NoBond{}).wear(NoWear{}).fluid(NoFluid{}));
 }
 
+/// 4,096 spheres that fall into a box, by one thread and by two: on a machine that other programs use, too,
+/// two are to be hardly slower than one.
+void falling_spheres(benchmark::State& state) {
+    const int before = thread_count();
+    set_thread_count(static_cast<int>(state.range(0)));
+    Scene scene = gravel(0);
+    for (int i = 0; i < 4096; ++i)
+        scene.add_sphere(0.01,
+                         {.position = {0.021 * (i % 16), 0.021 * (i / 16 % 16), 0.02 + 0.021 * (i / 256)}});
+    for (const Real side : {-1.0, 1.0}) {
+        scene.add_wall({0.16 + 0.3 * side, 0, 0}, {-side, 0, 0});
+        scene.add_wall({0, 0.16 + 0.3 * side, 0}, {0, -side, 0});
+    }
+    measure(state, simulate(scene).contact(contact()));
+    set_thread_count(before);
+}
+
 void gravel_in_water(benchmark::State& state) {
     measure(state, simulate(gravel(32)).contact(contact()).fluid(UniformFlow{{.discharge = 0.5}}));
 }
@@ -61,6 +78,7 @@ void bonded_slab(benchmark::State& state) {
 
 BENCHMARK(gravel_alone)->Unit(benchmark::kMillisecond);
 BENCHMARK(gravel_with_empty_slots)->Unit(benchmark::kMillisecond);
+BENCHMARK(falling_spheres)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(gravel_in_water)->Unit(benchmark::kMillisecond);
 BENCHMARK(bonded_slab)->Unit(benchmark::kMillisecond);
 

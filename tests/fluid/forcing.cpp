@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "../message_of.hpp"
+
 using namespace abrade;
 
 namespace {
@@ -88,15 +90,6 @@ struct Wrong {
     }
 };
 
-std::string error_of(auto&& run) {
-    try {
-        run();
-    } catch (const FluidError& error) {
-        return error.what();
-    }
-    return "nothing";
-}
-
 /// A box with sides along x as told, free slip above and below.
 GridFluidParams<2> box(CellNumber<2> cells, Real spacing, Boundary low, Boundary high) {
     GridFluidParams<2> params{.grid = {.cells = cells, .spacing = Point<2>::Constant(spacing)},
@@ -153,7 +146,8 @@ TEST_CASE_TEMPLATE("the same below a surface", Surface, FreeSurface, HeightSurfa
     flow.open_energy_account();
     flow.advance(20);
     CHECK(speed_along(flow) == doctest::Approx(expected).epsilon(1e-4).scale(0));
-    // The topmost row is a third full: its water has no pressure of its own, and feels the stems all the same.
+    // The topmost row is a third full: its water has no pressure of its own, and feels the stems all the
+    // same.
     for (int k = 0; k < 5; ++k)
         CHECK(flow.velocity()[0][flow.grid().layout().at({3, k})] ==
               doctest::Approx(expected).epsilon(1e-3).scale(0));
@@ -241,7 +235,8 @@ TEST_CASE("a spring and a drain in a closed box: as much goes as comes; a spring
     CHECK(between == doctest::Approx(both.rate * in).epsilon(1e-5).scale(0));
 
     GridFluid<2, Forced<Spring, FullBox>> filled(params, {}, {}, Spring{});
-    CHECK(error_of([&] { filled.advance(1); }).find("more flows in than out") != std::string::npos);
+    CHECK(message_of<FluidError>([&] { filled.advance(1); }).find("more flows in than out") !=
+          std::string::npos);
 }
 
 TEST_CASE("a drain across a periodic seam takes as one in the middle does") {
@@ -316,7 +311,7 @@ TEST_CASE("a drain that has nothing to take takes nothing") {
 TEST_CASE("a force that is no number, or a resistance that drives, ends the step and names itself") {
     const auto message = [](Wrong wrong) {
         GridFluid<2, Forced<Wrong, FullBox>> flow(periodic_box(8), {}, {}, wrong);
-        return error_of([&] {
+        return message_of<FluidError>([&] {
             for (int k = 0; k < 100; ++k) flow.step(0.02);
         });
     };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <mutex>
 #include <system_error>
@@ -58,8 +59,9 @@ public:
         task_ = const_cast<void*>(static_cast<const void*>(&task));
         parts_ = std::min(threads, static_cast<int>(threads_.size()) + 1);
         for (int p = 0; p < parts_; ++p) {
-            fronts_[index(p)].next.store(tasks * p / parts_, std::memory_order_relaxed);
-            fronts_[index(p)].end = tasks * (p + 1) / parts_;
+            const auto begin = [&](std::int64_t part) { return static_cast<Index>(tasks * part / parts_); };
+            fronts_[index(p)].next.store(begin(p), std::memory_order_relaxed);
+            fronts_[index(p)].end = begin(p + 1);
         }
         gate_.store(0, std::memory_order_release);
         loop_.fetch_add(1, std::memory_order_release);

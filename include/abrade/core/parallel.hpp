@@ -97,6 +97,7 @@ void parallel_tasks(Index tasks, Body&& body) {
     static constinit detail::LoopWork work;
     work.run(tasks, tasks, body);
 }
+
 /// The same of tasks that are known to be worth other threads: of runs of a large grid's planes.
 template <class Body>
 void parallel_runs(Index runs, Body&& body) {

@@ -139,7 +139,7 @@ public:
     /// What cells are to get. Throws InputError where that is no number.
     std::span<CellSource> find_sources([[maybe_unused]] const F& forcing, [[maybe_unused]] Real time) {
         if constexpr (HasSource<F, Dim>) {
-            largest_rate_ = 0;
+            Real largest = 0;
             for (std::size_t k = 0; k < sources_.size(); ++k) {
                 CellSource& s = sources_[k];
                 s.rate = forcing.source(centres_[k], time), s.volume = 0;
@@ -148,8 +148,9 @@ public:
                                    std::string(F::name) + ".source at " + place_text<Dim>(centres_[k]) +
                                        ", t = " + short_text(time) + " s",
                                    "1/s");
-                largest_rate_ = std::max(largest_rate_, std::abs(s.rate));
+                largest = std::max(largest, std::abs(s.rate));
             }
+            largest_rate_ = largest;
         }
         return sources_;
     }

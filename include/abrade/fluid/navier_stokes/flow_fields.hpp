@@ -151,6 +151,20 @@ struct FlowFields {
         report.iterations += first.iterations, report.rounds += first.rounds;
     }
 
+    /// Takes a velocity's divergence; ghosts and what is beside the water are then those of before.
+    void free_of_divergence(Real tolerance) {
+        Field<Number> potential(layout().total);
+        report = projection.project(velocity, potential, {1, tolerance});
+        fastest = std::max(report.courant, enters);
+    }
+    /// Before the pressure of the water's weight is found: `stage` is how all would fall [m/s2].
+    void let_all_fall(const Point<Dim>& falls) {
+        for (int a = 0; a < Dim; ++a) {
+            stage[a].fill(falls[a]);
+            boundaries.close(stage[a], a);
+        }
+    }
+
     /// Of what an energy account asks, what does not depend on what fills the box.
     const Field<Number>* eddy_viscosity() const noexcept {
         if constexpr (Turbulence::has_eddies) return &eddies->field();

@@ -29,8 +29,6 @@ class FreeSurfaceStepper {
     static constexpr std::string_view step_cause = is_height ? "height of fluid" : "volume of fluid";
 
 public:
-    using Params = typename Flow::Params;
-
     explicit FreeSurfaceStepper(Flow& flow) : water_(*flow.grid, flow.params) {
         check_inflows(flow.params, water_.liquid(), water_.walls());
         water_.find(flow.projection, flow.pressure);
@@ -39,7 +37,6 @@ public:
     }
 
     const Liquid& liquid() const noexcept { return water_.liquid(); }
-    const Water& water() const noexcept { return water_; }
     const EmbeddedBoundary<Dim>* walls() const noexcept { return water_.walls(); }
     /// Rows that hold water, and liquid of whole cells [-].
     const WetRows<Dim>* rows() const noexcept { return &water_.rows(); }
@@ -50,10 +47,8 @@ public:
     /// Once the flow has the velocity of its start: makes it one.
     void begin(Flow& flow) {
         give_discharge(flow);
-        if (flow.params.velocity)
-            free_of_divergence(flow, 1e-12);
-        else
-            extend(flow, flow.velocity);
+        if (flow.params.velocity) flow.free_of_divergence(1e-12);
+        extend(flow, flow.velocity);
         find_pressure_of_weight(flow, 1e-12);
         first_step_ = std::sqrt(2 * water_.liquid().stable_step(flow.stage));
     }
@@ -110,7 +105,7 @@ public:
     /// Puts the wall of the flow's params in the place of the one that stands there, unless it is that, to
     /// the bit. Throws InputError where water has no room; then neither flow nor this is of any use.
     void change_walls(Flow& flow) {
-        Params dry = flow.params;
+        auto dry = flow.params;
         dry.water = {};
         Water before = std::exchange(water_, Water(*flow.grid, dry));
         if (water_.has_walls_of(before)) {
@@ -131,7 +126,8 @@ public:
         look_at_walls(flow);
         find_heights(flow);
         extend(flow, flow.velocity);
-        free_of_divergence(flow, 1e-6);  // or the liquid would flow into the new walls
+        flow.free_of_divergence(1e-6);  // or the liquid would flow into the new walls
+        extend(flow, flow.velocity);
         flow.find_eddies(rows(), liquid_fraction());
         flow.look_at_forcing();
         if (flow.energy) flow.energy->reshaped(energy_view(flow));
@@ -217,14 +213,6 @@ private:
         flow.boundaries.fill(flow.velocity);
     }
 
-    /// A velocity that was given, or walls that have come.
-    void free_of_divergence(Flow& flow, Real tolerance) {
-        Field<Real> potential(flow.layout().total);
-        flow.report = flow.projection.project(flow.velocity, potential, {1, tolerance});
-        flow.fastest = std::max(flow.report.courant, flow.enters);
-        extend(flow, flow.velocity);
-    }
-
     /// The pressure that holds the water's weight: so the first step is none of falling. Leaves in `stage`
     /// how water at rest is accelerated [m/s2].
     void find_pressure_of_weight(Flow& flow, Real tolerance) {
@@ -233,10 +221,7 @@ private:
         if constexpr (Solids::present) water_.show(flow.projection);  // as if solids were water
         const Point<Dim> falls = flow.params.acceleration(flow.time);
         if (falls.isZero()) return;
-        for (int a = 0; a < Dim; ++a) {
-            flow.stage[a].fill(falls[a]);
-            flow.boundaries.close(flow.stage[a], a);
-        }
+        flow.let_all_fall(falls);
         water_.clear_walls(flow.stage);
         carry_weight(flow, flow.stage, falls);
         outflows_.push(flow.stage, flow.pressure, flow.projection, {1, -falls[Dim - 1], true});

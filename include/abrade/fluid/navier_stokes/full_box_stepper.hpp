@@ -19,15 +19,12 @@ class FullBoxStepper {
     using Solids = typename Flow::Solids;
 
 public:
-    using Params = typename Flow::Params;
-
     explicit FullBoxStepper(Flow& flow)
         : friction_(*flow.grid, flow.params.boundaries, friction_of_sides(flow.params.wall_law), nullptr) {
         refuse_in_full_box(flow.params);
     }
 
-    /// Beside walls, which there are none of.
-    static const EmbeddedBoundary<Dim>* walls() noexcept { return nullptr; }
+    // All cells are full.
     static const WetRows<Dim>* rows() noexcept { return nullptr; }
     static const Field<Real>* liquid_fraction() noexcept { return nullptr; }
     /// Before the last step [m/s].
@@ -36,10 +33,8 @@ public:
     /// Once the flow has the velocity of its start: makes it one.
     void begin(Flow& flow) {
         flow.build_forcing(nullptr);
-        if (flow.params.velocity)
-            free_of_divergence(flow, 1e-12);
-        else
-            fill_ghosts(flow, flow.velocity);
+        if (flow.params.velocity) flow.free_of_divergence(1e-12);
+        fill_ghosts(flow, flow.velocity);
         velocity_before_ = flow.velocity;
     }
     /// The pressure that bodies feel first.
@@ -103,23 +98,13 @@ private:
 
     static void fill_ghosts(const Flow& flow, Velocity& u) { flow.boundaries.fill(u, nullptr); }
 
-    void free_of_divergence(Flow& flow, Real tolerance) {
-        typename std::remove_cvref_t<decltype(flow.pressure)> potential(flow.layout().total);
-        flow.report = flow.projection.project(flow.velocity, potential, {1, tolerance});
-        flow.fastest = std::max(flow.report.courant, flow.enters);
-        fill_ghosts(flow, flow.velocity);
-    }
-
     /// The pressure that holds the water's weight, as if solids were water.
     void find_pressure_of_weight(Flow& flow, Real tolerance) {
         flow.pressure.fill(0);
         for (auto& component : flow.stage) component.fill(0);
         const Point<Dim> falls = flow.params.acceleration(flow.time);
         if (falls.isZero()) return;
-        for (int a = 0; a < Dim; ++a) {
-            flow.stage[a].fill(falls[a]);
-            flow.boundaries.close(flow.stage[a], a);
-        }
+        flow.let_all_fall(falls);
         flow.projection.project(flow.stage, flow.pressure, {1, tolerance});
         fill_ghosts(flow, flow.stage);
     }
