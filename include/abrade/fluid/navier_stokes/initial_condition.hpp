@@ -1,6 +1,7 @@
 #pragma once
 // What water on a grid begins with, and what only shows once its grid and its walls are there.
 
+#include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
 #include <abrade/fluid/mesh/velocity_boundaries.hpp>
 #include <abrade/fluid/setup/grid_fluid_params.hpp>
 #include <abrade/fluid/vof/liquid_in_cut_cells.hpp>
