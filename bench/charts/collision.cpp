@@ -19,6 +19,7 @@
 using namespace abrade;
 using namespace abrade::charts;
 using namespace abrade::examples;
+using namespace collision_problem;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include <string>
 
 using namespace abrade;
+using namespace collision_problem;
 using charts::ReferenceCollision;
 using charts::ReferenceResult;
 

@@ -3,7 +3,9 @@
 
 #include "../../bench/charts/collision_reference.hpp"
 
-namespace abrade {
+namespace collision_problem {
+
+using namespace abrade;
 
 inline Real sphere_mass(Real radius) { return 4.0 / 3 * pi * cube(radius) * 2650; }
 
@@ -23,4 +25,4 @@ inline HertzMindlin hertz(Real restitution, Real friction = 0.5) {
     return HertzMindlin{{.youngs = 1e9, .restitution = restitution, .friction = friction}};
 }
 
-}  // namespace abrade
+}  // namespace collision_problem

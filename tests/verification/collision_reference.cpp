@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 using namespace abrade;
+using namespace collision_problem;
 using charts::ReferenceCollision;
 using charts::ReferenceResult;
 
