@@ -60,7 +60,7 @@ std::vector<Level> levels(Real finest, auto&& measure) {
     std::vector<Level> found;
     const auto add = [&](const std::string& name, Real to, auto solids) {
         std::cout << name << '\n';
-        Level& level = found.emplace_back(name);
+        Level& level = found.emplace_back(Level{.name = name});
         for (const Real cells : {1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0})
             if (cells <= std::min(to, finest) && (cells > 1 || name == "averaged"))
                 level.points.push_back(
@@ -81,7 +81,7 @@ struct Sheet {
     void add(const std::string& title, const std::vector<Level>& all, std::optional<Real> exact) {
         for (const Level& level : all)
             if (!exact && level.name == "monolithic") exact = level.points.back().mean();
-        charts::Panel& panel = chart.panels.emplace_back(title);
+        charts::Panel& panel = chart.panels.emplace_back(charts::Panel{.title = title});
         panel.curves.resize(chart.names.size());
         for (const Level& level : all) {
             const auto at = std::ranges::find(chart.names, level.name) - chart.names.begin();
