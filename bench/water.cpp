@@ -64,7 +64,7 @@ struct InvertReach {
 
     explicit InvertReach(int n)
         : fluid(channel_water::channel(n * channel_water::spacing, true),
-                {.depth = channel_water::wanted().depth}) {}
+                MixingLength{{.depth = channel_water::wanted().depth}}) {}
     Real step_length() const { return fluid.stable_step().seconds; }
 };
 

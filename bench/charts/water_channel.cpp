@@ -29,7 +29,7 @@ void run(const std::filesystem::path& folder, Real length, Real end) {
     };
     auto params = channel(length);
     params.courant = 0.9;
-    GridFluid<3, Turbulent<MixingLength, Surface>> flow(params, {.depth = uniform.depth});
+    GridFluid<3, Turbulent<MixingLength, Surface>> flow(params, MixingLength{{.depth = uniform.depth}});
     std::cout << "cells " << flow.grid().layout().cell_count() << ", begun after " << wall()
               << " s\ntime [s], wall time [s], steps, wet cells, water [m3], "
                  "discharge at the outlet [m3/s]\n";

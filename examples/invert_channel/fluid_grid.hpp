@@ -41,7 +41,7 @@ Flow grid_channel(const ChannelConfig& c, auto solids) {
         }
         const UniformFlow& uniform = start.uniform;
         Flow flow(std::move(params),
-                  {.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()},
+                  MixingLength{{.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()}},
                   std::move(solids));
         if (c.fluid.energy) flow.open_energy_account();
         return flow;

@@ -281,7 +281,7 @@ TEST_CASE("uniform flow with eddies over a rough bed: what gravity puts in") {
          .velocity = [](const Point<2>&) { return Point<2>(1, 0); },
          .gravity = {g * 0.005, -g},
          .tolerance = 1e-9},
-        {.depth = 0.1});
+        MixingLength{{.depth = 0.1}});
     flow.advance(5);
     flow.open_energy_account();
     flow.advance(8);
@@ -303,7 +303,7 @@ TEST_CASE("a stream with a surface: in - out is what friction and eddies take, a
                               .tolerance = 1e-7};
     params.boundaries[0] = {Boundary::inflow, Boundary::outflow}, params.boundaries[1][0] = Boundary::wall;
     Inflow<2>({.discharge = speed * depth, .depth = depth}).give_to(params);
-    GridFluid<2, Turbulent<MixingLength>> flow(params, {.depth = depth});
+    GridFluid<2, Turbulent<MixingLength>> flow(params, MixingLength{{.depth = depth}});
     flow.open_energy_account();
     flow.advance(4);
     const Real kinetic = flow.energy().kinetic;

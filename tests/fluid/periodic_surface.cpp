@@ -121,7 +121,7 @@ TEST_CASE("periodic_surface: a film that runs around on a rough bed below whole 
     params.velocity = [](const Point<2>&) { return Point<2>(1, 0); };
     for (const int shift : {1, 13})
         same_wherever_it_begins<2>(params, {shift, 0}, 40, [](const GridFluidParams<2>& p) {
-            return GridFluid<2, Turbulent<MixingLength>>(p, {.depth = 0.32});
+            return GridFluid<2, Turbulent<MixingLength>>(p, MixingLength{{.depth = 0.32}});
         });
 }
 

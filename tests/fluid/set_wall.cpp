@@ -177,7 +177,7 @@ TEST_CASE(
     params.boundaries[0] = {Boundary::inflow, Boundary::outflow};
     params.boundary_velocity = [](const Point<2>& x, Real) { return Point<2>(x[1] > 0.1 ? 2 : 0, 0); };
     params.inflow_water = params.water;
-    GridFluid<2, Turbulent<MixingLength>> flow(params, {.depth = 0.15});
+    GridFluid<2, Turbulent<MixingLength>> flow(params, MixingLength{{.depth = 0.15}});
     flow.advance(0.5);
     for (int step = 1; step <= 20; ++step) {
         flow.set_wall(worn(0.03 * step / 20));
@@ -185,7 +185,7 @@ TEST_CASE(
     }
     flow.advance(4);
     params.wall = worn(0.03);
-    GridFluid<2, Turbulent<MixingLength>> built(params, {.depth = 0.15});
+    GridFluid<2, Turbulent<MixingLength>> built(params, MixingLength{{.depth = 0.15}});
     built.advance(4);
     for (const Real x : {0.4, 1.0, 1.8}) {
         CHECK(flow.surface_at({x, 0}) == doctest::Approx(built.surface_at({x, 0})).epsilon(0.02));

@@ -32,7 +32,7 @@ void grow(auto& flow, Real end, Real least, Real by) {
 
 TEST_CASE("a channel that fills takes steps of any length") {
     const auto run = [](Real more) {
-        Channel<> flow(channel(0.5), {.depth = wanted().depth});
+        Channel<> flow(channel(0.5), MixingLength{{.depth = wanted().depth}});
         go(flow, 0.1, 0.004, more);
         return flow;
     };

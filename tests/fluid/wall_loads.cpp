@@ -286,7 +286,7 @@ TEST_CASE("films and plates: shear carries what drives the water") {
             params.wall_law = {WallLaw::Kind::logarithmic, 0.05};
             params.velocity = [](const Point<2>&) { return Point<2>(4, 0); };
             params.viscosity = 1e-5;
-            GridFluid<2, Turbulent<MixingLength>> flow(params, {.depth = 1.03});
+            GridFluid<2, Turbulent<MixingLength>> flow(params, MixingLength{{.depth = 1.03}});
             flow.advance(3);
             const auto momentum = [&] { return section(flow, 0, 0.2).mass * 0.4; };
             const Real before = momentum(), first = wall_load(flow, {0, bed}).shear.force[0];

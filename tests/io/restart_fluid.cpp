@@ -100,7 +100,7 @@ TEST_CASE("a surface that is a height, eddies by a mixing length, water in and o
         params.inflow_water = [](const Point<3>& x) { return 0.4 - x[2]; };
         params.outflow_water = [](const Point<3>& x) { return 0.3 - x[2]; };
         params.steady_boundaries = false;
-        return GridFluid<3, Turbulent<MixingLength, HeightSurface>>(params, {.depth = 0.4});
+        return GridFluid<3, Turbulent<MixingLength, HeightSurface>>(params, MixingLength{{.depth = 0.4}});
     };
     check_restarts("height", make, {0.05, 0.3, 0.31, 0.8});
 }

@@ -16,7 +16,8 @@ Numbers cavity(const Turbulence& turbulence, int along = 14) {
     params.boundary_velocity = [](const Vec3& x, Real) {
         return Vec3(x.z() >= 1 ? 1 : 0, x.z() >= 1 ? 0.3 : 0, 0);
     };
-    GridFluid<3, Turbulent<Turbulence, InPrecision<State, Advected<Scheme, FullBox>>>> flow(params, turbulence);
+    GridFluid<3, Turbulent<Turbulence, InPrecision<State, Advected<Scheme, FullBox>>>> flow(params,
+                                                                                            turbulence);
     flow.open_energy_account();
     flow.advance(1.5);
     return state_of_water(flow).with({"fastest water", "water viscous", "water numerical"});
@@ -28,6 +29,6 @@ const Register longer{"water3.cavity_long", [] { return cavity<Koren, Real>(NoTu
 /// Between programs of other instruction sets single precision keeps six digits.
 const Register single{"water3.cavity_float", [] { return cavity<Central, float>(NoTurbulence{}); }, 1e-4};
 const Register eddies{"water3.cavity_smagorinsky",
-                      [] { return cavity<Koren, Real>(Smagorinsky{.constant = 0.17}).with({"eddies"}); }};
+                      [] { return cavity<Koren, Real>(Smagorinsky{{.constant = 0.17}}).with({"eddies"}); }};
 
 }  // namespace

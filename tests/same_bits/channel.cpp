@@ -39,7 +39,8 @@ template <class Surface>
 Numbers run() {
     const UniformFlow uniform{{.section = {.length = 0.8}, .discharge = 0.5}};
     GridFluid<3, Turbulent<MixingLength, Surface>> flow(
-        channel(uniform), {.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()});
+        channel(uniform),
+        MixingLength{{.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()}});
     flow.open_energy_account();
     flow.advance(0.2);
     return state_of_water(flow).with(

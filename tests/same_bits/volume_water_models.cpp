@@ -24,7 +24,7 @@ Numbers dam(const Turbulence& turbulence) {
 
 const Register upwind{"water2.volume_upwind", [] { return dam<Upwind>(NoTurbulence{}); }};
 const Register mixing{"water2.volume_mixing_length", [] {
-                          return dam<Koren>(MixingLength{.depth = 0.5}).with({"eddies", "water turbulent"});
+                          return dam<Koren>(MixingLength{{.depth = 0.5}}).with({"eddies", "water turbulent"});
                       }};
 
 }  // namespace

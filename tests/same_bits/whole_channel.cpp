@@ -40,7 +40,7 @@ Flow water() {
     params.water = [depth](const Vec3& x) { return depth - x.z(); };
     params.velocity = [speed = uniform.mean_velocity()](const Vec3&) { return Vec3(speed, 0, 0); };
     params.start_time = -0.02;
-    return Flow(params, {.depth = depth, .friction_velocity = uniform.friction_velocity()},
+    return Flow(params, MixingLength{{.depth = depth, .friction_velocity = uniform.friction_velocity()}},
                 MonolithicSolids<>({.resolved_from = 2.5}));
 }
 

@@ -26,7 +26,7 @@ inline UniformFlow uniform_flow(Real length = 1) {
 /// Of eddies, for this depth.
 inline MixingLength mixing_length() {
     const UniformFlow uniform = uniform_flow();
-    return {.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()};
+    return MixingLength{{.depth = uniform.depth(), .friction_velocity = uniform.friction_velocity()}};
 }
 
 /// Begun dry, or full of uniform flow.

@@ -26,11 +26,11 @@ Means channel_flow(Real length, Turbulence turbulence) {
 TEST_CASE("uniform flow in the invert channel stays with the mixing length") {
     for (const Real length : {1.0, 4.0}) {
         const Means uniform = wanted();
-        const Means mixing = channel_flow(length, MixingLength{.depth = uniform.depth});
+        const Means mixing = channel_flow(length, MixingLength{{.depth = uniform.depth}});
         CHECK(mixing.depth == doctest::Approx(uniform.depth).epsilon(0.02));
         CHECK(mixing.speed == doctest::Approx(uniform.speed).epsilon(0.02));
         const Means none = channel_flow(length, NoTurbulence{});
-        const Means eddies = channel_flow(length, Smagorinsky{.constant = 0.1});
+        const Means eddies = channel_flow(length, Smagorinsky{{.constant = 0.1}});
         if (length < 2) continue;
         // Why the main job takes the mixing length.
         CHECK(none.speed > mixing.speed);

@@ -24,7 +24,8 @@ Ran run(Real courant) {
     constexpr Real length = 4.5;
     GridFluidParams<3> params = channel(length, true);
     params.courant = courant;
-    GridFluid<3, Turbulent<MixingLength, Surface>> flow(params, {.depth = uniform_flow().depth()});
+    GridFluid<3, Turbulent<MixingLength, Surface>> flow(params,
+                                                        MixingLength{{.depth = uniform_flow().depth()}});
     const auto begin = std::chrono::steady_clock::now();
     flow.advance(3);
     const std::chrono::duration<Real> took = std::chrono::steady_clock::now() - begin;

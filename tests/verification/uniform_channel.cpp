@@ -83,7 +83,7 @@ TEST_CASE("uniform flow with the mixing length: bed shear, log profile and mean 
     MESSAGE("log law " << bed.mean_log_law() << " m/s, Manning " << bed.mean_manning() << " m/s");
     for (const int cells : {5, 10, 20}) {
         const Found f = told(std::to_string(cells) + " cells", bed,
-                             found(bed, cells, bed.depth / cells, MixingLength{.depth = bed.depth}));
+                             found(bed, cells, bed.depth / cells, MixingLength{{.depth = bed.depth}}));
         CHECK(f.friction_speed == doctest::Approx(bed.friction_speed()).epsilon(0.05).scale(0));
         CHECK(f.profile < 0.1);
         CHECK(f.mean == doctest::Approx(bed.mean_log_law()).epsilon(0.05).scale(0));
@@ -96,7 +96,7 @@ TEST_CASE("cells smaller than the bed is rough: the mean speed stays") {
     for (const int cells : {8, 20, 40}) {
         const Found f = told(std::to_string(cells) + " cells, " +
                                  short_text(bed.depth / cells / bed.roughness()) + " k_s high",
-                             bed, found(bed, cells, bed.depth / cells, MixingLength{.depth = bed.depth}));
+                             bed, found(bed, cells, bed.depth / cells, MixingLength{{.depth = bed.depth}}));
         CHECK(f.mean == doctest::Approx(bed.mean_log_law()).epsilon(0.03).scale(0));
     }
 }
@@ -107,10 +107,10 @@ TEST_CASE(
     for (const Real constant : {0.1, 0.17})
         for (const int cells : {5, 10, 20}) {
             const auto run = [&](Real shape) {
-                return told("C_s " + short_text(constant) + ", " + std::to_string(cells) + " cells, " +
-                                short_text(shape) + " times as long as high",
-                            bed,
-                            found(bed, cells, shape * bed.depth / cells, Smagorinsky{.constant = constant}));
+                return told(
+                    "C_s " + short_text(constant) + ", " + std::to_string(cells) + " cells, " +
+                        short_text(shape) + " times as long as high",
+                    bed, found(bed, cells, shape * bed.depth / cells, Smagorinsky{{.constant = constant}}));
             };
             // Its length is a small share of the depth: the shear that carries the weight is too large.
             CHECK(run(1).mean > 1.3 * bed.mean_log_law());

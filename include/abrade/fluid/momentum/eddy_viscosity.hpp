@@ -16,33 +16,36 @@
 
 namespace abrade::detail {
 
-/// nu_t = l^2 |S| in cells [m2/s],
+/// nu_t in cells [m2/s]. Of a model with a mixing length it is l^2 |S|,
 ///   |S|^2 = 2 S_ij S_ij = 2 sum_a (du_a/dx_a)^2 + sum_{a<b} <(du_a/dx_b + du_b/dx_a)^2>,
 /// <> the mean over those of the cell's four edges whose shear the grid knows: not beside closed faces, not
 /// on logarithmic sides, where the velocity falls to 0 within the cell, and not where water leaves the box,
-/// since of the air there no velocity is known.
+/// since of the air there no velocity is known. Other models are given the mean of the gradient over the same
+/// edges.
 ///
-/// l comes from the distance of the middle of what is open of a cell from what the params call walls: sides,
-/// and the wall inside, taken as a distance. Same bits for any number of threads.
-template <int Dim, class State>
+/// l, and the d that models are given, come from the distance of the middle of what is open of a cell from
+/// what the params call walls: sides, and the wall inside, taken as a distance. Same bits for any number of
+/// threads.
+template <int Dim, class State, TurbulenceModel Model>
 class EddyViscosity {
+    static constexpr bool has_length = HasMixingLength<Model>;
+    static constexpr bool has_bound = requires(const Model& model) { model.largest(0.0); };
     static constexpr int lanes = Layout<Dim>::lanes, vertical = Grid<Dim>::vertical,
                          pairs = Dim * (Dim - 1) / 2;
     using Table = LevelTable<Dim, State>;
 
 public:
     /// `walls` may be none.
-    template <class Model>
     EddyViscosity(const Grid<Dim>& grid, const GridFluidParams<Dim>& params, const Model& model,
                   const EmbeddedBoundary<Dim>* walls, bool among_bodies = false)
-        : layout_(grid.layout()), field_(layout_.total), length2_(layout_.total),
-          all_(WetRows<Dim>::whole(layout_)), most_(static_cast<std::size_t>(layout_.planes())),
+        : layout_(grid.layout()), model_(model), field_(layout_.total), all_(WetRows<Dim>::whole(layout_)),
+          most_(static_cast<std::size_t>(layout_.planes())),
           viscosity_(static_cast<State>(params.viscosity / params.density)) {
-        model.validate();
-        if constexpr (requires { model.largest(0.0); }) {
+        (has_length ? length2_ : size_) = Field<State>(layout_.total);
+        if constexpr (!has_length) distance_ = Field<State>(layout_.total);
+        if constexpr (has_bound) {
             if (among_bodies) model.validate_among_bodies();
             bound_ = Field<State>(layout_.total);
-            beside_bodies_ = model.beside_bodies;
         }
         for (int a = 0; a < Dim; ++a) {
             per_size_[a] = Table(grid, [&](int k) { return 1 / grid.size(a, a == vertical ? k : 0); });
@@ -51,8 +54,11 @@ public:
         const auto set_length = [&](const CellNumber<Dim>& cell, Offset c, const Point<Dim>& middle) {
             const Real size = std::pow(grid.volume(cell), 1.0 / Dim);
             const Real d = wall_distance(grid, params, middle);
-            length2_[c] = static_cast<State>(square(model.length(size, d)));
-            if constexpr (requires { model.largest(d); }) bound_[c] = static_cast<State>(model.largest(d));
+            if constexpr (has_length)
+                length2_[c] = static_cast<State>(square(model.length(size, d)));
+            else
+                size_[c] = static_cast<State>(size), distance_[c] = static_cast<State>(d);
+            if constexpr (has_bound) bound_[c] = static_cast<State>(model.largest(d));
         };
         grid.for_each([&](const CellNumber<Dim>& cell, Offset c) { set_length(cell, c, grid.centre(cell)); });
         if (walls)
@@ -83,17 +89,11 @@ public:
                 if (r.empty()) continue;
                 const Offset start = layout_.row_start(plane, row);
                 State* const nu = field_.data() + start;
-                stretch(u, row, start, r);
-                int pair = 0;
-                for (int a = 0; a < Dim; ++a)
-                    for (int b = a + 1; b < Dim; ++b, ++pair)
-                        known_.empty() ? shear<false>(u, {a, b, pair}, row, start, r)
-                                       : shear<true>(u, {a, b, pair}, row, start, r);
-                const State* const length2 = length2_.data() + start;
-                // Whole packs, as they were set.
-                for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
-                    for (int k = i; k < i + lanes; ++k) nu[k] = length2[k] * std::sqrt(nu[k]);
-                if (bound_.size() > 0) {
+                if constexpr (has_length)
+                    by_length(u, row, start, r);
+                else
+                    by_gradient(u, row, start, r);
+                if constexpr (has_bound) {
                     const State* const __restrict bound = bound_.data() + start;
                     for (int i = r.begin; i < r.end; ++i) nu[i] = std::min(nu[i], bound[i]);
                 }
@@ -125,12 +125,11 @@ public:
     }
 
     /// Beside what solids cover of cells, across faces, edges and corners, eddies are those that a cell does
-    /// not resolve, from here on.
+    /// not resolve, from here on; of a model of the mean flow.
     void make_way(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries,
-                  std::span<const SolidPart> solids) requires(Dim == 3) {
+                  std::span<const SolidPart> solids) requires(Dim == 3 && has_bound) {
         for (const Shortened& last : shortened_) length2_[last.cell] = last.length2;
         shortened_.clear();
-        if (!std::isfinite(beside_bodies_)) return;
         for (const SolidPart& part : solids) {
             const CellNumber<3> middle = layout_.number(part.cell);
             PerAxis<std::array<Offset, 3>, 3> beside{};
@@ -138,7 +137,7 @@ public:
                 for (int n = -1; n <= 1; ++n)
                     beside[a][at(n + 1)] =
                         layout_.stride[a] * (around(grid, boundaries, a, middle[a] + n) - middle[a]);
-            const Real longest = beside_bodies_ * std::cbrt(grid.volume(middle));
+            const Real longest = model_.beside_bodies() * std::cbrt(grid.volume(middle));
             const auto most = static_cast<State>(square(longest));
             for (const Offset i : beside[0])
                 for (const Offset j : beside[1])
@@ -222,6 +221,53 @@ private:
                     },
                     1);
             }
+    }
+
+    void by_length(const FaceField<Dim, State>& u, int row, Offset start, RowRange r) noexcept {
+        State* const nu = field_.data() + start;
+        stretch(u, row, start, r);
+        int pair = 0;
+        for (int a = 0; a < Dim; ++a)
+            for (int b = a + 1; b < Dim; ++b, ++pair)
+                known_.empty() ? shear<false>(u, {a, b, pair}, row, start, r)
+                               : shear<true>(u, {a, b, pair}, row, start, r);
+        const State* const length2 = length2_.data() + start;
+        // Whole packs, as they were set.
+        for (int i = Layout<Dim>::pack(r.begin); i < r.end; i += lanes)
+            for (int k = i; k < i + lanes; ++k) nu[k] = length2[k] * std::sqrt(nu[k]);
+    }
+
+    void by_gradient(const FaceField<Dim, State>& u, int row, Offset start, RowRange r) noexcept {
+        for (int i = r.begin; i < r.end; ++i)
+            field_[start + i] = static_cast<State>(
+                model_.viscosity(gradient(u, row, start, i), size_[start + i], distance_[start + i]));
+    }
+    /// Where no edge of a pair of axes is known their shear counts as none.
+    Mat3 gradient(const FaceField<Dim, State>& u, int row, Offset start, int i) const noexcept {
+        Mat3 g = Mat3::Zero();
+        const Offset c = start + i;
+        for (int a = 0; a < Dim; ++a)
+            g(a, a) = (u[a][c + layout_.stride[a]] - u[a][c]) * per_size_[a].row(row)[i];
+        std::size_t pair = 0;
+        for (int a = 0; a < Dim; ++a)
+            for (int b = a + 1; b < Dim; ++b, ++pair) {
+                Real count = 0;
+                for (const int up_a : {0, 1})
+                    for (const int up_b : {0, 1}) {
+                        const Offset to_a = layout_.stride[a], to_b = layout_.stride[b],
+                                     edge = c + up_a * to_a + up_b * to_b;
+                        const Real known = known_.empty() ? 1 : known_[pair][edge];
+                        g(a, b) += known * (u[a][edge] - u[a][edge - to_b]) * per_gap(b, row, i, up_b);
+                        g(b, a) += known * (u[b][edge] - u[b][edge - to_a]) * per_gap(a, row, i, up_a);
+                        count += known;
+                    }
+                if (count > 0) g(a, b) /= count, g(b, a) /= count;
+            }
+        return g;
+    }
+    /// Between a cell and the one below it along a, or above it (`up` 1) [1/m].
+    State per_gap(int a, int row, int i, int up) const noexcept {
+        return Dim == 3 ? per_gap_[a].row(row + up)[i] : per_gap_[a].row(row)[i + up];
     }
 
     /// 2 sum (du_a/dx_a)^2.
@@ -311,9 +357,11 @@ private:
     }
 
     Layout<Dim> layout_;
-    Field<State> field_, length2_;  ///< nu_t [m2/s], l^2 [m2]
-    Field<State> bound_;            ///< of nu_t [m2/s]; may be none
-    Real beside_bodies_ = std::numeric_limits<Real>::infinity();
+    Model model_;
+    Field<State> field_;                ///< nu_t [m2/s]
+    Field<State> length2_;              ///< l^2 [m2], of a model that has one
+    Field<State> size_, distance_;      ///< Delta, d [m], of another
+    Field<State> bound_;                ///< of nu_t [m2/s]; may be none
     std::vector<Shortened> shortened_;  ///< l^2 of cells beside solids, as it was without them
     std::vector<Field<State>> known_;   ///< [pair of axes]; none: all edges count
     PerAxis<Table, Dim> per_size_, per_gap_;

@@ -27,6 +27,16 @@ struct AppliedOf<Dim, NoForcing> {
     struct type {};
 };
 
+/// What of a TurbulenceModel.
+template <int Dim, class Number, class T>
+struct EddiesOf {
+    using type = std::optional<EddyViscosity<Dim, Number, T>>;
+};
+template <int Dim, class Number>
+struct EddiesOf<Dim, Number, NoTurbulence> {
+    struct type {};
+};
+
 /// What lasts from step to step, whatever fills the box. `stage` is the velocity after a step's first stage.
 template <int Dim, FlowOptions Options>
 struct FlowFields {
@@ -41,9 +51,7 @@ struct FlowFields {
     static constexpr bool is_height = Options::surface == SurfaceKind::height;
     using Liquid = std::conditional_t<is_height, HeightOfFluid<Dim>, VolumeOfFluid<Dim>>;
     using Account = EnergyAccount<Dim, Number, Scheme, Liquid>;
-    using Eddies = EddyViscosity<Dim, Number>;
     using Projects = Projection<Dim, Number, typename Options::template Pressure<Dim>>;
-    struct Nothing {};
     static constexpr bool has_forcing = !std::same_as<Forcing, NoForcing>;
     static constexpr bool has_sources = HasSource<Forcing, Dim>;
 
@@ -66,7 +74,7 @@ struct FlowFields {
     Velocity velocity, stage;            ///< [m/s]
     std::span<const FlowBody> arriving;  ///< bodies of the step to come
     Field<Number> pressure;              ///< over density [m2/s2]
-    std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies{};
+    typename EddiesOf<Dim, Number, Turbulence>::type eddies{};
     typename AppliedOf<Dim, Forcing>::type forced{};
     std::optional<Account> energy;  ///< none: nobody asks
     typename Projects::Report report;
@@ -104,7 +112,7 @@ struct FlowFields {
     /// From the velocity as it is; of water in `rows`, none: everywhere.
     void find_eddies([[maybe_unused]] const WetRows<Dim>* rows,
                      [[maybe_unused]] const Field<Real>* liquid_fraction) {
-        if constexpr (Turbulence::has_eddies && Solids::present)
+        if constexpr (Solids::present && requires { turbulence.beside_bodies(); })
             eddies->make_way(*grid, params.boundaries, solids.resolved_parts());
         if constexpr (Turbulence::has_eddies) eddies->find(velocity, boundaries, rows, liquid_fraction);
     }

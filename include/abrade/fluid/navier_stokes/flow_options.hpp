@@ -17,7 +17,7 @@ enum class SurfaceKind { none, volume_of_fluid, height };
 
 /// Water, everywhere and for ever. To change an option, derive and name it anew,
 ///     struct Eddying : FreeSurface { using Turbulence = Smagorinsky; };
-///     GridFluid<3, Eddying> flow(params, {.constant = 0.1});
+///     GridFluid<3, Eddying> flow(params, Smagorinsky{{.constant = 0.1}});
 /// or wrap it: GridFluid<3, Turbulent<Smagorinsky>>.
 struct FullBox {
     static constexpr SurfaceKind surface = SurfaceKind::none;
