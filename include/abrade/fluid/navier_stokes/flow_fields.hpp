@@ -27,16 +27,6 @@ struct AppliedOf<Dim, NoForcing> {
     struct type {};
 };
 
-/// What of a TurbulenceModel.
-template <int Dim, class Number, class T>
-struct EddiesOf {
-    using type = std::optional<EddyViscosity<Dim, Number, T>>;
-};
-template <int Dim, class Number>
-struct EddiesOf<Dim, Number, NoTurbulence> {
-    struct type {};
-};
-
 /// What lasts from step to step, whatever fills the box. `stage` is the velocity after a step's first stage.
 template <int Dim, FlowOptions Options>
 struct FlowFields {
@@ -51,7 +41,9 @@ struct FlowFields {
     static constexpr bool is_height = Options::surface == SurfaceKind::height;
     using Liquid = std::conditional_t<is_height, HeightOfFluid<Dim>, VolumeOfFluid<Dim>>;
     using Account = EnergyAccount<Dim, Number, Scheme, Liquid>;
+    using Eddies = EddyViscosity<Dim, Number, Turbulence>;
     using Projects = Projection<Dim, Number, typename Options::template Pressure<Dim>>;
+    struct Nothing {};
     static constexpr bool has_forcing = !std::same_as<Forcing, NoForcing>;
     static constexpr bool has_sources = HasSource<Forcing, Dim>;
 
@@ -74,7 +66,7 @@ struct FlowFields {
     Velocity velocity, stage;            ///< [m/s]
     std::span<const FlowBody> arriving;  ///< bodies of the step to come
     Field<Number> pressure;              ///< over density [m2/s2]
-    typename EddiesOf<Dim, Number, Turbulence>::type eddies{};
+    std::conditional_t<Turbulence::has_eddies, std::optional<Eddies>, Nothing> eddies{};
     typename AppliedOf<Dim, Forcing>::type forced{};
     std::optional<Account> energy;  ///< none: nobody asks
     typename Projects::Report report;
