@@ -268,7 +268,7 @@ TEST_CASE("a step that eddies allow, and parameters that make none") {
                          "Smagorinsky.constant must be in (0, 0.5], got -1; 0.1 in channels, 0.17 far from "
                          "walls",
                          InputError);
-    CHECK_THROWS_AS(MixingLength{{}}, InputError);
+    CHECK_THROWS_AS((Flow<2, MixingLength>(params)), InputError);
 }
 
 TEST_CASE("eddies of slow water do not shorten the step of fast water beside it") {

@@ -169,6 +169,7 @@ public:
         }
     };
 
+    MixingLength() : MixingLength(Params{}) {}  ///< Throws InputError: no depth is right for all.
     explicit MixingLength(Params params) : params_(params) { params_.validate(); }
     const Params& params() const noexcept { return params_; }
 
