@@ -261,6 +261,9 @@ TEST_CASE("a step that eddies allow, and parameters that make none") {
     flow.grid().for_each([&](const auto&, Offset c) { most = std::max(most, flow.eddy_viscosity()[c]); });
     CHECK(most > 0);
     CHECK(flow.stable_step().limit == "viscosity");
+    CHECK(describe(flow).starts_with(
+        "GridFluid[full box, Koren, double, ConjugateGradients, "
+        "Smagorinsky(constant = 0.5, karman = 0.41), NoSolids, NoForcing](cells_x = 8, "));
     constexpr Real speed = 1 / 0.1;  // sum |u| / h, in one limit with 2 nu sum 1/h2 [1/s]
     CHECK(flow.stable_step().seconds ==
           doctest::Approx(1 / (speed + 2 * most * 200)).epsilon(1e-12).scale(0));

@@ -43,7 +43,7 @@ struct NoParams {
 template <Law L>
 std::string describe(const L& law) {
     std::string text{L::name};
-    if constexpr (requires { L::options(); }) text.append("[").append(L::options()).append("]");
+    if constexpr (requires { law.options(); }) text.append("[").append(law.options()).append("]");
     std::string_view separator = "(";
     law.params().visit([&](std::string_view name, Real value, std::string_view unit) {
         text.append(separator).append(name).append(" = ").append(to_text(value));

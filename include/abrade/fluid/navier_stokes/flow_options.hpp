@@ -77,16 +77,16 @@ concept FlowOptions = requires {
 &&std::floating_point<typename O::Number>&& AdvectionScheme<typename O::Scheme>&&
     TurbulenceModel<typename O::Turbulence>&& SolidsInFlow<typename O::Solids>;
 
-/// "volume of fluid, Koren, double, ConjugateGradients, Smagorinsky, NoSolids, NoForcing".
+/// "volume of fluid, Koren, double, ConjugateGradients, Wale(constant = 0.33), NoSolids, NoForcing".
 template <FlowOptions O>
-std::string option_names() {
+std::string describe_options(const typename O::Turbulence& turbulence) {
     std::string text = O::surface == SurfaceKind::none              ? "full box"
                        : O::surface == SurfaceKind::volume_of_fluid ? "volume of fluid"
                                                                     : "height";
     text.append(", ").append(O::Scheme::name);
     text.append(std::same_as<typename O::Number, float> ? ", float" : ", double");
     text.append(", ").append(O::template Pressure<3>::name);
-    text.append(", ").append(O::Turbulence::name).append(", ").append(O::Solids::name);
+    text.append(", ").append(describe(turbulence)).append(", ").append(O::Solids::name);
     text.append(", ").append(O::Forcing::name);
     return text;
 }

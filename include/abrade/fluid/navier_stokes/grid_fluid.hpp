@@ -44,8 +44,8 @@ public:
                   "FlowForce<Dim>; see fluid/momentum/forcing.hpp");
 
     static constexpr std::string_view name = "GridFluid";
-    /// What it was made of at compile time, in words.
-    static std::string options() { return option_names<Options>(); }
+    /// What it was made of at compile time, in words, with what its turbulence was given.
+    std::string options() const { return describe_options<Options>(flow_.turbulence); }
 
     /// Throws InputError where parameters make no flow, and what given functions throw.
     explicit GridFluid(Params params, Turbulence turbulence = {}, Solids solids = {}, Forcing forcing = {})
