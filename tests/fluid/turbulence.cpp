@@ -36,15 +36,36 @@ std::vector<Real> eddies(const Grid<Dim>& grid, const Model& model, auto&& of) {
     return values;
 }
 
+/// Even levels and uneven ones.
+std::vector<Grid<3>> grids() {
+    return {Grid<3>({.cells = {5, 21, 4}, .spacing = {0.1, 0.2, 0.3}}),
+            Grid<3>({.cells = {5, 21, 4}, .spacing = {0.1, 0.2, 0}, .levels = {0, 0.1, 0.3, 0.35, 0.5}})};
+}
+/// All components; its trace, the divergence, is 0.
+Mat3 any_gradient() {
+    Mat3 any;
+    any << 0.3, -0.7, 1.1, 0.4, 0.5, -0.2, 2.0, 0.6, -0.8;
+    return any;
+}
+/// nu_t = (C Delta)^2 rate in a flow of that gradient.
+void check_any_gradient(const auto& model, Real constant, Real rate, Real tolerance) {
+    for (const Grid<3>& grid : grids()) {
+        const auto found = eddies(grid, model, [&](const Vec3& x) { return Vec3(any_gradient() * x); });
+        std::size_t k = 0;
+        grid.for_each([&](const CellNumber<3>& cell, Offset) {
+            REQUIRE(found[k++] == doctest::Approx(square(constant * std::cbrt(grid.volume(cell))) * rate)
+                                      .epsilon(tolerance)
+                                      .scale(0));
+        });
+    }
+}
+
 }  // namespace
 
 TEST_CASE("pure shear, stretch and all at once: nu_t = (C_s Delta)^2 |S|") {
     const Smagorinsky model{{.constant = 0.17}};
-    const Grid<3> cubes({.cells = {5, 21, 4}, .spacing = {0.1, 0.2, 0.3}});
-    const Grid<3> stretched(
-        {.cells = {5, 21, 4}, .spacing = {0.1, 0.2, 0}, .levels = {0, 0.1, 0.3, 0.35, 0.5}});
-    Eigen::Matrix3d shear = Eigen::Matrix3d::Zero(), any;
-    any << 0.3, -0.7, 1.1, 0.4, 0.5, -0.2, 2.0, 0.6, -0.8;
+    const Grid<3> cubes = grids().front();
+    Mat3 shear;
     for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) {
             shear.setZero();
@@ -53,17 +74,8 @@ TEST_CASE("pure shear, stretch and all at once: nu_t = (C_s Delta)^2 |S|") {
             for (const Real nu : eddies(cubes, model, [&](const Vec3& x) { return Vec3(shear * x); }))
                 REQUIRE(nu == doctest::Approx(square(0.17) * std::cbrt(square(0.006)) * rate).epsilon(1e-12));
         }
-    const Eigen::Matrix3d strain = 0.5 * (any + any.transpose());
-    const Real rate = std::sqrt(2 * strain.squaredNorm());
-    for (const Grid<3>& grid : {cubes, stretched}) {
-        const auto found = eddies(grid, model, [&](const Vec3& x) { return Vec3(any * x); });
-        std::size_t k = 0;
-        grid.for_each([&](const CellNumber<3>& cell, Offset) {
-            REQUIRE(
-                found[k++] ==
-                doctest::Approx(square(0.17 * std::cbrt(grid.volume(cell))) * rate).epsilon(1e-12).scale(0));
-        });
-    }
+    const Mat3 strain = 0.5 * (any_gradient() + any_gradient().transpose());
+    check_any_gradient(model, 0.17, std::sqrt(2 * strain.squaredNorm()), 1e-12);
     const Grid<2> plane({.cells = {4, 19}, .spacing = {0.1, 0.2}});
     for (const Real nu : eddies(plane, model, [](const Point<2>& x) { return Point<2>(2 * x[1], 0); }))
         REQUIRE(nu == doctest::Approx(square(0.17) * 0.02 * 2).epsilon(1e-12).scale(0));
@@ -80,14 +92,9 @@ TEST_CASE("no eddies at rest, none in water that turns as a solid body") {
 
 TEST_CASE("Wale: the closed form of any gradient, on even and uneven levels, and none in pure shear") {
     const Wale model{{.constant = 0.4}};
-    const Grid<3> cubes({.cells = {5, 21, 4}, .spacing = {0.1, 0.2, 0.3}});
-    const Grid<3> stretched(
-        {.cells = {5, 21, 4}, .spacing = {0.1, 0.2, 0}, .levels = {0, 0.1, 0.3, 0.35, 0.5}});
-    Mat3 any;
-    any << 0.3, -0.7, 1.1, 0.4, 0.5, -0.2, 2.0, 0.6, -0.8;
+    const Mat3 any = any_gradient(), squared = any * any;
     // Index by index, as the paper writes it.
     Real s2 = 0, d2 = 0;
-    const Mat3 squared = any * any;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
             s2 += square((any(i, j) + any(j, i)) / 2);
@@ -95,21 +102,13 @@ TEST_CASE("Wale: the closed form of any gradient, on even and uneven levels, and
         }
     const Real rate = std::pow(d2, 1.5) / (std::pow(s2, 2.5) + std::pow(d2, 1.25));
     CHECK(rate > 0.1);
-    for (const Grid<3>& grid : {cubes, stretched}) {
-        const auto found = eddies(grid, model, [&](const Vec3& x) { return Vec3(any * x); });
-        std::size_t k = 0;
-        grid.for_each([&](const CellNumber<3>& cell, Offset) {
-            REQUIRE(
-                found[k++] ==
-                doctest::Approx(square(0.4 * std::cbrt(grid.volume(cell))) * rate).epsilon(1e-11).scale(0));
-        });
-        for (const Real nu : eddies(grid, model, [&](const Vec3& x) { return Vec3(3 * x.z(), 0, 0); }))
+    check_any_gradient(model, 0.4, rate, 1e-11);
+    for (const Grid<3>& grid : grids())
+        for (const Real nu : eddies(grid, model, [](const Vec3& x) { return Vec3(3 * x.z(), 0, 0); }))
             REQUIRE(nu == 0);
-    }
 }
 
-TEST_CASE(
-    "Wale: beside a wall nu_t falls with the cube of the distance, Smagorinsky's length with its square") {
+TEST_CASE("Wale: beside a wall nu_t falls with the cube of the distance, Smagorinsky's with the square") {
     // No slip at z = 0: along the wall the velocity grows with z, off it with z^2, and it has no divergence.
     const auto gradient = [](Real z) {
         Mat3 g;

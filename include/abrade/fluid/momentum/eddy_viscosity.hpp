@@ -28,8 +28,7 @@ namespace abrade::detail {
 /// threads.
 template <int Dim, class State, TurbulenceModel Model>
 class EddyViscosity {
-    static constexpr bool has_length = HasMixingLength<Model>;
-    static constexpr bool has_bound = requires(const Model& model) { model.largest(0.0); };
+    static constexpr bool has_length = HasMixingLength<Model>, has_bound = ModelsMeanFlow<Model>;
     static constexpr int lanes = Layout<Dim>::lanes, vertical = Grid<Dim>::vertical,
                          pairs = Dim * (Dim - 1) / 2;
     using Table = LevelTable<Dim, State>;

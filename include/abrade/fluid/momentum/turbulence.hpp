@@ -15,13 +15,22 @@ namespace abrade {
 
 namespace detail {
 
-/// nu_t = l^2 |S|, l = `length(Delta, d)` [m]. Such a model of the mean flow also has what that flow's nu_t
-/// is at most, `largest(d)` [m2/s], and the share of Delta that eddies have at most beside bodies that the
-/// water flows around, `beside_bodies()` [-].
+/// nu_t = l^2 |S|, l = `length(Delta, d)` [m].
 template <class T>
 concept HasMixingLength = requires(const T& model, Real size) {
     { model.length(size, size) }
     noexcept->std::same_as<Real>;
+};
+
+/// Such a model of the mean flow also has what that flow's nu_t is at most, `largest(d)` [m2/s], and the
+/// share of Delta that eddies have at most beside bodies that the water flows around, `beside_bodies()` [-].
+template <class T>
+concept ModelsMeanFlow = HasMixingLength<T> && requires(const T& model, Real size) {
+    { model.largest(size) }
+    noexcept->std::same_as<Real>;
+    { model.beside_bodies() }
+    noexcept->std::same_as<Real>;
+    model.validate_among_bodies();
 };
 
 /// nu_t = `viscosity(g, Delta, d)` [m2/s], of the velocity's gradient g(a, b) = du_a/dx_b [1/s]; in a plane
@@ -199,6 +208,7 @@ private:
 
 static_assert(TurbulenceModel<NoTurbulence> && TurbulenceModel<Smagorinsky> && TurbulenceModel<Wale> &&
               TurbulenceModel<MixingLength>);
+static_assert(detail::ModelsMeanFlow<MixingLength> && !detail::ModelsMeanFlow<Smagorinsky>);
 static_assert(!TurbulenceModel<int> && !TurbulenceModel<NoParams>);
 
 }  // namespace abrade

@@ -104,7 +104,7 @@ struct FlowFields {
     /// From the velocity as it is; of water in `rows`, none: everywhere.
     void find_eddies([[maybe_unused]] const WetRows<Dim>* rows,
                      [[maybe_unused]] const Field<Real>* liquid_fraction) {
-        if constexpr (Solids::present && requires { turbulence.beside_bodies(); })
+        if constexpr (Solids::present && ModelsMeanFlow<Turbulence>)
             eddies->make_way(*grid, params.boundaries, solids.resolved_parts());
         if constexpr (Turbulence::has_eddies) eddies->find(velocity, boundaries, rows, liquid_fraction);
     }
