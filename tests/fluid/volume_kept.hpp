@@ -110,6 +110,7 @@ void carry_traces(Boundary side) {
     cells.fill(12);
     const Grid<Dim> grid({.cells = cells, .spacing = Point<Dim>::Constant(1.0 / 12)});
     VolumeOfFluid<Dim> water(grid, BoundaryConditions<Dim>::all(side));
+    FaceField<Dim> flux = face_field<Dim>(grid.layout());
     std::mt19937 random(4);
     std::uniform_real_distribution<Real> exponent(-13, -6.1), uniform(-1, 1);
     grid.for_each([&](const CellNumber<Dim>&, Offset c) {
@@ -129,7 +130,7 @@ void carry_traces(Boundary side) {
     const Held before = held_by<Dim>(water, nullptr);
     long double worst = 0;
     for (int k = 0; k < 20; ++k) {
-        water.advance(u, std::min(0.02, water.stable_step(u)));
+        water.advance(u, std::min(0.02, water.stable_step(u)), flux);
         worst = std::max(worst, std::abs(held_by<Dim>(water, nullptr).volume / before.volume - 1));
     }
     MESSAGE(Dim << "-D traces: off by " << static_cast<Real>(worst));

@@ -18,7 +18,7 @@ Numbers cavity() {
          .viscosity = 5e-3});
     flow.open_energy_account();
     flow.advance(1);
-    return state_of_water(flow).with({"fastest water", "water viscous", "water sides", "water numerical"});
+    return state_of_water(flow).with({"fastest water", "water viscous", "water boundaries", "water numerical"});
 }
 
 /// In at one side, out at the other, with a force that swings.

@@ -29,7 +29,7 @@ inline Real published(const std::string& test, int cells, Real Published::*which
 inline void check_conserved(const Returned& r) {
     CHECK(r.lost < 1e-12);
     CHECK(r.outside == 0);
-    CHECK(r.moved_aside < 1e-9);
+    CHECK(r.redistributed < 1e-9);
 }
 
 }  // namespace returning_shapes

@@ -13,9 +13,9 @@ using namespace abrade;
 /// What came back. `error` [m2 or m3] = sum |f - f_start| V; `relative` to the shape's volume.
 struct Returned {
     Real error = 0, relative = 0;
-    Real lost = 0;         ///< largest |volume / volume at the start - 1| on the way
-    Real outside = 0;      ///< largest excursion of f beyond 0 and 1
-    Real moved_aside = 0;  ///< of the volume, all steps together
+    Real lost = 0;           ///< largest |volume / volume at the start - 1| on the way
+    Real outside = 0;        ///< largest excursion of f beyond 0 and 1
+    Real redistributed = 0;  ///< of the volume, all steps together
     int steps = 0;
     Real seconds = 0;    ///< wall time of the steps alone
     Real wet_steps = 0;  ///< cells that were wet, all steps together
@@ -42,6 +42,7 @@ Returned carry(const Duration& problem, VolumeOfFluid<Dim>& water, const FaceFie
     using Clock = std::chrono::steady_clock;
     Returned result{.steps = problem.steps, .start = water.fraction()};
     const Grid<Dim>& grid = water.grid();
+    FaceField<Dim> flux = face_field<Dim>(grid.layout());
     const Real before = water.volume(), dt = problem.duration / problem.steps;
     auto u = velocity;
     const int last = static_cast<int>(std::lround(problem.until * problem.steps)) - 1;
@@ -50,9 +51,9 @@ Returned carry(const Duration& problem, VolumeOfFluid<Dim>& water, const FaceFie
         for (std::size_t a = 0; a < Dim; ++a)
             for (Offset i = 0; i < u[a].size(); ++i) u[a][i] = now * velocity[a][i];
         const auto begun = Clock::now();
-        const VolumeStep step = water.advance(u, dt);
+        const VolumeStep step = water.advance(u, dt, flux);
         result.seconds += std::chrono::duration<Real>(Clock::now() - begun).count();
-        result.moved_aside += step.moved_aside / before;
+        result.redistributed += step.redistributed / before;
         result.wet_steps += static_cast<Real>(water.wet().cells());
         if (k % 16 != 0 && k != last) continue;
         result.lost = std::max(result.lost, std::abs(water.volume() / before - 1));

@@ -123,7 +123,7 @@ public:
         FaceColumns& f = columns_;
         const auto conducts = [&](std::size_t i) -> float& { return f.at(m.face, i); };
         const auto share = [&](std::size_t i) { return static_cast<Real>(conducts(i)) / f.conductance(i); };
-        by_planes([&](std::size_t i) { f.open[i] = share(i), f.be_amid(i); },
+        by_planes([&](std::size_t i) { f.open[i] = share(i), f.set_interior(i); },
                   [&](std::size_t i) {
                       if (f.share[i] == 0) return;
                       const Real left = share(i) - f.share[i];

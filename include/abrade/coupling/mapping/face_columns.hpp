@@ -98,7 +98,7 @@ struct FaceColumns {
     Real conductance(std::size_t i) const noexcept { return volume[i] / square(gap[i]); }
     bool at_surface(std::size_t i) const noexcept { return high_wet[i] != low_wet[i]; }
     /// Between two cells with a pressure, as far as is known yet.
-    void be_amid(std::size_t i) noexcept {
+    void set_interior(std::size_t i) noexcept {
         high_wet[i] = low_wet[i] = 1, leaves[i] = 0, weight[i] = 1, per_gap[i] = 1 / gap[i];
     }
     /// From `open`, `water` and `part`: a closed face passes no water, not even what rounding leaves of it.

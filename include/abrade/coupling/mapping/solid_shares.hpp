@@ -78,7 +78,7 @@ private:
         const Real radius = 0.5 * body_->diameter(), least = 0.9 * cell_width(body_->position);
         grown_ = std::max(least - radius, 0.0);
         scale_ = grown_ > 0 ? cube(radius / least) : 1;
-        amid_ = true;
+        interior_ = true;
         for (int a = 0; a < 3; ++a) {
             Real low = std::numeric_limits<Real>::infinity(), high = -low;
             for (const Sphere& s : body_->spheres) {
@@ -87,7 +87,7 @@ private:
             }
             first_[a] = cell_at(a, low) - 1;
             length_[a] = cell_at(a, high) + 3 - first_[a];
-            amid_ &= first_[a] >= 1 && first_[a] + length_[a] <= grid.cells(a);
+            interior_ &= first_[a] >= 1 && first_[a] + length_[a] <= grid.cells(a);
             auto& lines = lines_[a];
             lines.clear();
             for (int i = first_[a]; i < first_[a] + length_[a]; ++i)
@@ -146,7 +146,7 @@ private:
         for (int a = 0; a < 3; ++a) n[a] = wrapped(a, n[a]);
         return n;
     }
-    Offset offset(const Number& n) const noexcept { return grid.layout().at(amid_ ? n : inside_box(n)); }
+    Offset offset(const Number& n) const noexcept { return grid.layout().at(interior_ ? n : inside_box(n)); }
 
     bool is_cut() const noexcept {
         for (int a = 0; a < 3; ++a)
@@ -161,7 +161,7 @@ private:
 
     Kind kind(int axis, const Number& n) const noexcept {
         bool beyond = false;
-        for (int a = 0; a < 3 && !amid_; ++a) {
+        for (int a = 0; a < 3 && !interior_; ++a) {
             const int first = a == axis ? 1 : 0, end = grid.cells(a);
             if (boundaries.periodic(a) || (n[a] >= first && n[a] < end)) continue;
             if (is_closed(boundaries[a][n[a] < first ? 0 : 1])) return Kind::closed;
@@ -226,7 +226,7 @@ private:
                 if (!any(near.found)) continue;
                 covered_[axis][row] = true;
                 share_[axis][p] = share_of(near, s);
-                if (axis == of_cells && amid_) continue;
+                if (axis == of_cells && interior_) continue;
                 if (axis != of_cells) friction_[p] = friction_of(near);
                 if (retracted_ > 0) core_[p] = share_of(near, s, retracted_ * std::cbrt(s.prod()));
                 for (unsigned lanes = lanes_of(near.found); lanes != 0; lanes &= lanes - 1) {
@@ -325,7 +325,7 @@ private:
                 for (int a = 0; a < 3; ++a)
                     low[a] = share_at(a, row, i), high[a] = share_at(a, up[a], i + (a == 0));
                 if (low.isZero(0) && high.isZero(0)) continue;
-                if (!amid_ && !grid.has(inside_box(n))) continue;
+                if (!interior_ && !grid.has(inside_box(n))) continue;
                 const Vec3 way = area.cwiseProduct(high - low), arm = place(of_cells, n) - body_->position;
                 cover.cells.push_back({offset(n), way, arm.cross(way), arm});
             }
@@ -342,7 +342,7 @@ private:
     Real retracted_;
     const FlowBody* body_ = nullptr;
     Real grown_ = 0, scale_ = 1;  ///< of a small body's spheres [m], of its shares [-]
-    bool amid_ = true;            ///< the box of cells has no side of the grid near by
+    bool interior_ = true;        ///< the box of cells has no side of the grid near by
     Number first_{}, length_{};
     std::size_t in_row_ = 0;  ///< packs
     PerAxis<std::vector<Line>, 3> lines_;

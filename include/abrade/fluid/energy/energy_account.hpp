@@ -46,12 +46,11 @@ public:
     void liquid_moved(const View& flow) {
         mid_ = flow.velocity;
         for (Opening& o : openings_) {
-            o.volume = flow.liquid->volume_flux()[o.axis][o.face(flow.grid)];
+            o.volume = (*flow.flux)[o.axis][o.face(flow.grid)];
             o.pressure = static_cast<Real>(pressure_at(flow, o));
         }
-        if constexpr (requires { flow.liquid->solid_moved(); })
-            for (const SolidVolume& s : flow.liquid->solid_moved())
-                if (Opening* o = opening_at(flow, s.axis, s.face)) o->volume -= s.volume;
+        for (const SolidVolume& s : flow.liquid->solid_moved())
+            if (Opening* o = opening_at(flow, s.axis, s.face)) o->volume -= s.volume;
     }
     void walls_took(const typename WallFriction<Dim>::PerFace& taken) { taken_ = taken; }
 

@@ -4,6 +4,7 @@
 
 #include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
 #include <abrade/fluid/height/height_of_fluid.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/vof/volume_of_fluid.hpp>
 
 #include <algorithm>
@@ -130,8 +131,6 @@ Real centroid_along(const CellPlane<Dim>& plane, int axis) noexcept {
     return volume > 0 ? moment / volume : 0;
 }
 
-inline constexpr Real least_part_of_cell = 1e-12;  ///< round-off decides where less has its centre [-]
-
 /// Projection of the way from a cell's centre to that of what a wall leaves open of it; `along` in units of
 /// the cell.
 template <int Dim>
@@ -139,7 +138,7 @@ Real offset_above_wall(const EmbeddedBoundary<Dim>& walls, const CutCell<Dim>& w
                        const Point<Dim>& along) noexcept {
     const HalfSpace<Dim> open = above_wall(walls.grid(), wall);
     const PartOfCell<Dim> part = part_of_cell<Dim>({&open, 1});
-    return part.volume > least_part_of_cell ? along.dot(part.moment) / part.volume : 0;
+    return part.volume > volume_tolerance::round_off ? along.dot(part.moment) / part.volume : 0;
 }
 
 /// The same to the centre of mass of a cell's liquid: what lies below the reconstructed plane and, in cells
@@ -164,8 +163,8 @@ Real liquid_offset(const VolumeOfFluid<Dim>& liquid, const EmbeddedBoundary<Dim>
     for (int a = 0; a < Dim; ++a) halves[0].slope[a] = -plane.normal[static_cast<std::size_t>(a)];
     halves[1] = above_wall(walls->grid(), *wall);
     const PartOfCell<Dim> part = part_of_cell<Dim>(halves);
-    return part.volume > least_part_of_cell ? along.dot(part.moment) / part.volume
-                                            : offset_above_wall(*walls, *wall, along);
+    return part.volume > volume_tolerance::round_off ? along.dot(part.moment) / part.volume
+                                                     : offset_above_wall(*walls, *wall, along);
 }
 
 /// The same below a height.
@@ -188,8 +187,8 @@ Real liquid_offset(const HeightOfFluid<Dim>& liquid, const EmbeddedBoundary<Dim>
     halves[0].slope[vertical] = -1;
     halves[1] = above_wall(grid, *wall);
     const PartOfCell<Dim> part = part_of_cell<Dim>(halves);
-    return part.volume > least_part_of_cell ? along.dot(part.moment) / part.volume
-                                            : offset_above_wall(*walls, *wall, along);
+    return part.volume > volume_tolerance::round_off ? along.dot(part.moment) / part.volume
+                                                     : offset_above_wall(*walls, *wall, along);
 }
 
 /// Whether the surface decides where in a cell its liquid is, and the cells where it does.

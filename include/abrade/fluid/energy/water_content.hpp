@@ -5,6 +5,7 @@
 #include <abrade/fluid/energy/liquid_centroid.hpp>
 #include <abrade/fluid/mesh/level_table.hpp>
 #include <abrade/fluid/mesh/solid_parts.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/mesh/wet_rows.hpp>
 #include <abrade/fluid/momentum/forcing.hpp>
 #include <abrade/fluid/setup/grid_fluid_params.hpp>
@@ -29,6 +30,7 @@ struct EnergyView {
     Real time = 0;                            ///< when the step began [s]
     const Field<State>* eddies = nullptr;  ///< nu_t of cells that acted in the step [m2/s]; none: no eddies
     const Liquid* liquid = nullptr;
+    const FaceField<Dim>* flux = nullptr;  ///< that moved the liquid, solids among it included [m3]
     const EmbeddedBoundary<Dim>* walls = nullptr;
     const WetRows<Dim>* rows = nullptr;
     const Field<Real>* liquid_fraction_before = nullptr;  ///< liquid in whole cells when the step began [-]
@@ -174,8 +176,7 @@ public:
 
     /// Whether a face has liquid enough to have a momentum; `liquid_fraction` of the cell above it.
     static bool carries(const Real* liquid_fraction, Offset back) noexcept {
-        constexpr Real least = 2e-9;  // twice that of momentum
-        return liquid_fraction[0] + liquid_fraction[-back] > least;
+        return liquid_fraction[0] + liquid_fraction[-back] > 2 * volume_tolerance::mass;
     }
     /// Of a face [m3]: its control volume, and the liquid in it, 0 where that has no momentum.
     Real control_volume_of(const View& flow, int a, Offset c) const noexcept {

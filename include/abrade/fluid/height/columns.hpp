@@ -219,7 +219,7 @@ private:
     void shape(int plane, int j, const FaceField<Dim>* apertures) {
         const auto n = at(column(plane, j));
         int k = 0;
-        while (k < levels_ && !(open(cell(plane, j, k)) > smallest_open_fraction)) ++k;
+        while (k < levels_ && !(open(cell(plane, j, k)) > volume_tolerance::open)) ++k;
         first_[n] = k;
         bed_[n] = k < levels_ ? grid_.face(vertical, k) : grid_.high(vertical);
         if (k == levels_) return;
@@ -229,7 +229,7 @@ private:
         Real widest = 0;
         for (int l = k; l < levels_; ++l) {
             const Offset c = cell(plane, j, l);
-            const Real room = open(c) > smallest_open_fraction ? open(c) * volume(l) : 0;
+            const Real room = open(c) > volume_tolerance::open ? open(c) * volume(l) : 0;
             if (l < whole) below_whole_[n] += room;
             capacity_[n] += room;
             if (!apertures || !grid_.has(grid_.layout().number(c))) continue;

@@ -2,15 +2,13 @@
 // Which cells are water, and the faces at which its pressure is known.
 
 #include <abrade/fluid/mesh/boundary_conditions.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/mesh/wet_rows.hpp>
 
 #include <cstdint>
 #include <span>
 
 namespace abrade {
-
-/// Less liquid than this about a face, as a share of a cell [-], gives it no velocity of its own.
-inline constexpr Real liquid_of_a_face = 1e-6;
 
 /// A face at which the pressure is known: between water and air, or where water leaves the box.
 struct OpenFace {
@@ -25,11 +23,24 @@ struct OpenFace {
         1;  ///< share of what moves through the face that lies below the surface, and has weight [-]
 };
 
+/// A face of the velocity component along an axis.
+struct WaterFace {
+    Offset face = 0;
+    int axis = 0;
+};
+
 /// Water that is put into a cell, or taken out (below 0).
 struct CellSource {
     Offset cell = 0;
     Real rate = 0;    ///< of the cell's open volume [1/s]
     Real volume = 0;  ///< in the last step [m3]
+};
+
+/// What a step of the liquid did.
+struct VolumeStep {
+    Real courant = 0;        ///< largest share of a cell at the surface that left it in the step [-]
+    Real redistributed = 0;  ///< volume that found no room where it flowed and was given to neighbours [m3]
+    int not_redistributed = 0;  ///< cells whose neighbours could not take it: it is `volume_defect`
 };
 
 /// Cells that take part in a projection and what lies between them.

@@ -102,8 +102,8 @@ public:
                 const auto k = static_cast<std::size_t>(n);
                 const Offset c = gains_[a][k].face, back = layout_.stride[a];
                 gains_[a][k].gain = gains_[a][k].drained = 0;
-                if (step.liquid_fraction &&
-                    !((*step.liquid_fraction)[c] + (*step.liquid_fraction)[c - back] > liquid_of_a_face))
+                if (step.liquid_fraction && !((*step.liquid_fraction)[c] + (*step.liquid_fraction)[c - back] >
+                                              volume_tolerance::face))
                     return;
                 const Place& place = places_[a][k];
                 const Point<Dim> at_face = velocity_at_face(u, a, c);

@@ -3,6 +3,7 @@
 // step.
 
 #include <abrade/fluid/mesh/level_table.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/mesh/wet_rows.hpp>
 #include <abrade/fluid/momentum/advection_schemes.hpp>
 
@@ -66,9 +67,8 @@ class MomentumRows {
     static constexpr int lanes = Eddies ? 64 / static_cast<int>(sizeof(State)) : Layout<Dim>::lanes;
     static constexpr int pack(int i) noexcept { return i & ~(lanes - 1); }
     using Table = LevelTable<Dim, State>;
-    /// Below this share of a control volume there is no momentum to speak of: the velocity stays, but for
-    /// weight and pressure.
-    static constexpr Real least_mass = 1e-9;
+    /// With less of its control volume a face keeps its velocity, but for weight and pressure.
+    static constexpr Real least_mass = volume_tolerance::mass;
 
 public:
     MomentumRows(const Grid<Dim>& grid, const MomentumStage<Dim, State>& stage)

@@ -68,10 +68,10 @@ private:
 
     /// What lacks as little as makes no surface.
     bool is_full(Real holds) const noexcept { return holds >= 1 - liquid_.void_inside_water(); }
-    bool is_wet(Offset c) const noexcept { return holds(c) > Liquid::wisp; }
+    bool is_wet(Offset c) const noexcept { return holds(c) > volume_tolerance::round_off; }
     Real holds(Offset c) const noexcept { return shares_.fraction[c] + shares_.volume_defect[c]; }
     void set(Offset c, Real holds) noexcept {
-        shares_.fraction[c] = is_full(holds) ? 1 : holds < Liquid::wisp ? 0 : holds;
+        shares_.fraction[c] = is_full(holds) ? 1 : holds < volume_tolerance::round_off ? 0 : holds;
         shares_.volume_defect[c] = holds - shares_.fraction[c];
     }
 

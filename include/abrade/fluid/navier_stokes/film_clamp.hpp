@@ -72,7 +72,7 @@ public:
         constexpr Real little = 0.1;  // of what the cell holds
         const auto gives = [&](const Cell& film, int a, int end, Real speed, Real push = 0) {
             const Real none =
-                square(speed) > fastest_fall_ ? little * liquid_fraction[film.cell] : liquid_of_a_face;
+                square(speed) > fastest_fall_ ? little * liquid_fraction[film.cell] : volume_tolerance::face;
             return film.face[a][end] >= 0 && wet[film.beyond[a][end]] == 0 &&
                    (liquid_fraction[film.beyond[a][end]] <= none ||
                     (end == 0 ? speed + push < 0 : speed + push > 0));
@@ -80,7 +80,7 @@ public:
         starts_.for_each(&rows, [&](std::size_t k) {
             const Cell& film = cells_[k];
             push_[k].setZero();
-            if (wet[film.cell] != 0 || liquid_fraction[film.cell] <= liquid_of_a_face) return;
+            if (wet[film.cell] != 0 || liquid_fraction[film.cell] <= volume_tolerance::face) return;
             Point<Dim> v = Point<Dim>::Zero();
             for (int a = 0; a < Dim; ++a) {
                 int count = 0;

@@ -145,6 +145,7 @@ public:
                                           .time = flow.time,
                                           .eddies = flow.eddy_viscosity(),
                                           .liquid = &water_.liquid(),
+                                          .flux = &water_.flux(),
                                           .walls = water_.walls(),
                                           .rows = &water_.rows(),
                                           .liquid_fraction_before = &water_.liquid_fraction_before(),
@@ -261,9 +262,9 @@ private:
     }
 
     void move_liquid(Flow& flow, Real dt) {
-        if constexpr (Flow::has_sources)
-            water_.set_sources(flow.forced->find_sources(flow.forcing, flow.time + dt));
-        while_seeping(flow, [&] { water_.move(flow.velocity, dt); });
+        std::span<CellSource> sources;
+        if constexpr (Flow::has_sources) sources = flow.forced->find_sources(flow.forcing, flow.time + dt);
+        while_seeping(flow, [&] { water_.move(flow.velocity, dt, sources); });
         if constexpr (Flow::has_sources) flow.forced->know_taken(*flow.grid, liquid_fraction(), dt);
         if (flow.energy) flow.energy->liquid_moved(energy_view(flow));
     }
@@ -301,11 +302,8 @@ private:
     };
     void stage(Flow& flow, const StageOf& s) {
         water_.fill_closed(s.by);
-        typename Flow::Stage momentum{s.by,          water_.advecting_flux(),
-                                      flow.velocity, s.result,
-                                      flow.pressure, s.dt,
-                                      s.kept,        s.push,
-                                      flow.nu(),     falls_};
+        typename Flow::Stage momentum{s.by, water_.flux(), flow.velocity, s.result,  flow.pressure,
+                                      s.dt, s.kept,        s.push,        flow.nu(), falls_};
         momentum.carried_in = s.dt, momentum.liquid_fraction_before = &water_.liquid_fraction_before(),
         momentum.liquid_fraction = &water_.liquid_fraction();
         momentum.aperture = water_.aperture(), momentum.open_friction = water_.open_friction();

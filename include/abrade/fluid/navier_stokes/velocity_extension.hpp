@@ -14,12 +14,6 @@
 
 namespace abrade {
 
-/// A face of the velocity component along an axis.
-struct WaterFace {
-    Offset face = 0;
-    int axis = 0;
-};
-
 /// Faces between dry cells get the mean of those beside them that are nearer to the water, layer by layer
 /// outward, as far as the stencils of the next step reach. Liquid among them:
 /// - beside a face of a wet cell (first layer) a face is slaved to that, its master face;
@@ -335,7 +329,7 @@ private:
             slaved.clear();
             for (const Mean& mean : means_[a][0][static_cast<std::size_t>(plane)]) {
                 if (water.liquid_fraction[mean.face] + water.liquid_fraction[mean.face - layout_.stride[a]] <
-                    liquid_of_a_face)
+                    volume_tolerance::face)
                     continue;
                 const Real share = 1.0 / std::popcount(mean.from);
                 for_known_beside(mean, [&](Offset n) { slaved.push_back({mean.face, inside(n), share}); });
@@ -377,7 +371,7 @@ private:
             for (int first = Layout<Dim>::pack(r.begin); first < r.end; first += lanes) {
                 if (!any_without(state + first)) continue;
                 for (int i = std::max(first, r.begin); i < std::min(first + lanes, r.end); ++i)
-                    if (state[i] == unknown && h[i] + h[i - back] > liquid_of_a_face)
+                    if (state[i] == unknown && h[i] + h[i - back] > volume_tolerance::face)
                         waiting_[static_cast<std::size_t>(plane)].push_back(start + i);
             }
         });

@@ -10,11 +10,12 @@
 namespace abrade {
 
 /// Solves A e = b for a Poisson operator that is filled anew in each step: `matrix()`, then `build()`, which
-/// closes its periodic sides and completes it (`detail::close_periodic`, `Poisson::complete`); `right_side()`,
-/// then `solve(target, limit)` until the norm of what is left (the root of the sum of squares) is at most
-/// `target`, or `limit` iterations are done. It may overwrite the right side. `runs()` are its planes, shared
-/// out to threads; `floating()` says that e is known but for a constant. Solids that move in the flow add to
-/// the operator within the search (SolidsInFlow): who can do that takes them as a third argument.
+/// closes its periodic sides and completes it (`detail::close_periodic`, `Poisson::complete`);
+/// `right_side()`, then `solve(target, limit)` until the norm of what is left (the root of the sum of
+/// squares) is at most `target`, or `limit` iterations are done. It may overwrite the right side. `runs()`
+/// are its planes, shared out to threads; `floating()` says that e is known but for a constant. Solids that
+/// move in the flow add to the operator within the search (SolidsInFlow): who can do that takes them as a
+/// third argument.
 // clang-format off
 template <class S, int Dim>
 concept PressureSolver = std::copyable<S> &&

@@ -2,12 +2,10 @@
 // What is known of each cell before anything flows: see cell_mark.
 
 #include <abrade/fluid/mesh/ghost_cells.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/vof/planes.hpp>
 
 namespace abrade {
-
-/// Below this share of a cell [-] walls leave no room for liquid.
-inline constexpr Real smallest_open_fraction = 1e-6;
 
 namespace detail {
 
@@ -49,7 +47,7 @@ Field<std::uint8_t> surface_marks(const Grid<Dim>& grid, const BoundaryCondition
     Field<std::uint8_t> marks(layout.total, 0);
     const auto of = [&](Offset c) {
         const Real share = open_fractions ? (*open_fractions)[c] : 1;
-        return static_cast<std::uint8_t>((share > smallest_open_fraction ? cell_mark::open : 0) |
+        return static_cast<std::uint8_t>((share > volume_tolerance::open ? cell_mark::open : 0) |
                                          (share > 1 - 1e-9 ? cell_mark::whole : 0));
     };
     grid.for_each(

@@ -1,148 +1,131 @@
 #pragma once
-// How VolumeOfFluid carries liquid: the bulk and the sweeps of the band. What finds no room is settled by
-// redistribution.hpp.
+// How a VolumeOfFluid carries its liquid: one sweep along each axis, and a light pass over the bulk.
 
-#include <abrade/fluid/vof/volume_of_fluid_class.hpp>
+#include <abrade/core/parallel.hpp>
+#include <abrade/fluid/vof/surface_reconstruction.hpp>
 
-#include <bit>
-#include <limits>
+#include <array>
+#include <cstring>
+#include <vector>
 
-namespace abrade {
+namespace abrade::detail {
 
-/// Rows at an inflow count as active where water stands beyond.
+/// Areas of faces [m2] and 1 / volume of cells [1/m3], by level from the first ghost.
 template <int Dim>
-void VolumeOfFluid<Dim>::include_inflows() {
-    const int planes = layout_.planes(), rows = layout_.rows_per_plane(), n = layout_.row_length();
-    for (int a = 0; a < Dim; ++a)
-        for (const int end : {0, 1}) {
-            if (boundaries_[a][index(end)] != Boundary::inflow) continue;
-            for (int p = 0; p < planes; ++p)
-                for (int r = 0; r < rows; ++r) {
-                    if (a == Layout<Dim>::outer && p != (end == 0 ? 0 : planes - 1)) continue;
-                    if (Dim == 3 && a == Dim - 1 && r != (end == 0 ? 0 : rows - 1)) continue;
-                    const Real* own = fraction_.data() + layout_.row_start(p, r);
-                    RowRange wet{};
-                    if (a == inner) {
-                        if (own[end == 0 ? -1 : n] > 0) wet = end == 0 ? RowRange{0, 2} : RowRange{n - 2, n};
-                    } else {
-                        const Real* given = own + (end == 0 ? -1 : 1) * layout_.stride[index(a)];
-                        for (int i = 0; i < n; ++i)
-                            if (given[i] > 0) wet = hull(wet, {i - 1, i + 2});
-                    }
-                    wet = {std::max(wet.begin, 0), std::min(wet.end, n)};
-                    active_.row(p, r) = hull(active_.row(p, r), wet);
-                }
+struct LevelSizes {
+    LevelSizes() = default;
+    explicit LevelSizes(const LiquidCells<Dim>& liquid) {
+        constexpr int g = Layout<Dim>::ghosts;
+        for (int k = -g; k < liquid.grid.cells(Grid<Dim>::vertical) + g; ++k) {
+            for (int a = 0; a < Dim; ++a) area[a].push_back(liquid.sizes.face(a, k));
+            per_volume.push_back(1 / liquid.sizes.volume(k));
         }
-}
-
-/// Planes of all cells of the band that are neither full nor dry. Within a step they keep the normals that
-/// they had at its beginning.
-template <int Dim>
-void VolumeOfFluid<Dim>::reconstruct(bool within_step) {
-    const bool keep = within_step && !params_.fit_every_sweep;
-    const bool walls = open_fractions_ && !keep;
-    // Lanes of a pack that get a plane, and those of them that hold liquid and air.
-    const auto cut = [&](Offset c, const PackMask& band) {
-        const Pack f = Pack::load(fraction_.data() + c);
-        const unsigned partly = lanes_of(band & (f > Pack(wisp)) & (f < Pack(1 - wisp)));
-        unsigned all = partly;
-        if (walls)
-            for (unsigned dry = lanes_of(band & !(f > Pack(0))); dry != 0; dry &= dry - 1) {
-                const int lane = std::countr_zero(dry);
-                const auto cell = static_cast<Index>(c + lane);
-                if (at_walls_.is_dry_beside_water(cell, fraction_.data(), marks_.data())) all |= 1u << lane;
-            }
-        return std::pair(all, partly);
-    };
-    std::vector<Index> first(static_cast<std::size_t>(layout_.planes()) + 1, 0);
-    for_band_packs([&](int plane, Offset c, Index, const PackMask& band) {
-        first[index(plane) + 1] += std::popcount(cut(c, band).first);
-    });
-    for (std::size_t p = 1; p < first.size(); ++p) first[p] += first[p - 1];
-    std::swap(planes_, planes_before_);
-    planes_.resize(static_cast<std::size_t>(first.back()));
-    for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
-        const auto [all, partly] = cut(c, band);
-        for (unsigned left = all; left != 0; left &= left - 1) {
-            const int lane = std::countr_zero(left);
-            const auto next = static_cast<std::size_t>(first[index(plane)]++);
-            const bool holds = (partly >> lane & 1) != 0;
-            const Index before = keep ? plane_of_[c + lane] : -1;
-            planes_.cell[next] = static_cast<Index>(c + lane);
-            planes_.level[next] = Dim == 3 ? level : level + lane;
-            planes_.has_normal[next] = before >= 0 || !holds;
-            planes_.reconstructed[next] =
-                before >= 0 ? planes_before_.reconstructed[static_cast<std::size_t>(before)] : 0;
-            if (planes_.has_normal[next])
-                for (std::size_t a = 0; a < Dim; ++a)
-                    planes_.normal[a][next] =
-                        before >= 0 ? planes_before_.normal[a][static_cast<std::size_t>(before)] : 0;
-        }
-    });
-    for (const Index c : planes_before_.cell) plane_of_[c] = -1;
-    for (Index i = 0; i < planes_.count(); ++i) plane_of_[planes_.cell[static_cast<std::size_t>(i)]] = i;
-    fill_periodic(plane_of_, layout_, boundaries_);
-    normals_.find(planes_, fraction_.data(), marks_.data(), !keep);
-    if (open_fractions_ && !keep) at_walls_.find(planes_, fraction_.data(), marks_.data(), plane_of_.data());
-}
-
-template <int Dim>
-Real VolumeOfFluid<Dim>::outflow_rate(const FaceField<Dim>& velocity) const {
-    std::vector<Pack> most(static_cast<std::size_t>(layout_.planes()), Pack(0));
-    for_band_packs([&](int plane, Offset c, Index level, const PackMask& band) {
-        const PackMask holds = band & !(Pack::load(fraction_.data() + c) == Pack(0));
-        if (!any(holds)) return;
-        Pack rate = Pack(0);
-        for (int a = 0; a < Dim; ++a) {
-            const Offset up = c + layout_.stride[index(a)];
-            const Real* const u = velocity[index(a)].data();
-            Pack low = max(-Pack::load(u + c), Pack(0)),
-                 high = max(Pack::load_from_anywhere(u + up), Pack(0));
-            if (apertures_) {
-                const Real* const open = (*apertures_)[index(a)].data();
-                low *= Pack::load(open + c), high *= Pack::load_from_anywhere(open + up);
-            }
-            rate += (low + high) * at_level(areas_[index(a)], level);
-        }
-        rate *= at_level(per_volume_, level);
-        // Cells that are mostly wall do not rule the step: what is too much for them is moved aside.
-        if (room()) rate /= max(Pack::load(room()->data() + c), Pack(0.5));
-        Pack& largest = most[index(plane)];
-        largest = select(holds & !(rate <= largest), rate, largest);  // keeps what is not a number
-    });
-    Real largest = 0;
-    for (const Pack& rates : most)
-        for (int lane = 0; lane < pack_lanes; ++lane)
-            if (!(rates[lane] <= largest)) largest = rates[lane];
-    return largest;
-}
-
-template <int Dim>
-Real VolumeOfFluid<Dim>::rate_of(const FaceField<Dim>& velocity, Index i) const noexcept {
-    const auto k = static_cast<std::size_t>(i);
-    const Offset c = band_.cells()[k];
-    if (fraction_[c] == 0) return 0;
-    const Index level = band_.levels()[k];
-    Real rate = 0;
-    for (int a = 0; a < Dim; ++a) {
-        const auto& u = velocity[index(a)];
-        const Offset up = c + layout_.stride[index(a)];
-        const Real low = apertures_ ? (*apertures_)[index(a)][c] : 1;
-        const Real high = apertures_ ? (*apertures_)[index(a)][up] : 1;
-        rate += (high * std::max(u[up], Real(0)) + low * std::max(-u[c], Real(0))) / sizes_.edge(a, level);
+        // Packs look beyond the end of a row.
+        for (auto& areas : area) areas.resize(areas.size() + pack_lanes, 0);
+        per_volume.resize(per_volume.size() + pack_lanes, 0);
     }
-    return rate / (room() ? std::max((*room())[c], Real(0.5)) : 1);
-}
 
-/// One pass over all rows: liquid through faces between cells that are full or dry, for good outside of the
-/// band; and what divergence leaves in the bulk.
+    static Real at(const std::vector<Real>& by_level, Index level) noexcept {
+        return by_level[static_cast<std::size_t>(level + Layout<Dim>::ghosts)];
+    }
+    /// The same of a pack, from a cell on.
+    static Pack of_pack(const std::vector<Real>& by_level, Index level) noexcept {
+        const Real* first = by_level.data() + level + Layout<Dim>::ghosts;
+        return Dim == 3 ? Pack(*first) : Pack::load_from_anywhere(first);
+    }
+
+    PerAxis<std::vector<Real>, Dim> area;
+    std::vector<Real> per_volume;
+};
+
+/// One step of `dt` [s] with `velocity` [m/s]: what goes through each face is `flux` [m3], as VolumeOfFluid
+/// has it.
 template <int Dim>
-void VolumeOfFluid<Dim>::carry_bulk() {
+class Sweeps {
+    static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner,
+                         outer = Layout<Dim>::outer;
+
+public:
+    struct Params {
+        bool fit_every_sweep = false;
+        Real largest_volume_defect = 0;  ///< see VolumeOfFluid::Params
+    };
+
+    Sweeps(LiquidCells<Dim>& liquid, SurfaceReconstruction<Dim>& surface, const LevelSizes<Dim>& sizes,
+           const FaceField<Dim>& velocity, Real dt, FaceField<Dim>& flux, const Params& params)
+        : liquid_(liquid), surface_(surface), layout_(liquid.layout), sizes_(sizes), velocity_(velocity),
+          flux_(flux), params_(params), swept_per_speed_(sizes.area),
+          filled_(static_cast<std::size_t>(layout_.planes())),
+          overfull_(static_cast<std::size_t>(layout_.planes())) {
+        for (auto& areas : swept_per_speed_)
+            for (Real& area : areas) area *= dt;
+    }
+
+    /// All of it, axes in the order of the step's number.
+    void run(Index step) {
+        carry_bulk();
+        find_filled();
+        const PerAxis<int, Dim> axes = order(step);
+        for (int n = 0; n < Dim; ++n) sweep(axes, n);
+    }
+
+    /// Cells of the bulk beyond `largest_volume_defect`.
+    const CellsOfPlanes& overfull() const noexcept { return overfull_; }
+
+private:
+    /// All orders in turn; in 2-D two, in 3-D six.
+    static PerAxis<int, Dim> order(Index step) noexcept {
+        const int turn = static_cast<int>(step % Dim), way = static_cast<int>(step / Dim % 2);
+        PerAxis<int, Dim> axes;
+        for (int n = 0; n < Dim; ++n) axes[n] = (Dim == 3 && way == 1 ? 2 * Dim - n + turn : n + turn) % Dim;
+        return axes;
+    }
+
+    /// Volume that a lower face sweeps in the step, positive upwards [m3].
+    Real swept(int axis, Offset c, Index level) const noexcept {
+        const Real volume = velocity_[axis][c] * sizes_.at(swept_per_speed_[axis], level);
+        return liquid_.apertures ? volume * (*liquid_.apertures)[axis][c] : volume;
+    }
+    Pack swept_of_pack(int axis, Offset c, Index level) const noexcept {
+        const Pack volume = Pack::load_from_anywhere(velocity_[axis].data() + c) *
+                            sizes_.of_pack(swept_per_speed_[axis], level);
+        return liquid_.apertures ? volume * Pack::load_from_anywhere((*liquid_.apertures)[axis].data() + c)
+                                 : volume;
+    }
+
+    void carry_bulk();
+    void carry_row(Offset start, Index level, const RowRange& range, bool cells,
+                   std::vector<CellAtLevel>& overfull);
+    void find_filled();
+    void sweep(const PerAxis<int, Dim>& axes, int number);
+    void fluxes_of_band(int axis);
+    void fluxes_of_planes(int axis);
+    void join_periodic(int axis);
+    bool is_detached_film(int axis, Offset c, int way) const noexcept;
+    void even_out_rims(int axis);
+
+    LiquidCells<Dim>& liquid_;
+    SurfaceReconstruction<Dim>& surface_;
+    const Layout<Dim>& layout_;
+    const LevelSizes<Dim>& sizes_;
+    const FaceField<Dim>& velocity_;
+    FaceField<Dim>& flux_;
+    Params params_;
+    PerAxis<std::vector<Real>, Dim>
+        swept_per_speed_;  ///< dt times area, by level from the first ghost [m2 s]
+    /// [plane] c of Weymouth and Yue, 0 or 1, of the cells of its band packs.
+    std::vector<std::vector<std::array<std::uint8_t, pack_lanes>>> filled_;
+    CellsOfPlanes overfull_;
+};
+
+/// Liquid through faces between cells that are full or dry, for good outside of the band; and what
+/// divergence leaves in the bulk.
+template <int Dim>
+void Sweeps<Dim>::carry_bulk() {
     const int rows = layout_.rows_per_plane(), planes = layout_.planes(), n = layout_.row_length();
-    for (auto& overfull : overfull_) overfull.clear();
-    touched_.for_each_row([&](int p, int r, const RowRange& range) {
+    surface_.touched().for_each_row([&](int p, int r, const RowRange& range) {
         const Offset start = layout_.row_start(p, r);
-        std::vector<CellAt>& overfull = overfull_[index(p)];
+        std::vector<CellAtLevel>& overfull = overfull_[static_cast<std::size_t>(p)];
         // Whole packs: what lies before and behind the range is dry, and faces of ghosts that follow are
         // those of the upper side.
         RowRange all{range.begin / pack_lanes * pack_lanes, range.end + (range.end == n)};
@@ -155,27 +138,30 @@ void VolumeOfFluid<Dim>::carry_bulk() {
 
 /// One row of it. Rows of ghosts have faces (of the upper sides), but no cells.
 template <int Dim>
-void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& range, bool cells,
-                                   std::vector<CellAt>& overfull) {
-    const Real* f = fraction_.data() + start;
-    Real* volume_defect = volume_defect_.data() + start;
-    const std::uint8_t* band = band_.data() + start;
-    std::array<const Real*, Dim> u, open{};
-    std::array<Real*, Dim> out;
-    for (std::size_t a = 0; a < Dim; ++a) {
-        u[a] = (*velocity_)[a].data() + start;
-        out[a] = volume_flux_[a].data() + start;
-        if (apertures_) open[a] = (*apertures_)[a].data() + start;
+void Sweeps<Dim>::carry_row(Offset start, Index level, const RowRange& range, bool cells,
+                            std::vector<CellAtLevel>& overfull) {
+    const Real* f = liquid_.fraction.data() + start;
+    Real* volume_defect = liquid_.volume_defect.data() + start;
+    const std::uint8_t* band = surface_.band().data() + start;
+    const Field<Real>* const room = liquid_.room();
+    const bool walls = liquid_.apertures != nullptr;
+    const Real most = params_.largest_volume_defect;
+    PerAxis<const Real*, Dim> u, open{};
+    PerAxis<Real*, Dim> out;
+    for (int a = 0; a < Dim; ++a) {
+        u[a] = velocity_[a].data() + start;
+        out[a] = flux_[a].data() + start;
+        if (walls) open[a] = (*liquid_.apertures)[a].data() + start;
     }
     const auto level_of = [&](int i) { return Dim == 3 ? level : Index{i}; };
     const PerAxis<Offset, Dim> step = layout_.stride;
     for (int i = range.begin; i < range.end; i += pack_lanes) {
         const Pack own = Pack::load(f + i);
         Pack gone = Pack(0);
-        for (std::size_t a = 0; a < Dim; ++a) {
-            const Pack speed = Pack::load(u[a] + i), area = at_level(swept_per_speed_[a], level_of(i));
+        for (int a = 0; a < Dim; ++a) {
+            const Pack speed = Pack::load(u[a] + i), area = sizes_.of_pack(swept_per_speed_[a], level_of(i));
             Pack low = speed * area, high = Pack::load_from_anywhere(u[a] + i + step[a]) * area;
-            if (apertures_) {
+            if (walls) {
                 low *= Pack::load(open[a] + i);
                 high *= Pack::load_from_anywhere(open[a] + i + step[a]);
             }
@@ -188,57 +174,41 @@ void VolumeOfFluid<Dim>::carry_row(Offset start, Index level, const RowRange& ra
         std::array<std::uint8_t, pack_lanes> in_band;
         std::memcpy(in_band.data(), band + i, pack_lanes);
         const bool deep = in_band == std::array<std::uint8_t, pack_lanes>{};
-        Pack lost = gone * at_level(per_volume_, level_of(i));
-        if (room()) lost /= Pack::load(room()->data() + start + i);
+        Pack lost = gone * sizes_.of_pack(sizes_.per_volume, level_of(i));
+        if (room) lost /= Pack::load(room->data() + start + i);
+        const auto is_deep = [&](int lane) {
+            return in_band[static_cast<std::size_t>(lane)] == 0 && (full >> lane & 1) != 0;
+        };
         if (deep && full == (1u << pack_lanes) - 1) {
             const Pack left = Pack::load(volume_defect + i) - lost;
             left.store(volume_defect + i);
-            if (!any((left > Pack(params_.largest_volume_defect)) |
-                     (left < Pack(-params_.largest_volume_defect))))
-                continue;
+            if (!any((left > Pack(most)) | (left < Pack(-most)))) continue;
         } else {
             for (int lane = 0; lane < pack_lanes; ++lane)
-                if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0)
-                    volume_defect[i + lane] -= lost[lane];
+                if (is_deep(lane)) volume_defect[i + lane] -= lost[lane];
         }
         for (int lane = 0; lane < pack_lanes; ++lane)
-            if (in_band[index(lane)] == 0 && (full >> lane & 1) != 0 &&
-                std::abs(volume_defect[i + lane]) > params_.largest_volume_defect &&
-                (marks_[start + i + lane] & cell_mark::inside) != 0 && !solids_.has(start + i + lane))
-                overfull.push_back({start + i + lane, Dim == 3 ? level : Index{i + lane}});
+            if (const Offset c = start + i + lane; is_deep(lane) &&
+                                                   std::abs(volume_defect[i + lane]) > most &&
+                                                   liquid_.is_inside(c) && !liquid_.solids.has(c))
+                overfull.push_back({c, Dim == 3 ? level : Index{i + lane}});
     }
 }
 
 template <int Dim>
-void VolumeOfFluid<Dim>::for_band_packs(auto&& body) const {
-    Pack lane;
-    for (int l = 0; l < pack_lanes; ++l) lane.set(l, l);
-    active_.for_each_row([&](int p, int r, const RowRange& range) {
-        const Offset start = layout_.row_start(p, r);
-        for (int i = range.begin / pack_lanes * pack_lanes; i < range.end; i += pack_lanes) {
-            PackMask band = detail::flags_at(band_.data() + start + i);
-            if (!any(band)) continue;
-            if (i < range.begin || i + pack_lanes > range.end)
-                band = band & (lane >= Pack(range.begin - i)) & (lane < Pack(range.end - i));
-            body(p, start + i, Dim == 3 ? Index{r} : Index{i}, band);
-        }
+void Sweeps<Dim>::find_filled() {
+    surface_.for_band_packs([&](const BandPack& pack) {
+        auto& filled = filled_[static_cast<std::size_t>(pack.plane)].emplace_back();
+        for (int lane = 0; lane < pack_lanes; ++lane)
+            filled[static_cast<std::size_t>(lane)] = liquid_.fraction[pack.first + lane] > 0.5;
     });
 }
 
 template <int Dim>
-void VolumeOfFluid<Dim>::sweep(int number) {
-    // All orders in turn; in 2-D two, in 3-D six.
-    const auto axis_of = [&](int n) {
-        const int turn = static_cast<int>(steps_ % Dim), way = static_cast<int>(steps_ / Dim % 2);
-        return (Dim == 3 && way == 1 ? 2 * Dim - n + turn : n + turn) % Dim;
-    };
-    const int axis = axis_of(number);
-    if (number == 0) {
-        for_band_packs([&](int, Offset c, Index, const PackMask&) {
-            for (int lane = 0; lane < pack_lanes; ++lane) filled_[c + lane] = fraction_[c + lane] > 0.5;
-        });
-    } else {
-        reconstruct(true);
+void Sweeps<Dim>::sweep(const PerAxis<int, Dim>& axes, int number) {
+    const int axis = axes[number];
+    if (number > 0) {
+        surface_.reconstruct(liquid_, !params_.fit_every_sweep);
         fluxes_of_band(axis);
     }
     fluxes_of_planes(axis);
@@ -246,61 +216,65 @@ void VolumeOfFluid<Dim>::sweep(int number) {
     even_out_rims(axis);
 
     const auto dilatation = [&](int a, Offset c, Index level) {
-        return swept_of_pack(a, c + layout_.stride[index(a)], level) - swept_of_pack(a, c, level);
+        return swept_of_pack(a, c + layout_.stride[a], level) - swept_of_pack(a, c, level);
     };
-    const Real* const moved = volume_flux_[index(axis)].data();
+    const Real* const moved = flux_[axis].data();
+    const Field<Real>* const room = liquid_.room();
     const bool last = number == Dim - 1;
-    for_band_packs([&](int, Offset c, Index level, const PackMask& band) {
-        const PackMask filled = detail::flags_at(filled_.data() + c);
-        Pack left = Pack::load_from_anywhere(moved + c + layout_.stride[index(axis)]) - Pack::load(moved + c);
+    surface_.for_band_packs([&](const BandPack& pack) {
+        const Offset c = pack.first;
+        const PackMask filled = flags_at(filled_[static_cast<std::size_t>(pack.plane)][pack.number].data());
+        Pack left = Pack::load_from_anywhere(moved + c + layout_.stride[axis]) - Pack::load(moved + c);
         if (any(filled)) {
             Pack added = Pack(0);
             if (!last)
-                added = dilatation(axis, c, level);
+                added = dilatation(axis, c, pack.level);
             else
-                for (int n = 0; n < number; ++n) added -= dilatation(axis_of(n), c, level);
+                for (int n = 0; n < number; ++n) added -= dilatation(axes[n], c, pack.level);
             left -= select(filled, added, Pack(0));
         }
-        Pack change = left * at_level(per_volume_, level);
-        if (room()) change /= Pack::load(room()->data() + c);
-        const Pack f = Pack::load(fraction_.data() + c);
-        select(band, f - change, f).store(fraction_.data() + c);
+        Pack change = left * sizes_.of_pack(sizes_.per_volume, pack.level);
+        if (room) change /= Pack::load(room->data() + c);
+        const Pack f = Pack::load(liquid_.fraction.data() + c);
+        select(pack.in_band, f - change, f).store(liquid_.fraction.data() + c);
     });
-    if (!last) fill_periodic(fraction_, layout_, boundaries_);
+    if (!last) fill_periodic(liquid_.fraction, layout_, liquid_.boundaries);
 }
 
 /// Faces of the band whose donor is full or dry, or a ghost: what is swept times its fraction. Whole packs:
 /// of others those with a cut donor get theirs from `fluxes_of_planes`, the rest again what `carry_bulk`
 /// gave.
 template <int Dim>
-void VolumeOfFluid<Dim>::fluxes_of_band(int axis) {
-    const Offset step = layout_.stride[index(axis)];
-    const bool is_outer = axis == Layout<Dim>::outer, is_inner = axis == inner;
+void Sweeps<Dim>::fluxes_of_band(int axis) {
+    const Offset step = layout_.stride[axis];
+    const bool is_outer = axis == outer, is_inner = axis == inner;
+    const WetRows<Dim>& active = surface_.active();
+    const Real* const fraction = liquid_.fraction.data();
     const int planes = layout_.planes(), rows = layout_.rows_per_plane() + !(is_outer || is_inner);
     const auto fluxes_of_plane = [&](int p) {
         for (int r = 0; r < rows; ++r) {
             // Upper faces of cells as well as lower ones.
-            RowRange range = active_.range(p, r);
+            RowRange range = active.range(p, r);
             const int plane_below = p - is_outer, row_below = r - !(is_outer || is_inner);
             if (is_inner)
                 range.end += !range.empty();
             else if (plane_below >= 0 && row_below >= 0)
-                range = hull(range, active_.range(plane_below, row_below));
+                range = hull(range, active.range(plane_below, row_below));
             const Offset start = layout_.row_start(p, r);
             for (int i = range.begin / pack_lanes * pack_lanes; i < range.end; i += pack_lanes) {
                 const Offset c = start + i;
-                const std::uint8_t* const band = band_.data() + c;
-                if (!any(detail::flags_at(band) | detail::flags_at(band - step))) continue;
-                const Pack speed = Pack::load((*velocity_)[index(axis)].data() + c);
-                const Pack f = select(speed > Pack(0), Pack::load_from_anywhere(fraction_.data() + c - step),
-                                      Pack::load(fraction_.data() + c));
-                const Pack share = select(f > Pack(1 - wisp), Pack(1), f);
+                const std::uint8_t* const band = surface_.band().data() + c;
+                if (!any(flags_at(band) | flags_at(band - step))) continue;
+                const Pack speed = Pack::load(velocity_[axis].data() + c);
+                const Pack f = select(speed > Pack(0), Pack::load_from_anywhere(fraction + c - step),
+                                      Pack::load(fraction + c));
+                const Pack share = select(f > Pack(1 - volume_tolerance::round_off), Pack(1), f);
                 const Pack flux = swept_of_pack(axis, c, Dim == 3 ? Index{r} : Index{i}) * share;
-                select(f < Pack(wisp), Pack(0), flux).store(volume_flux_[index(axis)].data() + c);
+                select(f < Pack(volume_tolerance::round_off), Pack(0), flux).store(flux_[axis].data() + c);
             }
         }
     };
-    active_.for_each_plane([&](int p) {
+    active.for_each_plane([&](int p) {
         fluxes_of_plane(p);
         if (is_outer && p + 1 == planes) fluxes_of_plane(planes);
     });
@@ -308,28 +282,29 @@ void VolumeOfFluid<Dim>::fluxes_of_band(int axis) {
 
 /// Faces through which cells that the surface cuts give liquid.
 template <int Dim>
-void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
+void Sweeps<Dim>::fluxes_of_planes(int axis) {
     constexpr Real next_to_nothing = 0.01;  // what round-off of a normal makes of nothing is far below it
-    const Offset step = layout_.stride[index(axis)];
-    const auto& u = (*velocity_)[index(axis)];
-    auto& moved = volume_flux_[index(axis)];
-    parallel_blocks(planes_.count(), [&](Index, Index first, Index last) {
+    const Offset step = layout_.stride[axis];
+    const SurfacePlanes<Dim>& planes = surface_.planes();
+    const auto& u = velocity_[axis];
+    auto& moved = flux_[axis];
+    parallel_blocks(planes.count(), [&](Index, Index first, Index last) {
         for (Index i = first; i < last; i += pack_lanes) {
             const int lanes = std::min<int>(pack_lanes, last - i);
-            std::array<Index, pack_lanes> item;
-            for (int l = 0; l < pack_lanes; ++l) item[index(l)] = i + std::min(l, lanes - 1);
+            PackCells item;
+            for (int l = 0; l < pack_lanes; ++l)
+                item[static_cast<std::size_t>(l)] = i + std::min(l, lanes - 1);
             CellPlane<Dim, Pack> plane;
-            for (std::size_t a = 0; a < Dim; ++a)
-                plane.normal[a] = detail::values_at(planes_.normal[a].data(), item);
-            plane.distance = detail::values_at(planes_.distance.data(), item);
+            for (std::size_t a = 0; a < Dim; ++a) plane.normal[a] = values_at(planes.normal[a].data(), item);
+            plane.distance = values_at(planes.distance.data(), item);
             Pack up{}, down{}, room{};
             for (int l = 0; l < pack_lanes; ++l) {
-                const auto k = static_cast<std::size_t>(item[index(l)]);
-                const Offset c = planes_.cell[k];
-                const Index level = planes_.level[k];
+                const auto k = static_cast<std::size_t>(item[static_cast<std::size_t>(l)]);
+                const Offset c = planes.cell[k];
+                const Index level = planes.level[k];
                 up.set(l, u[c + step] > 0 ? swept(axis, c + step, level) : 0);
                 down.set(l, u[c] < 0 ? -swept(axis, c, level) : 0);
-                room.set(l, open_volume(c, level));
+                room.set(l, liquid_.open_volume(c, level));
             }
             const auto given = [&](Pack volume, Pack side) {
                 return volume * slab_fraction(plane, axis, side, min(volume / room, Pack(1)));
@@ -342,13 +317,14 @@ void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
             const bool both = any(through_upper & (down > Pack(0)));
             if (both) again = given(down, Pack(-1));
             for (int l = 0; l < lanes; ++l) {
-                const Offset c = planes_.cell[static_cast<std::size_t>(item[index(l)])];
-                const auto or_stray = [&](Real from_slab, int way, Real volume) {
-                    const Real even = fraction_[c] * std::min(volume, room[l]);
-                    return from_slab < next_to_nothing * even && is_stray(axis, c, way) ? even : from_slab;
+                const Offset c = planes.cell[static_cast<std::size_t>(item[static_cast<std::size_t>(l)])];
+                const auto or_detached = [&](Real from_slab, int way, Real volume) {
+                    const Real even = liquid_.fraction[c] * std::min(volume, room[l]);
+                    return from_slab < next_to_nothing * even && is_detached_film(axis, c, way) ? even
+                                                                                                : from_slab;
                 };
-                if (up[l] > 0) moved[c + step] = or_stray(once[l], 1, up[l]);
-                if (u[c] < 0) moved[c] = -or_stray(up[l] > 0 ? again[l] : once[l], -1, down[l]);
+                if (up[l] > 0) moved[c + step] = or_detached(once[l], 1, up[l]);
+                if (u[c] < 0) moved[c] = -or_detached(up[l] > 0 ? again[l] : once[l], -1, down[l]);
             }
         }
     });
@@ -356,19 +332,19 @@ void VolumeOfFluid<Dim>::fluxes_of_planes(int axis) {
 
 /// The first and the last face of a periodic axis are one: what its donor found holds for both.
 template <int Dim>
-void VolumeOfFluid<Dim>::join_periodic(int axis) {
-    if (!boundaries_.periodic(axis)) return;
-    const auto& u = (*velocity_)[index(axis)];
-    auto& moved = volume_flux_[index(axis)];
-    const Offset length = layout_.cells[index(axis)] * layout_.stride[index(axis)];
+void Sweeps<Dim>::join_periodic(int axis) {
+    if (!liquid_.boundaries.periodic(axis)) return;
+    const auto& u = velocity_[axis];
+    auto& moved = flux_[axis];
+    const Offset length = layout_.cells[axis] * layout_.stride[axis];
     const auto join = [&](Offset face) {
         (u[face] > 0 ? moved[face] : moved[face + length]) = moved[u[face] > 0 ? face + length : face];
     };
-    active_.for_each_row([&](int p, int r, const RowRange& range) {
+    surface_.active().for_each_row([&](int p, int r, const RowRange& range) {
         const Offset start = layout_.row_start(p, r);
         if (axis == inner) {
             if (range.begin == 0) join(start);
-        } else if (axis == Layout<Dim>::outer ? p == 0 : r == 0) {
+        } else if (axis == outer ? p == 0 : r == 0) {
             for (int i = range.begin; i < range.end; ++i) join(start + i);
         }
     });
@@ -381,17 +357,46 @@ void VolumeOfFluid<Dim>::join_periodic(int axis) {
 /// it is alone: what belongs to a bore's roller stays with it. A wall that cuts the cell holds nothing back:
 /// what moves there moves along it.
 template <int Dim>
-bool VolumeOfFluid<Dim>::is_stray(int axis, Offset c, int way) const noexcept {
-    if (planes_.reconstructed[index(plane_of_[c])] != 0) return false;
-    const bool whole = !room() || (*room())[c] == 1;
-    const Offset behind = c - way * layout_.stride[index(axis)];
-    const bool open_behind = (marks_[behind] & cell_mark::open) != 0 &&
-                             ((marks_[behind] & cell_mark::inside) != 0 || boundaries_.periodic(axis));
-    if (fraction_[c] >= 0.5)
+bool Sweeps<Dim>::is_detached_film(int axis, Offset c, int way) const noexcept {
+    if (surface_.planes().reconstructed[static_cast<std::size_t>(surface_.plane_of(c))] != 0) return false;
+    const Field<Real>& f = liquid_.fraction;
+    const bool whole = !liquid_.room() || (*liquid_.room())[c] == 1;
+    const Offset behind = c - way * layout_.stride[axis];
+    const bool open_behind =
+        liquid_.is_open(behind) && (liquid_.is_inside(behind) || liquid_.boundaries.periodic(axis));
+    if (f[c] >= 0.5)
         for (int a = 0; a < Dim; ++a)
-            for (const Offset s : {-layout_.stride[index(a)], layout_.stride[index(a)]})
-                if (fraction_[c + s] >= 0.5) return false;
-    return open_behind ? fraction_[behind] < fraction_[c] : !whole || gravity_[axis] * way > 0;
+            for (const Offset s : {-layout_.stride[a], layout_.stride[a]})
+                if (f[c + s] >= 0.5) return false;
+    return open_behind ? f[behind] < f[c] : !whole || liquid_.gravity[axis] * way > 0;
 }
 
-}  // namespace abrade
+/// Full cells beyond the band took it that what flows through their faces is all liquid. Where a cell of the
+/// band beside them holds a trace of air in this sweep, too little to be a surface, they have a trace less.
+template <int Dim>
+void Sweeps<Dim>::even_out_rims(int axis) {
+    const Offset s = layout_.stride[axis];
+    const auto& moved = flux_[axis];
+    const SurfacePlanes<Dim>& planes = surface_.planes();
+    const SurfaceBand<Dim>& band = surface_.band();
+    for (const int side : {-1, 1})  // a cell is the neighbour of one: threads do not meet
+        parallel_for(planes.count(), [&](Index i) {
+            const auto k = static_cast<std::size_t>(i);
+            const Offset c = planes.cell[k];
+            if (band.airy(c)) return;  // all its neighbours are in the band
+            const Offset face = side > 0 ? c + s : c;
+            const Index face_level = planes.level[k] + (axis == vertical && side > 0 ? 1 : 0);
+            Offset n = c + side * s;
+            Index level = planes.level[k] + (axis == vertical ? side : 0);
+            if (!liquid_.is_inside(n)) {
+                if (!liquid_.boundaries.periodic(axis)) return;
+                n -= side * layout_.cells[axis] * s;
+                if (axis == vertical) level -= side * layout_.cells[vertical];
+            }
+            if (band.holds(n) || liquid_.fraction[n] != 1) return;
+            liquid_.volume_defect[n] +=
+                side * (moved[face] - swept(axis, face, face_level)) / liquid_.open_volume(n, level);
+        });
+}
+
+}  // namespace abrade::detail
