@@ -36,12 +36,12 @@ struct Pairs {
 template <ContactLaw Law, WearLaw Wear = NoWear>
 void contacts_in_cache(benchmark::State& state, const Law& law, const Wear& wear = {}) {
     Pairs<Law> pairs;
-    constexpr KernelKind kind{.wears = !std::same_as<Wear, NoWear>};
-    const std::vector<std::uint8_t> concrete_sides(Pairs<Law>::count, 1);
-    const PackRun run{.concrete_sides = concrete_sides.data()};
+    constexpr KernelKind kind{.watched = !std::same_as<Wear, NoWear>};
+    const std::vector<std::uint8_t> watched_sides(Pairs<Law>::count, 1);
+    const PackRun run{.watched_sides = watched_sides.data()};
     for (auto _ : state)
-        benchmark::DoNotOptimize(
-            respond<kind>(law, wear, std::span(pairs.packs), run, pairs.lines, ContactStep{1e-7, 0.5}));
+        benchmark::DoNotOptimize(respond<kind>(law, WearObserver(wear), std::span(pairs.packs), run,
+                                               pairs.lines, ContactStep{1e-7, 0.5}));
     state.counters["s/contact"] =
         benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(Pairs<Law>::count),
                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);

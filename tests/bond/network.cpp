@@ -1,7 +1,7 @@
 // The network: who is tied to the ground, what is pruned, and one bonded chain in tension.
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/network.hpp>
-#include <abrade/wear/wear_law.hpp>
+#include <abrade/dem/contacts/contact_observer.hpp>
 
 #include <doctest/doctest.h>
 
@@ -58,7 +58,7 @@ struct Rig {
         for (SphereLoad& load : store.lines.load) load.force.setZero(), load.torque_over_radius.setZero();
         BondSums sums;
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
-            sums += network.respond(slab, law, NoWear{}, store.lines, left, {1e-6, 0});
+            sums += network.respond(slab, law, NoObserver{}, store.lines, left, {1e-6, 0});
         return sums;
     }
     BondSums respond() { return respond(sound); }

@@ -28,7 +28,7 @@ TEST_CASE("a stone at rest on the floor of a full box at rest is carried, one li
             scene.add_sphere(0.5 * diameter, {.position = {0.001, 0.002, 0.5 * diameter}}, density);
             auto sim = tank_with(tank, std::move(scene));
             sim.run({.end_time = 0.2});
-            const Real carried = sim.world().state().flow_load[0].force.z();
+            const Real carried = sim.world().state().in_fluid.load[0].force.z();
             const Real height = sim.particles().position[0].z();
             MESSAGE(density << " kg/m3: carried " << carried / (water_density * g * pi / 6 * cube(diameter))
                             << " of rho g V, height " << height << " m");
@@ -69,7 +69,8 @@ TEST_CASE("where nothing moves the water runs to the end, observed or not") {
         auto sim = tank_with<HeightSurface>(tank, std::move(scene));
         sim.run({.end_time = 0.2, .observe_every = every});
         CHECK(sim.fluid_model().time() == doctest::Approx(0.2).epsilon(1e-12));
-        CHECK(sim.world().state().flow_load[0].force.z() > 0.5 * water_density * g * pi / 6 * cube(diameter));
+        CHECK(sim.world().state().in_fluid.load[0].force.z() >
+              0.5 * water_density * g * pi / 6 * cube(diameter));
     }
 }
 

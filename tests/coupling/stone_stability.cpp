@@ -72,7 +72,7 @@ TEST_CASE("a stone on the floor lies still, and weighs what it should") {
                 });
                 const auto& p = sim.particles();
                 const Vec3 moved = p.position[0] - Vec3(0.001, -0.001, 0.5 * diameter);
-                const Real carried = sim.world().state().flow_load[0].force.z() / buoyancy(diameter);
+                const Real carried = sim.world().state().in_fluid.load[0].force.z() / buoyancy(diameter);
                 MESSAGE((diameter / 0.0125)
                         << " cells, resolved from " << from << ", water " << water_step << " s: at most "
                         << late << " m/s, went " << moved.head<2>().norm() << " m aside; carried " << carried

@@ -44,7 +44,7 @@ TEST_CASE("a metre of water on a stone that lies on the bed: it weighs as much a
             high = std::max(high, now.particles().position[first_stone(now)].z() - 0.5 * diameter);
             if (now.time() < 0.6) return;
             late = std::max(late, fastest_stone(now));
-            carried += now.world().state().flow_load[first_stone(now)].force.z() / buoyancy(diameter),
+            carried += now.world().state().in_fluid.load[first_stone(now)].force.z() / buoyancy(diameter),
                 seen += 1;
         });
         MESSAGE("let go " << gap << " m above: at most " << high << " m high, then " << late
@@ -70,7 +70,7 @@ TEST_CASE("a stone that presses into the floor, with a cell below it that it clo
             const LinearSpring spring{{.stiffness = weight / deep, .restitution = 0.3, .friction = 0.3}};
             auto sim = simulate(scene).contact(spring).fluid(water_in<HeightSurface>(tank));
             sim.run({.end_time = 0.2});
-            const Real carried = sim.world().state().flow_load[0].force.z() / buoyancy(diameter);
+            const Real carried = sim.world().state().in_fluid.load[0].force.z() / buoyancy(diameter);
             MESSAGE(cells << " cells, " << off << " of one aside: carried " << carried << " of rho g V");
             CHECK(std::abs(carried - 1) < 3e-4);  // measured: 1e-4
         }

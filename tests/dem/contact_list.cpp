@@ -1,7 +1,7 @@
 // Pairs in slots, their memory over renewals of the list, and the loads on spheres.
 #include <abrade/dem/contacts/contact_list.hpp>
+#include <abrade/dem/contacts/contact_observer.hpp>
 #include <abrade/dem/laws/linear_spring.hpp>
-#include <abrade/wear/wear_law.hpp>
 
 #include <doctest/doctest.h>
 
@@ -26,6 +26,7 @@ struct Rig {
     Vec3 period = Vec3::Zero();
     SphereStore store{};
     ContactList<LinearSpring> contacts{};
+    std::vector<BodyMark> marks{};
     Real went = 0;  ///< elastic energy of pairs that went with a body [J]
 
     /// Renews lists after `gone` [body] left; the moved places of the rest are those of the lines.
@@ -37,14 +38,16 @@ struct Rig {
         p = rest;
         store.arrange(p, moved, 0.002, {Vec3::Zero(), period});
         const std::vector<Seeks> seeks(static_cast<std::size_t>(p.spheres()), Seeks::all);
-        contacts.rebuild(store, {p, walls, seeks, {}, 0.002, period}, {}, [](Index, Index) { return false; });
+        contacts.rebuild(store, {p, walls, seeks, marks, {}, 0.002, period}, {},
+                         [](Index, Index) { return false; });
         contacts.refine(store.lines, walls, 0.002);
     }
-    ContactSums respond(Real dt = 1e-5) {
+    template <ContactObserver Observer = NoObserver>
+    ContactSums respond(Real dt = 1e-5, const Observer& observer = {}) {
         for (SphereLoad& load : store.lines.load) load.force.setZero(), load.torque_over_radius.setZero();
         ContactSums sums;
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
-            sums += contacts.section(slab).respond(law, NoWear{}, walls, store.lines, {dt, 0.5});
+            sums += contacts.section(slab).respond(law, observer, walls, store.lines, {dt, 0.5});
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
             for (const SphereImage& image : store.images_of(slab)) store.collect(image);
         return sums;
@@ -152,19 +155,52 @@ TEST_CASE("a contact that opens books what its spring held, once") {
     CHECK(none.deepest <= 0);
 }
 
-TEST_CASE("concrete counts its losses once for each concrete side") {
+TEST_CASE("losses count once for each watched side") {
     const auto lost = [](Index sides) {
         Rig rig = row();
-        for (Index s = 0; s < sides; ++s) rig.p.site[static_cast<std::size_t>(1 + s)] = s;
+        rig.marks.resize(3);
+        for (Index s = 0; s < sides; ++s) rig.marks[static_cast<std::size_t>(1 + s)].watched = true;
         rig.list();
         rig.store.lines.motion[static_cast<std::size_t>(rig.store.slot_of(1))].velocity.x() = 1;
         return rig.respond();
     };
     CHECK(lost(0).lost_normal > 0);
-    CHECK(lost(0).concrete_lost_normal == 0);
-    CHECK(lost(1).concrete_lost_normal == lost(1).lost_normal);
-    CHECK(lost(2).concrete_lost_normal == 2 * lost(2).lost_normal);
-    CHECK(lost(2).concrete_lost_tangential == 2 * lost(2).lost_tangential);
+    CHECK(lost(0).watched_lost_normal == 0);
+    CHECK(lost(1).watched_lost_normal == lost(1).lost_normal);
+    CHECK(lost(2).watched_lost_normal == 2 * lost(2).lost_normal);
+    CHECK(lost(2).watched_lost_tangential == 2 * lost(2).lost_tangential);
+}
+
+/// The force of a contact; the first sees one at a time, the second a pack of them.
+struct SeesOne {
+    Real observe(const ContactKinematics<Real>&, const ContactLoad<Real>& load) const noexcept {
+        return load.force.dot(load.force);
+    }
+};
+struct SeesPacks {
+    template <class Number>
+    Number observe(const ContactKinematics<Number>&, const ContactLoad<Number>& load) const noexcept {
+        return load.force.dot(load.force);
+    }
+};
+static_assert(ContactObserver<SeesOne> && ContactObserver<SeesPacks>);
+
+TEST_CASE("an observer's answer goes to the watched spheres, whether it sees one contact or a pack") {
+    const auto seen = [](const auto& observer, bool watched) {
+        Rig rig = row();
+        rig.marks.resize(3);
+        for (BodyMark& mark : rig.marks) mark.watched = watched;
+        rig.list();
+        rig.respond(1e-5, observer);
+        CHECK(rig.load(0).observed == 0);
+        CHECK(rig.load(1).observed == rig.load(2).observed);
+        return std::pair(rig.load(1).observed, rig.load(1).force.squaredNorm());
+    };
+    const auto [one, force2] = seen(SeesOne{}, true);
+    CHECK(one > 0);
+    CHECK(one == doctest::Approx(force2).epsilon(1e-14).scale(0));
+    CHECK(seen(SeesPacks{}, true).first == doctest::Approx(one).epsilon(1e-14).scale(0));
+    CHECK(seen(SeesPacks{}, false).first == 0);
 }
 
 TEST_CASE("slabs, chunks and images: the same forces as pair by pair, in open and in periodic space") {

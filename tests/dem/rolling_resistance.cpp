@@ -1,9 +1,9 @@
 // Resistance to rolling: one contact at a time.
 #include <abrade/dem/contacts/contact_list.hpp>
+#include <abrade/dem/contacts/contact_observer.hpp>
 #include <abrade/dem/laws/hertz_mindlin.hpp>
 #include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/dem/laws/rolling_resistance.hpp>
-#include <abrade/wear/wear_law.hpp>
 
 #include <doctest/doctest.h>
 
@@ -236,13 +236,13 @@ TEST_CASE("unequal spheres feel opposite torques, not opposite levers") {
     const std::vector<Index> nothing;
     const std::vector<Seeks> seeks(2, Seeks::all);
     store.arrange(p, nothing, 0.002, {});
-    contacts.rebuild(store, {p, {}, seeks, {}, 0.002}, {}, [](Index, Index) { return false; });
+    contacts.rebuild(store, {p, {}, seeks, {}, {}, 0.002}, {}, [](Index, Index) { return false; });
     contacts.refine(store.lines, {}, 0.002);
     // Without friction what is left of the levers is the couple.
     const Linear law{{.contact = {.stiffness = 1e6}, .friction = 0.3}};
     ContactSums sums;
     for (Index slab = 0; slab < store.slabs.count(); ++slab)
-        sums += contacts.section(slab).respond(law, NoWear{}, {}, store.lines, {1e-5, 0.5});
+        sums += contacts.section(slab).respond(law, NoObserver{}, {}, store.lines, {1e-5, 0.5});
     const auto torque_over_radius = [&](Index sphere) {
         return store.lines.load[static_cast<std::size_t>(store.slot_of(sphere))].torque_over_radius;
     };

@@ -3,6 +3,7 @@
 
 #include <abrade/bond/bond_graph.hpp>
 #include <abrade/bond/bond_pack.hpp>
+#include <abrade/dem/contacts/contact_observer.hpp>
 #include <abrade/dem/store/sphere_store.hpp>
 
 #include <span>
@@ -12,8 +13,8 @@ namespace abrade {
 /// Sums over the bonds of one evaluation.
 struct BondSums {
     Real lost_bond = 0, lost_normal = 0, lost_tangential = 0, stored = 0;  ///< [J]
-    Real concrete_lost_normal = 0,
-         concrete_lost_tangential = 0;           ///< both sides of a broken bond are concrete [J]
+    Real watched_lost_normal = 0,
+         watched_lost_tangential = 0;            ///< both sides of a broken bond are watched [J]
     Index broken_tension = 0, broken_shear = 0;  ///< bonds that broke in this step
     Real deepest = 0;                            ///< compression over the smaller radius [-]
     Index deepest_bond = -1;
@@ -23,8 +24,8 @@ struct BondSums {
         lost_normal += other.lost_normal;
         lost_tangential += other.lost_tangential;
         stored += other.stored;
-        concrete_lost_normal += other.concrete_lost_normal;
-        concrete_lost_tangential += other.concrete_lost_tangential;
+        watched_lost_normal += other.watched_lost_normal;
+        watched_lost_tangential += other.watched_lost_tangential;
         broken_tension += other.broken_tension;
         broken_shear += other.broken_shear;
         if (other.deepest > deepest) deepest = other.deepest, deepest_bond = other.deepest_bond;
@@ -142,10 +143,10 @@ public:
     }
 
     /// Evaluates the law once for each bond of a slab, commits its memory and adds its answer to the loads.
-    /// `strength_left(body)` is what is left of that body's strength, `wear` is asked for the losses of
-    /// broken bonds.
-    template <class Wear, class StrengthLeft>
-    BondSums respond(Index slab, const Law& law, const Wear& wear, HotArrays& lines,
+    /// `strength_left(body)` is what is left of that body's strength, `observer` sees broken bonds,
+    /// which are contacts.
+    template <ContactObserver Observer, class StrengthLeft>
+    BondSums respond(Index slab, const Law& law, const Observer& observer, HotArrays& lines,
                      const StrengthLeft& strength_left, const ContactStep& step) noexcept {
         BondSums sums;
         PackBondSums all;
@@ -159,7 +160,7 @@ public:
             all.add(load);
             if (any(bond.compression > Pack(sums.deepest) * bond.radius)) look_deeper(bond, pack, sums);
             if (any(failure.tension | failure.shear)) note_fates(failure, pack, sums, breaks_[at(slab)]);
-            add_loads(reader, pack, load, arm, worn_off(wear, bond, load, pack, sums));
+            add_loads(reader, pack, load, arm, observed(observer, bond, load, pack, sums));
         }
         return all.into(sums);
     }
@@ -283,12 +284,12 @@ private:
             bonds_[at(broken.back())].memory.broken = 1;
         }
     }
-    /// What broken bonds, which are contacts, wear off either side [m3].
-    template <class Wear>
-    Pack worn_off(const Wear& wear, const BondKinematicsOf<Pack>& bond, const BondLoadOf<Pack>& load,
+    /// What an observer finds of either side of broken bonds, which are contacts.
+    template <ContactObserver Observer>
+    Pack observed(const Observer& observer, const BondKinematicsOf<Pack>& bond, const BondLoadOf<Pack>& load,
                   const BondPack<Law>& pack, BondSums& sums) const noexcept {
-        Pack worn = 0;
-        if (!pack.has_broken) return worn;
+        Pack seen = 0;
+        if (!pack.has_broken) return seen;
         for (int k = 0; k < pack_lanes; ++k) {
             const Index b = pack.bond[static_cast<std::size_t>(k)];
             if (b < 0 || !bonds_[at(b)].broken() || !(bond.compression[k] > 0)) continue;
@@ -299,14 +300,13 @@ private:
                                                   .curvature = 2 / bond.radius[k],
                                                   .time_step = bond.time_step,
                                                   .displacement = detail::lane_of(bond.displacement, k)};
-            const auto one =
-                wear.increment(contact, ContactLoad<Real>{detail::lane_of(load.force, k), load.stored[k],
-                                                          load.lost_normal[k], load.lost_tangential[k]});
-            worn.set(k, one.normal + one.tangential);
-            sums.concrete_lost_normal += 2 * load.lost_normal[k];
-            sums.concrete_lost_tangential += 2 * load.lost_tangential[k];
+            const ContactLoad<Real> answer{detail::lane_of(load.force, k), load.stored[k],
+                                           load.lost_normal[k], load.lost_tangential[k]};
+            seen.set(k, observer.observe(contact, answer));
+            sums.watched_lost_normal += 2 * load.lost_normal[k];
+            sums.watched_lost_tangential += 2 * load.lost_tangential[k];
         }
-        return worn;
+        return seen;
     }
 
     void put(Index b, Index lane, Index phantom) {

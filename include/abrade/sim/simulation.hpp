@@ -45,42 +45,22 @@ public:
     // first step.
 
     /// Adds a body; returns its id.
-    Index add_stone(Clump clump, const BodyState& state, Real density = 2650) {
-        return changed([&](auto change) { return change.add({std::move(clump), density, state}); });
-    }
-    Index add_sphere(Real radius, const BodyState& state, Real density = 2650) {
-        require_positive(radius, "Simulation.add_sphere: radius", "m");
-        return add_stone(make_clump("sphere", {{Vec3::Zero(), radius}}), state, density);
-    }
-    void remove(Index id) {
-        changed([&](auto change) { return change.remove(id), id; });
-    }
+    Index add_stone(Clump clump, const BodyState& state, Real density = 2650);
+    Index add_sphere(Real radius, const BodyState& state, Real density = 2650);
+    void remove(Index id);
     /// Returns the wall's number.
-    Index add_wall(const Vec3& point, const Vec3& normal, Index material = 0) {
-        return changed([&](auto change) { return change.add_wall(point, normal, material); });
-    }
-    void remove_wall(Index number) {
-        changed([&](auto change) { return change.remove_wall(number), number; });
-    }
-    void set_gravity(const Vec3& gravity) {
-        changed([&](auto change) { return change.set_gravity(gravity), 0; });
-    }
+    Index add_wall(const Vec3& point, const Vec3& normal, Index material = 0);
+    void remove_wall(Index number);
+    void set_gravity(const Vec3& gravity);
     /// Lets go a stone that is fixed, and holds one that moves, where it is.
-    void let_go(Index id) {
-        changed([&](auto change) { return change.let_go(id), id; });
-    }
-    void hold(Index id) {
-        changed([&](auto change) { return change.hold(id), id; });
-    }
+    void let_go(Index id);
+    void hold(Index id);
 
     // --- saving and going on later ---------------------------------------------------------------
 
     /// Makes of the scene what a run would begin with, without running: what a restart reads into
     /// (io/restart.hpp). Throws InputError where the scene cannot be used.
-    void build() {
-        static_assert(!std::same_as<C, ContactLawIsMissing>, "a simulation needs a contact law");
-        if (!world_) build_world();
-    }
+    void build();
     /// All of it that lasts. Between steps, as in `RunOptions::stop`, and between runs.
     static void fields(auto&& field) {
         field("world", &Simulation::world_), field("ledger", &Simulation::ledger_),
@@ -100,7 +80,7 @@ public:
     Real time_step() const noexcept { return time_step_; }                  ///< [s]
     const StableStep& stable_time_step() const { return limits().stable; }  ///< of dense surroundings
     /// What contacts and bonds allow as they stand, and a first touch of each body.
-    StableStep stable_step_now() const { return stable_now(std::numeric_limits<Real>::infinity()); }
+    StableStep stable_step_now() const;
     Index times_shortened() const noexcept { return shortened_; }  ///< the step, for contacts as they stood
     bool stopped() const noexcept { return stopped_; }             ///< by RunOptions::stop
     Real wall_seconds() const noexcept { return wall_seconds_; }
@@ -208,34 +188,15 @@ private:
     }
 
     /// Sees whether contacts, as they stand, still allow the step. One that was asked for is not changed.
-    bool shorten(const RunOptions& options) {
-        const StableStep now = StableStepNow(world_->state()).of_touching(time_step_);
-        if (!(now.seconds < time_step_) || now.seconds == 0) return false;
-        if (options.time_step > 0) raise({Failure::Cause::step_too_long, now.body, -1, now.seconds});
-        time_step_ = share_of_now * now.seconds;
-        ++shortened_;
-        return true;
-    }
+    bool shorten(const RunOptions& options);
 
     /// Grains of standing concrete are lighter than stones: the step is theirs while there are any.
-    bool follow_grains(const RunOptions& options, bool look) {
-        const auto& state = world_->state();
-        if (options.time_step > 0 || !state.sites.stand || (!look && has_grains_)) return false;
-        const bool grains = state.has_grains();
-        if (std::exchange(has_grains_, grains) == grains) return false;
-        time_step_ = usual_step(options);
-        return true;
-    }
+    bool follow_grains(const RunOptions& options, bool look);
     Real usual_step(const RunOptions& options) const {
         return options.safety * limits().stable_seconds(has_grains_);
     }
 
-    StableStep stable_now(Real most) const {
-        StableStep step = StableStepNow(world().state()).of_all(most);
-        if (world().state().nobody_moves())
-            step.lower(limits().stable.seconds, limits().stable.limit);  // of what is to be fed
-        return step;
-    }
+    StableStep stable_now(Real most) const;
 
     Index changed(auto&& change) {
         if (!opened_) throw std::logic_error("Simulation: change the scene instead, before the first run");
@@ -246,89 +207,18 @@ private:
         return found;
     }
 
-    void prepare(const RunOptions& options) {
-        const Scene& scene = world_ ? world_->scene() : scene_;
-        validate(options, time_, scene.gravity.isZero());
-        require(options.sleep_speed == 0 || (std::same_as<U, NoForceOnBodies> && scene.moving_walls.empty()),
-                {"RunOptions.sleep_speed", "0 where walls move or a force of yours acts on bodies", "m/s",
-                 "nobody knows when they would have to wake"},
-                options.sleep_speed);
-        if (!world_) build_world();
-        world_->set_skin(limits().skin(options.skin, range_of(contact_), world_->scene()));
-        world_->set_free_flight(options.free_flight);
-        world_->set_sleep(options.sleep_speed, options.sleep_after);
-        stopped_ = false;
-        settle_fluid(options);
-        if (!opened_) open();
-        if (options.time_step > 0) {
-            if (stable_now(options.time_step).seconds < options.time_step) {
-                const StableStep now = stable_step_now();
-                refuse_time_step(options.time_step, now.seconds, now.limit);
-            }
-            time_step_ = options.time_step;
-        } else {
-            time_step_ = usual_step(options);
-            shorten(options);
-        }
-        if (!std::isfinite(time_step_)) {  // nothing moves
-            const Real left = std::max(options.end_time - time_, 1e-300);
-            time_step_ = options.observe_every > 0 ? std::min(options.observe_every, left) : left;
-        }
-        balance();
-    }
+    void prepare(const RunOptions& options);
 
     /// From a copy: a scene that is refused stays whole, to be asked again.
-    void build_world() {
-        const bool empty =
-            std::same_as<F, NoFluid> && scene_.stones.empty() && !scene_.concrete && !scene_.feed;
-        world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_, force_}));
-        if (empty) {
-            world_.reset();
-            fail({"Scene.stones", "at least one, or concrete or a feed", "",
-                  "add_sphere() and add_stone() add bodies"},
-                 "none");
-        }
-        this->in_use_ = true;
-        limits_.emplace(*world_);
-    }
+    void build_world();
 
     /// One that begins earlier than the solids comes up to them, unless it is stopped; later it may follow.
-    void settle_fluid(const RunOptions& options) {
-        if constexpr (AdvancingFluid<F>) {
-            const auto start = Clock::now();
-            while (!stopped_ && fluid_model().time() < time_ && !(ResolvedFluid<F> && opened_)) {
-                const Real some = steps_between_checks * fluid_model().stable_step().seconds;
-                advance_fluid(std::min(time_, fluid_model().time() + some));
-                stopped_ = options.stop && options.stop();
-            }
-            wall_seconds_ += seconds_since(start);
-        }
-    }
+    void settle_fluid(const RunOptions& options);
 
     /// Finds the forces at the start, and what is wrong with it.
-    void open() {
-        world_->open(time_);
-        if (const Failure failure = world_->take_failure(); failure.cause == Failure::Cause::overlap) {
-            const std::string what = "Scene: overlap of " + name_of(world_->particles(), failure.body) +
-                                     " with " + name_of(world_->particles(), failure.other);
-            world_.reset(), this->in_use_ = false;
-            require(false,
-                    {what, "at most " + to_text(100 * World::overlap_limit) + " % of the smaller radius", "%",
-                     "move them apart"},
-                    100 * failure.measure);
-        }
-        remember();
-        opened_ = true;
-    }
+    void open();
 
-    void do_step(Real t) {
-        if (step_ - remembered_ >= steps_between_snapshots) remember();
-        advance_fluid(t + time_step_);
-        world_->step(t, time_step_, step_ % steps_between_checks == 0);
-        ++step_;
-        time_ = t + time_step_;
-        look_for_failure();
-    }
+    void do_step(Real t);
 
     void advance_fluid(Real t) {
         try {
@@ -343,34 +233,13 @@ private:
             raise(failure);
     }
 
-    [[noreturn]] void raise(const Failure& failure) {
-        world_->publish_places();
-        FailureMessage message{.failure = failure,
-                               .particles = particles(),
-                               .time_step = time_step_,
-                               .overlap_limit = World::overlap_limit,
-                               .stable = StableStepNow(world_->state()).of_touching(time_step_).seconds};
-        if (failure.cause == Failure::Cause::overlap && !failure.bonded)
-            message.remedy =
-                ImpactInquiry(law_between(world_->state().policies.contact, failure.contact.materials),
-                              failure.contact, time_step_, World::overlap_limit)
-                    .remedy();
-        raise(message.text(), particles().id[static_cast<std::size_t>(failure.body)]);
-    }
+    [[noreturn]] void raise(const Failure& failure);
     [[noreturn]] void raise(const std::string& what, Index id) const {
         throw run_error({step_, time_, time_step_}, what, id, last_good_.time);
     }
 
-    void balance() {
-        ledger_ = world_->publish();
-        look_for_failure();
-    }
-    void remember() {
-        world_->publish();
-        look_for_failure();
-        renew_snapshot(last_good_, world_->particles(), world_->concrete(), time_, step_);
-        remembered_ = step_;
-    }
+    void balance();
+    void remember();
 
     using PoliciesOf = Policies<std::conditional_t<ContactPolicy<C>, C, LinearSpring>, B, W, F, D, U>;
     using World = abrade::World<PoliciesOf>;
@@ -386,6 +255,201 @@ private:
     RunAtWork run_;
     bool resumes_ = false;  ///< that run is to go on
 };
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+Index Simulation<C, B, W, F, D, U>::add_stone(Clump clump, const BodyState& state, Real density) {
+    return changed([&](auto change) { return change.add({std::move(clump), density, state}); });
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+Index Simulation<C, B, W, F, D, U>::add_sphere(Real radius, const BodyState& state, Real density) {
+    require_positive(radius, "Simulation.add_sphere: radius", "m");
+    return add_stone(make_clump("sphere", {{Vec3::Zero(), radius}}), state, density);
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::remove(Index id) {
+    changed([&](auto change) { return change.remove(id), id; });
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+Index Simulation<C, B, W, F, D, U>::add_wall(const Vec3& point, const Vec3& normal, Index material) {
+    return changed([&](auto change) { return change.add_wall(point, normal, material); });
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::remove_wall(Index number) {
+    changed([&](auto change) { return change.remove_wall(number), number; });
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::set_gravity(const Vec3& gravity) {
+    changed([&](auto change) { return change.set_gravity(gravity), 0; });
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::let_go(Index id) {
+    changed([&](auto change) { return change.let_go(id), id; });
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::hold(Index id) {
+    changed([&](auto change) { return change.hold(id), id; });
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::build() {
+    static_assert(!std::same_as<C, ContactLawIsMissing>, "a simulation needs a contact law");
+    if (!world_) build_world();
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+StableStep Simulation<C, B, W, F, D, U>::stable_step_now() const {
+    return stable_now(std::numeric_limits<Real>::infinity());
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+bool Simulation<C, B, W, F, D, U>::shorten(const RunOptions& options) {
+    const StableStep now = StableStepNow(world_->state()).of_touching(time_step_);
+    if (!(now.seconds < time_step_) || now.seconds == 0) return false;
+    if (options.time_step > 0) raise({Failure::Cause::step_too_long, now.body, -1, now.seconds});
+    time_step_ = share_of_now * now.seconds;
+    ++shortened_;
+    return true;
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+bool Simulation<C, B, W, F, D, U>::follow_grains(const RunOptions& options, bool look) {
+    const auto& state = world_->state();
+    if (options.time_step > 0 || !state.sites.stand || (!look && has_grains_)) return false;
+    const bool grains = state.has_grains();
+    if (std::exchange(has_grains_, grains) == grains) return false;
+    time_step_ = usual_step(options);
+    return true;
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+StableStep Simulation<C, B, W, F, D, U>::stable_now(Real most) const {
+    StableStep step = StableStepNow(world().state()).of_all(most);
+    if (world().state().nobody_moves())
+        step.lower(limits().stable.seconds, limits().stable.limit);  // of what is to be fed
+    return step;
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::prepare(const RunOptions& options) {
+    const Scene& scene = world_ ? world_->scene() : scene_;
+    validate(options, time_, scene.gravity.isZero());
+    require(options.sleep_speed == 0 || (std::same_as<U, NoForceOnBodies> && scene.moving_walls.empty()),
+            {"RunOptions.sleep_speed", "0 where walls move or a force of yours acts on bodies", "m/s",
+             "nobody knows when they would have to wake"},
+            options.sleep_speed);
+    if (!world_) build_world();
+    world_->set_skin(limits().skin(options.skin, range_of(contact_), world_->scene()));
+    world_->set_free_flight(options.free_flight);
+    world_->set_sleep(options.sleep_speed, options.sleep_after);
+    stopped_ = false;
+    settle_fluid(options);
+    if (!opened_) open();
+    if (options.time_step > 0) {
+        if (stable_now(options.time_step).seconds < options.time_step) {
+            const StableStep now = stable_step_now();
+            refuse_time_step(options.time_step, now.seconds, now.limit);
+        }
+        time_step_ = options.time_step;
+    } else {
+        time_step_ = usual_step(options);
+        shorten(options);
+    }
+    if (!std::isfinite(time_step_)) {  // nothing moves
+        const Real left = std::max(options.end_time - time_, 1e-300);
+        time_step_ = options.observe_every > 0 ? std::min(options.observe_every, left) : left;
+    }
+    balance();
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::build_world() {
+    const bool empty = std::same_as<F, NoFluid> && scene_.stones.empty() && !scene_.concrete && !scene_.feed;
+    world_.emplace(State<PoliciesOf>(scene_, PoliciesOf{contact_, bond_, wear_, fluid_, drag_, force_}));
+    if (empty) {
+        world_.reset();
+        fail({"Scene.stones", "at least one, or concrete or a feed", "",
+              "add_sphere() and add_stone() add bodies"},
+             "none");
+    }
+    this->in_use_ = true;
+    limits_.emplace(*world_);
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::settle_fluid(const RunOptions& options) {
+    if constexpr (AdvancingFluid<F>) {
+        const auto start = Clock::now();
+        while (!stopped_ && fluid_model().time() < time_ && !(ResolvedFluid<F> && opened_)) {
+            const Real some = steps_between_checks * fluid_model().stable_step().seconds;
+            advance_fluid(std::min(time_, fluid_model().time() + some));
+            stopped_ = options.stop && options.stop();
+        }
+        wall_seconds_ += seconds_since(start);
+    }
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::open() {
+    world_->open(time_);
+    if (const Failure failure = world_->take_failure(); failure.cause == Failure::Cause::overlap) {
+        const std::string what = "Scene: overlap of " + name_of(world_->particles(), failure.body) +
+                                 " with " + name_of(world_->particles(), failure.other);
+        world_.reset(), this->in_use_ = false;
+        require(false,
+                {what, "at most " + to_text(100 * World::overlap_limit) + " % of the smaller radius", "%",
+                 "move them apart"},
+                100 * failure.measure);
+    }
+    remember();
+    opened_ = true;
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::do_step(Real t) {
+    if (step_ - remembered_ >= steps_between_snapshots) remember();
+    advance_fluid(t + time_step_);
+    world_->step(t, time_step_, step_ % steps_between_checks == 0);
+    ++step_;
+    time_ = t + time_step_;
+    look_for_failure();
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::raise(const Failure& failure) {
+    world_->publish_places();
+    FailureMessage message{.failure = failure,
+                           .particles = particles(),
+                           .time_step = time_step_,
+                           .overlap_limit = World::overlap_limit,
+                           .stable = StableStepNow(world_->state()).of_touching(time_step_).seconds};
+    if (failure.cause == Failure::Cause::overlap && !failure.bonded)
+        message.remedy =
+            ImpactInquiry(law_between(world_->state().policies.contact, failure.contact.materials),
+                          failure.contact, time_step_, World::overlap_limit)
+                .remedy();
+    raise(message.text(), particles().id[static_cast<std::size_t>(failure.body)]);
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::balance() {
+    ledger_ = world_->publish();
+    look_for_failure();
+}
+
+template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
+void Simulation<C, B, W, F, D, U>::remember() {
+    world_->publish();
+    look_for_failure();
+    renew_snapshot(last_good_, world_->particles(), world_->concrete(), time_, step_);
+    remembered_ = step_;
+}
 
 /// Starts a simulation; fill the slots, then run.
 inline Simulation<> simulate(Scene scene) {

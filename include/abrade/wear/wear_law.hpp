@@ -1,7 +1,7 @@
 #pragma once
 // What a wear law sees and answers, its concept, and the null policy.
 
-#include <abrade/dem/laws/contact_law.hpp>
+#include <abrade/dem/contacts/contact_observer.hpp>
 
 namespace abrade {
 
@@ -25,6 +25,26 @@ concept WearLaw = Law<W> &&
     { law.strength_left(Real{}) } noexcept -> std::same_as<Real>;
 };
 // clang-format on
+
+/// A wear law as it looks at contacts: the volume of either kind that one side wears in a step [m3].
+template <WearLaw W>
+class WearObserver {
+public:
+    explicit WearObserver(const W& law) noexcept : law_(&law) {}
+
+    template <class Number>
+    Number observe(const ContactKinematics<Number>& contact,
+                   const ContactLoad<Number>& load) const noexcept requires requires(const W& law) {
+        law.increment(contact, load);
+    }
+    {
+        const auto increment = law_->increment(contact, load);
+        return increment.normal + increment.tangential;
+    }
+
+private:
+    const W* law_;
+};
 
 /// A wear law with a time acceleration beta [-]: what it wears is proportional to it.
 // clang-format off
@@ -63,7 +83,7 @@ struct NoWear {
     Real strength_left(Real) const noexcept { return 1; }
 };
 
-static_assert(WearLaw<NoWear> && !AcceleratedWear<NoWear>);
+static_assert(WearLaw<NoWear> && !AcceleratedWear<NoWear> && ContactObserver<WearObserver<NoWear>>);
 static_assert(!WearLaw<NoParams>);
 
 }  // namespace abrade

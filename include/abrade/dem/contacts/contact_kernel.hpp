@@ -1,6 +1,7 @@
 #pragma once
 // One pack of contacts: lines in, the law's answer, lines out. The hottest code of the library.
 
+#include <abrade/dem/contacts/contact_observer.hpp>
 #include <abrade/dem/laws/contact_law.hpp>
 #include <abrade/dem/store/hot_arrays.hpp>
 #include <abrade/geometry/surfaces.hpp>
@@ -19,7 +20,7 @@ struct ContactStep {
     Real ahead = 0.5;
 };
 
-/// Which of the two are concrete that bonds hold, though it has a mass.
+/// Which of the two are held by bonds, though they have a mass.
 enum class HeldSides : std::uint8_t { none, first, second, both };
 constexpr HeldSides held_sides(bool first, bool second) noexcept {
     return static_cast<HeldSides>((first ? 1 : 0) + (second ? 2 : 0));
@@ -71,9 +72,9 @@ struct alignas(64) ContactPack {
 
 /// Sums over packs, lane by lane.
 struct PackSums {
-    Pack lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
-    Pack lost_rolling = 0, lost_film = 0;                         ///< [J]
-    Pack concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< once for each side of concrete [J]
+    Pack lost_normal = 0, lost_tangential = 0, stored = 0;      ///< [J]
+    Pack lost_rolling = 0, lost_film = 0;                       ///< [J]
+    Pack watched_lost_normal = 0, watched_lost_tangential = 0;  ///< once for each watched side [J]
     /// Overlap times (1/r_i + 1/r_j), planes as an equal sphere: at least 1 + r_small/r_large times overlap
     /// over the smaller radius [-].
     Pack deepest = 0;
@@ -82,8 +83,8 @@ struct PackSums {
     PackSums& operator+=(const PackSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential, stored += other.stored;
         lost_rolling += other.lost_rolling, lost_film += other.lost_film;
-        concrete_lost_normal += other.concrete_lost_normal;
-        concrete_lost_tangential += other.concrete_lost_tangential;
+        watched_lost_normal += other.watched_lost_normal;
+        watched_lost_tangential += other.watched_lost_tangential;
         deepest = max(deepest, other.deepest), wall_power += other.wall_power;
         return *this;
     }
@@ -173,20 +174,16 @@ ContactLoad<Pack> answer(const Law& law, const ContactKinematics<Pack>& contact,
     }
 }
 
-/// The wear law's, summed over its two kinds.
-template <class Wear>
-Pack worn_off(const Wear& wear, const ContactKinematics<Pack>& contact,
+template <ContactObserver Observer>
+Pack observed(const Observer& observer, const ContactKinematics<Pack>& contact,
               const ContactLoad<Pack>& load) noexcept {
-    if constexpr (requires { wear.increment(contact, load); }) {
-        const auto increment = wear.increment(contact, load);
-        return increment.normal + increment.tangential;
+    if constexpr (requires { observer.observe(contact, load); }) {
+        return observer.observe(contact, load);
     } else {
-        Pack worn = 0;
-        for (int lane = 0; lane < pack_lanes; ++lane) {
-            const auto increment = wear.increment(lane_of(contact, lane), lane_of(load, lane));
-            worn.set(lane, increment.normal + increment.tangential);
-        }
-        return worn;
+        Pack all = 0;
+        for (int lane = 0; lane < pack_lanes; ++lane)
+            all.set(lane, observer.observe(lane_of(contact, lane), lane_of(load, lane)));
+        return all;
     }
 }
 
@@ -261,14 +258,14 @@ void add_couples(const Vec3Of<Pack>& couple, const Lanes& pack, const LineReader
 /// What sets packs apart when the program is compiled, so that none has to ask.
 struct KernelKind {
     bool on_plane = false;  ///< spheres on one plane, which feels nothing
-    bool wears = false;     ///< concrete is among them
+    bool watched = false;   ///< spheres that an observer watches are among them
 };
 
 /// What the packs of one run share beside the step.
 struct PackRun {
-    const Plane* plane = nullptr;                  ///< for kinds on a plane, where lambda = 1 - overlap / 2r
-    const std::uint8_t* concrete_sides = nullptr;  ///< [pack x lane] of the two, for kinds that wear
-    const HeldSides* held_sides = nullptr;         ///< [pack x lane] the same, for a law that damps free mass
+    const Plane* plane = nullptr;                 ///< for kinds on a plane, where lambda = 1 - overlap / 2r
+    const std::uint8_t* watched_sides = nullptr;  ///< [pack x lane] of the two, for kinds that are watched
+    const HeldSides* held_sides = nullptr;        ///< [pack x lane] the same, for a law that damps free mass
 };
 
 /// Evaluates the law for packs of contacts, commits their memory and adds the answers to the spheres' loads.
@@ -276,8 +273,8 @@ struct PackRun {
 ///
 /// Dashpots see a velocity extrapolated to the present from the two half steps before, which is of second
 /// order and needs no acceleration.
-template <KernelKind kind, ContactLaw Law, class Wear>
-[[gnu::flatten]] PackSums respond(const Law& law, const Wear& wear, std::span<ContactPack<Law>> packs,
+template <KernelKind kind, ContactLaw Law, ContactObserver Observer>
+[[gnu::flatten]] PackSums respond(const Law& law, const Observer observer, std::span<ContactPack<Law>> packs,
                                   const PackRun& run, HotArrays& lines, const ContactStep step) noexcept {
     LineReader at(lines);
     constexpr Quad difference{{-1, -1, -1, 1}}, reaction{{-1, -1, -1, 1}};
@@ -328,7 +325,7 @@ template <KernelKind kind, ContactLaw Law, class Wear>
             contact.overlap = reach - distance;
         }
         contact.inverse_mass = inverse_mass;
-        if constexpr (kind.wears && !kind.on_plane && MayDampFreeMass<Law>)
+        if constexpr (kind.watched && !kind.on_plane && MayDampFreeMass<Law>)
             if (law.damps_free_mass())
                 contact.inverse_mass = detail::free_inverse_mass(
                     pack, run.held_sides + p * static_cast<std::size_t>(pack_lanes), at, inverse_mass);
@@ -356,7 +353,7 @@ template <KernelKind kind, ContactLaw Law, class Wear>
             contact.inverse_turning = inverse_turning;
             pack.before.spin = spin;
         }
-        if constexpr (kind.wears) {
+        if constexpr (kind.watched) {
             PackMask touched = pack.touched;
             if constexpr (ActsBeforeTouch<Law>)  // seen last, perhaps, while there was still a gap
                 touched = touched & (contact.overlap + contact.displacement.dot(contact.normal) > Pack(0));
@@ -379,18 +376,18 @@ template <KernelKind kind, ContactLaw Law, class Wear>
                     answer.force.dot(detail::packs_of(plane.now.velocity) + spin.cross(on_wall));
                 if constexpr (ResistsRolling<Law>) sums.wall_power += answer.couple.dot(spin);
             }
-        Pack worn = 0;
-        if constexpr (kind.wears) {
+        Pack seen = 0;
+        if constexpr (kind.watched) {
             Pack sides = 0;
             for (int k = 0; k < pack_lanes; ++k)
-                sides.set(k, run.concrete_sides[p * pack_lanes + static_cast<std::size_t>(k)]);
-            worn = detail::worn_off(wear, contact, answer);
-            sums.concrete_lost_normal += sides * answer.lost_normal;
-            sums.concrete_lost_tangential += sides * answer.lost_tangential;
+                sides.set(k, run.watched_sides[p * pack_lanes + static_cast<std::size_t>(k)]);
+            seen = detail::observed(observer, contact, answer);
+            sums.watched_lost_normal += sides * answer.lost_normal;
+            sums.watched_lost_tangential += sides * answer.lost_tangential;
         }
 
         const Vec3Of<Pack> torque_over_radius = answer.force.cross(arm);
-        const QuadRows forces = rows({answer.force.x(), answer.force.y(), answer.force.z(), worn});
+        const QuadRows forces = rows({answer.force.x(), answer.force.y(), answer.force.z(), seen});
         const QuadRows torques_over_radius =
             rows({torque_over_radius.x(), torque_over_radius.y(), torque_over_radius.z(), Pack(0)});
         // Read again: kept from above, sixteen offsets would crowd out the numbers.

@@ -61,6 +61,12 @@ ContactKinematics<Real> contact_seen_by(const Law& law, const HotArrays& lines, 
     return contact;
 }
 
+/// What a contact is to know of a body.
+struct BodyMark {
+    bool watched = false;  ///< an observer sees its contacts
+    bool held = false;     ///< bonds hold it, see HeldSides
+};
+
 /// The contacts of all slabs.
 template <ContactLaw Law>
 class ContactList {
@@ -71,6 +77,7 @@ public:
         const Particles& particles;
         std::span<const Plane> planes;
         std::span<const Seeks> seeks;       ///< [sphere]
+        std::span<const BodyMark> marks;    ///< [body] none: nobody watched or held
         std::span<const VerletPair> known;  ///< pairs of spheres that are found already
         Real skin = 0;                      ///< [m]
         Vec3 period = Vec3::Zero();         ///< [m]; 0 where space is open
@@ -161,9 +168,9 @@ private:
         Index spheres_low = 0, spheres_high = 0;           ///< lasting indices
         ImageShift shift{};                                ///< of the other
         bool needs_image = false, own_is_high = false;
-        bool own_held = false, other_held = false;  ///< concrete that bonds hold
+        bool own_held = false, other_held = false;
         MaterialPair materials{};
-        std::uint8_t concrete_sides = 0;
+        std::uint8_t watched_sides = 0;
         SphereStore::ImageRequest image() const noexcept { return {other, chunk, shift}; }
     };
 
@@ -178,14 +185,12 @@ private:
             centre[s] = store.lines.place[s].centre, radius[s] = store.lines.place[s].radius;
             body[s] = build.particles.body[sphere], seeks[s] = build.seeks[sphere];
         }
-        slab_.resize(count), concrete_.resize(count), held_.resize(count);
+        slab_.resize(count), mark_.assign(count, {});
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
             std::fill(slab_.begin() + store.first_slot(slab), slab_.begin() + store.first_slot(slab + 1),
                       slab);
-        for (std::size_t s = 0; s < count; ++s) {
-            concrete_[s] = build.particles.site[at(body[s])] >= 0 ? 1 : 0;
-            held_[s] = build.particles.kind[at(body[s])] == Kind::concrete;
-        }
+        if (!build.marks.empty())
+            for (std::size_t s = 0; s < count; ++s) mark_[s] = build.marks[at(body[s])];
         material_.assign(count, 0);
         if (build.by_material)
             for (std::size_t s = 0; s < count; ++s) material_[s] = build.particles.material[at(body[s])];
@@ -213,8 +218,9 @@ private:
         // A pair keeps its direction, whatever slots its spheres get: what it remembers has a sign.
         one.own_is_high = one.spheres_low > one.spheres_high;
         if (one.own_is_high) std::swap(one.spheres_low, one.spheres_high);
-        one.concrete_sides = static_cast<std::uint8_t>(concrete_[at(one.own)] + concrete_[at(one.other)]);
-        one.own_held = held_[at(one.own)], one.other_held = held_[at(one.other)];
+        one.watched_sides =
+            static_cast<std::uint8_t>(mark_[at(one.own)].watched + mark_[at(one.other)].watched);
+        one.own_held = mark_[at(one.own)].held, one.other_held = mark_[at(one.other)].held;
         one.materials = MaterialPair::of(material_[at(one.own)], material_[at(one.other)]);
         return one;
     }
@@ -231,7 +237,7 @@ private:
                 one.section = slab_[at(slot)];
                 one.own = slot, one.other = -1 - p;
                 one.spheres_low = sphere, one.spheres_high = -1 - p;
-                one.concrete_sides = concrete_[at(slot)];
+                one.watched_sides = mark_[at(slot)].watched;
                 if (build.by_material)
                     one.materials = MaterialPair::of(material_[at(slot)], build.planes[at(p)].material);
                 listed.push_back(one);
@@ -264,7 +270,7 @@ private:
     void share_out(const SphereStore& store, const std::vector<Listed>& listed,
                    const std::vector<Index>& first_kept) {
         const auto kind_of = [](const Listed& one) {
-            return ContactKind{one.other < 0 ? -1 - one.other : -1, one.materials, one.concrete_sides > 0};
+            return ContactKind{one.other < 0 ? -1 - one.other : -1, one.materials, one.watched_sides > 0};
         };
         const Index slabs = store.slabs.count();
         std::vector<std::size_t> first(at(slabs) + 1, 0);
@@ -297,14 +303,13 @@ private:
         const SlotPair pair = one.own_is_high ? SlotPair{one.other, one.own} : SlotPair{one.own, one.other};
         const HeldSides held = one.own_is_high ? held_sides(one.other_held, one.own_held)
                                                : held_sides(one.own_held, one.other_held);
-        return {pair, one.materials, one.concrete_sides, held, kept};
+        return {pair, one.materials, one.watched_sides, held, kept};
     }
 
     std::vector<ContactSection<Law>> sections_;  ///< [slab]
     std::vector<KeptContact<Law>> kept_;         ///< sorted by first sphere
     std::vector<Index> slab_;                    ///< [slot]
-    std::vector<std::uint8_t> concrete_;         ///< [slot] 1 where its body is concrete
-    std::vector<char> held_;                     ///< [slot] whether bonds hold it as part of the concrete
+    std::vector<BodyMark> mark_;                 ///< [slot]
     std::vector<Index> material_;                ///< [slot]
 };
 

@@ -11,20 +11,20 @@
 
 namespace abrade {
 
-/// Sums over the contacts of one evaluation. `concrete_*` count a loss once for each of the two bodies that
-/// is concrete.
+/// Sums over the contacts of one evaluation. `watched_*` count a loss once for each of the two spheres
+/// that is watched.
 struct ContactSums {
-    Real lost_normal = 0, lost_tangential = 0, stored = 0;        ///< [J]
-    Real lost_rolling = 0, lost_film = 0;                         ///< [J]
-    Real concrete_lost_normal = 0, concrete_lost_tangential = 0;  ///< [J]
-    Real deepest = 0;                                             ///< as in PackSums [-]
-    Real wall_power = 0;                                          ///< of walls that move, on spheres [W]
+    Real lost_normal = 0, lost_tangential = 0, stored = 0;      ///< [J]
+    Real lost_rolling = 0, lost_film = 0;                       ///< [J]
+    Real watched_lost_normal = 0, watched_lost_tangential = 0;  ///< [J]
+    Real deepest = 0;                                           ///< as in PackSums [-]
+    Real wall_power = 0;                                        ///< of walls that move, on spheres [W]
 
     ContactSums& operator+=(const ContactSums& other) noexcept {
         lost_normal += other.lost_normal, lost_tangential += other.lost_tangential;
         stored += other.stored, lost_rolling += other.lost_rolling, lost_film += other.lost_film;
-        concrete_lost_normal += other.concrete_lost_normal;
-        concrete_lost_tangential += other.concrete_lost_tangential;
+        watched_lost_normal += other.watched_lost_normal;
+        watched_lost_tangential += other.watched_lost_tangential;
         deepest = std::max(deepest, other.deepest), wall_power += other.wall_power;
         return *this;
     }
@@ -34,7 +34,7 @@ struct ContactSums {
 struct ContactKind {
     Index plane = -1;          ///< -1: spheres with each other
     MaterialPair materials{};  ///< one pair of them: one law
-    bool wears = false;        ///< concrete is among them
+    bool watched = false;      ///< spheres that an observer watches are among them
     auto operator<=>(const ContactKind&) const = default;
 };
 
@@ -78,7 +78,7 @@ public:
     struct Near {
         SlotPair pair;
         MaterialPair materials{};
-        std::uint8_t concrete_sides = 0;
+        std::uint8_t watched_sides = 0;
         HeldSides held = HeldSides::none;
         Index kept = -1;  ///< into what contacts of the last list remember, -1: nothing
     };
@@ -128,32 +128,32 @@ public:
 
     /// Evaluates the law once for each inner pair, commits its memory and adds its answer to the loads.
     /// `laws` is a Law, or a table of them by materials.
-    template <class Laws, class Wear>
-    ContactSums respond(const Laws& laws, const Wear& wear, std::span<const Plane> planes, HotArrays& lines,
-                        const ContactStep& step) noexcept {
+    template <class Laws, ContactObserver Observer>
+    ContactSums respond(const Laws& laws, const Observer& observer, std::span<const Plane> planes,
+                        HotArrays& lines, const ContactStep& step) noexcept {
         PackSums sums;
         for (const Run& run : runs_) {
             const ContactKind kind = kinds_[run.kind];
             const Law& law = law_between(laws, kind.materials);
             const auto packs = std::span(packs_).subspan(run.first, run.last - run.first);
             const PackRun shared{kind.plane < 0 ? nullptr : &planes[static_cast<std::size_t>(kind.plane)],
-                                 concrete_sides_.data() + run.first * lanes, held_of(run)};
-            if (kind.plane < 0 && kind.wears)
-                sums += abrade::respond<KernelKind{false, true}>(law, wear, packs, shared, lines, step);
+                                 watched_sides_.data() + run.first * lanes, held_of(run)};
+            if (kind.plane < 0 && kind.watched)
+                sums += abrade::respond<KernelKind{false, true}>(law, observer, packs, shared, lines, step);
             else if (kind.plane < 0)
-                sums += abrade::respond<KernelKind{false, false}>(law, wear, packs, shared, lines, step);
-            else if (kind.wears)
-                sums += abrade::respond<KernelKind{true, true}>(law, wear, packs, shared, lines, step);
+                sums += abrade::respond<KernelKind{false, false}>(law, observer, packs, shared, lines, step);
+            else if (kind.watched)
+                sums += abrade::respond<KernelKind{true, true}>(law, observer, packs, shared, lines, step);
             else
-                sums += abrade::respond<KernelKind{true, false}>(law, wear, packs, shared, lines, step);
+                sums += abrade::respond<KernelKind{true, false}>(law, observer, packs, shared, lines, step);
         }
         return {sum(sums.lost_normal),
                 sum(sums.lost_tangential),
                 sum(sums.stored),
                 sum(sums.lost_rolling),
                 sum(sums.lost_film),
-                sum(sums.concrete_lost_normal),
-                sum(sums.concrete_lost_tangential),
+                sum(sums.watched_lost_normal),
+                sum(sums.watched_lost_tangential),
                 largest(sums.deepest),
                 sum(sums.wall_power)};
     }
@@ -187,7 +187,7 @@ public:
     static void fields(auto&& field) {
         field.bytes("near", &ContactSection::near_), field.bytes("kinds", &ContactSection::kinds_),
             field.bytes("packs", &ContactSection::packs_), field("lane", &ContactSection::lane_),
-            field("concrete_sides", &ContactSection::concrete_sides_),
+            field("watched_sides", &ContactSection::watched_sides_),
             field("held_sides", &ContactSection::held_sides_), field.bytes("runs", &ContactSection::runs_),
             field("filled", &ContactSection::filled_), field("inner_pairs", &ContactSection::inner_pairs_),
             field("touching", &ContactSection::touching_), field("at_rest", &ContactSection::at_rest_),
@@ -223,7 +223,7 @@ private:
     }
 
     void begin_packs() {
-        packs_.clear(), lane_.clear(), runs_.clear(), concrete_sides_.clear(), held_sides_.clear();
+        packs_.clear(), lane_.clear(), runs_.clear(), watched_sides_.clear(), held_sides_.clear();
         filled_ = lanes, inner_pairs_ = touching_ = at_rest_ = 0;
     }
 
@@ -255,7 +255,7 @@ private:
             ContactPack<Law>& fresh = packs_.emplace_back();
             fresh.first.fill(line_offset(kinds_[kind].plane < 0 ? phantom_ : phantom_ + 2));
             fresh.second.fill(line_offset(phantom_ + 1));
-            lane_.resize(lane_.size() + lanes, -1), concrete_sides_.resize(lane_.size(), 0);
+            lane_.resize(lane_.size() + lanes, -1), watched_sides_.resize(lane_.size(), 0);
             if (!rests) ++runs_.back().last;
             filled_ = 0;
         }
@@ -264,7 +264,7 @@ private:
         pack.first[filled_] = line_offset(near_[n].pair.first);
         if (near_[n].pair.second >= 0) pack.second[filled_] = line_offset(near_[n].pair.second);
         const std::size_t place = (packs_.size() - 1) * lanes + filled_;
-        lane_[place] = static_cast<Index>(n), concrete_sides_[place] = near_[n].concrete_sides;
+        lane_[place] = static_cast<Index>(n), watched_sides_[place] = near_[n].watched_sides;
         if constexpr (MayDampFreeMass<Law>) {
             held_sides_.resize(lane_.size(), HeldSides::none);
             held_sides_[place] = near_[n].held;
@@ -286,15 +286,15 @@ private:
 
     static bool is_of(const Near& near, const ContactKind& kind) noexcept {
         return kind == ContactKind{near.pair.second < 0 ? -1 - near.pair.second : -1, near.materials,
-                                   near.concrete_sides > 0};
+                                   near.watched_sides > 0};
     }
 
     std::vector<Near> near_;
     std::vector<ContactKind> kinds_;  ///< of the Verlet pairs, in their order
     std::vector<ContactPack<Law>> packs_, old_packs_;
-    std::vector<Index> lane_;                   ///< [pack x lane] into near_, -1: left over
-    std::vector<std::uint8_t> concrete_sides_;  ///< [pack x lane]
-    std::vector<HeldSides> held_sides_;         ///< [pack x lane], of laws that may damp free mass
+    std::vector<Index> lane_;                  ///< [pack x lane] into near_, -1: left over
+    std::vector<std::uint8_t> watched_sides_;  ///< [pack x lane]
+    std::vector<HeldSides> held_sides_;        ///< [pack x lane], of laws that may damp free mass
     std::vector<Run> runs_;
     std::vector<Index> where_;  ///< [near] its lane before, while lists are refined
     std::size_t filled_ = lanes, inner_pairs_ = 0, touching_ = 0, at_rest_ = 0;

@@ -37,12 +37,12 @@ struct alignas(64) SphereMotion {
 /// radii, arm = lambda r, lambda = distance / (r_i + r_j): both spheres of a contact feel the same lever.
 struct alignas(64) SphereLoad {
     Vec3 force = Vec3::Zero();  ///< [N]
-    Real worn = 0;              ///< volume worn off in this step [m3]
+    Real observed = 0;          ///< what an observer of contacts has found in this step
     /// Sum of lambda f x n, and of couples over the radius; times that: the torque about the centre [N].
     Vec3 torque_over_radius = Vec3::Zero();
     Real mass = 0;  ///< of its body: no load, but its place is free [kg]
     static void fields(auto&& field) {
-        field("force", "N", &SphereLoad::force), field("worn", "m3", &SphereLoad::worn),
+        field("force", "N", &SphereLoad::force), field("observed", &SphereLoad::observed),
             field("torque_over_radius", "N", &SphereLoad::torque_over_radius),
             field("mass", "kg", &SphereLoad::mass);
     }

@@ -174,4 +174,12 @@ private:
     void for_each_sphere_column(auto&& f) { f(body), f(offset), f(radius), f(centre); }
 };
 
+/// Takes the rows of the bodies marked in `gone` [body] out of a column that stands beside Particles.
+void remove_rows(auto& column, const std::vector<char>& gone) {
+    std::size_t to = 0;
+    for (std::size_t from = 0; from < column.size(); ++from)
+        if (!gone[from]) column[to++] = column[from];
+    column.resize(to);
+}
+
 }  // namespace abrade

@@ -222,7 +222,8 @@ public:
     /// Hands what acts on an image to its owner.
     void collect(const SphereImage& image) noexcept {
         SphereLoad &from = lines.load[at(image.slot)], &to = lines.load[at(image.owner)];
-        to.force += from.force, to.worn += from.worn, to.torque_over_radius += from.torque_over_radius;
+        to.force += from.force, to.observed += from.observed,
+            to.torque_over_radius += from.torque_over_radius;
         from = {};
     }
 

@@ -48,22 +48,7 @@ public:
     std::string options() const { return describe_options<Options>(flow_.turbulence); }
 
     /// Throws InputError where parameters make no flow, and what given functions throw.
-    explicit GridFluid(Params params, Turbulence turbulence = {}, Solids solids = {}, Forcing forcing = {})
-        : flow_(std::move(params), std::move(turbulence), std::move(solids), std::move(forcing)),
-          stepper_(flow_) {
-        if constexpr (!has_surface) flow_.build_eddies(nullptr);
-        detail::give_velocity(*flow_.grid, flow_.params, flow_.velocity);
-        flow_.boundaries.fill(flow_.velocity);
-        stepper_.begin(flow_);
-        flow_.enters = flow_.boundaries.rate_of_inflow(flow_.velocity);
-        flow_.fastest = std::max(flow_.fastest, flow_.enters);
-        find_eddies();
-        flow_.look_at_forcing();
-        if constexpr (has_surface)
-            stepper_.begin_history(flow_, stable_step().seconds);
-        else
-            stepper_.begin_pressure(flow_);
-    }
+    explicit GridFluid(Params params, Turbulence turbulence = {}, Solids solids = {}, Forcing forcing = {});
 
     // --- what it is ------------------------------------------------------------------------------
 
@@ -88,20 +73,7 @@ public:
     // --- in time ---------------------------------------------------------------------------------
 
     /// The longest step that is stable from here.
-    FluidStep stable_step() const {
-        detail::StepCauses<Dim> causes{.viscosity = flow_.nu(), .fastest = flow_.fastest};
-        if constexpr (Turbulence::has_eddies)
-            causes.viscosity += flow_.eddies->largest(), causes.together = flow_.eddies->rate();
-        Point<Dim> gravity;
-        if constexpr (has_surface) gravity = flow_.params.acceleration(flow_.time), causes.gravity = &gravity;
-        if constexpr (Flow::has_forcing) causes.hastens = flow_.forced->hastens();
-        FluidStep step = detail::limit_of_step<Dim>(*flow_.grid, flow_.params, causes);
-        if constexpr (Flow::has_sources) step.lower(0.5 / flow_.forced->largest_rate(), "source");
-        if constexpr (has_surface) step = stepper_.limit(flow_, step);
-        if constexpr (Solids::present)
-            step = detail::step_among_solids(step, *flow_.grid, flow_.params, flow_.solids.fastest());
-        return detail::step_of_body_force(step, flow_.params, flow_.time);
-    }
+    FluidStep stable_step() const;
 
     /// In which a body crosses as much of a cell as it may in a step [s].
     Real step_of_body(Real speed) const { return flow_.params.courant * flow_.grid->smallest() / speed; }
@@ -151,12 +123,7 @@ public:
     }
 
     /// Differences over a cell, and over the last step.
-    FlowChange change(const Vec3& x, Real /*t*/) const noexcept {
-        const Real last = flow_.history.last;
-        return detail::flow_change<Dim>(grid(), params().boundaries.periodic_axes(), velocity(),
-                                        last > 0 ? &stepper_.velocity_before() : nullptr, last,
-                                        detail::in_plane<Dim>(x));
-    }
+    FlowChange change(const Vec3& x, Real /*t*/) const noexcept;
 
     /// Height of the water's surface at a place in the plane: floor and what stands on it [m].
     Real surface_at(const Point<Dim>& x) const noexcept requires has_surface {
@@ -171,9 +138,7 @@ public:
 
     /// Opens the energy account (WaterEnergy), or opens it anew: terms count from here. Without it steps do
     /// nothing for it.
-    void open_energy_account() {
-        flow_.energy.emplace(stepper_.energy_view(flow_), stepper_.velocity_that_carried(flow_));
-    }
+    void open_energy_account();
     bool has_energy_account() const noexcept { return flow_.energy.has_value(); }
     /// Throws std::logic_error where no account was opened.
     const WaterEnergy& energy() const {
@@ -200,6 +165,53 @@ private:
     Flow flow_;
     Stepper stepper_;
 };
+
+template <int Dim, FlowOptions Options>
+GridFluid<Dim, Options>::GridFluid(Params params, Turbulence turbulence, Solids solids, Forcing forcing)
+    : flow_(std::move(params), std::move(turbulence), std::move(solids), std::move(forcing)),
+      stepper_(flow_) {
+    if constexpr (!has_surface) flow_.build_eddies(nullptr);
+    detail::give_velocity(*flow_.grid, flow_.params, flow_.velocity);
+    flow_.boundaries.fill(flow_.velocity);
+    stepper_.begin(flow_);
+    flow_.enters = flow_.boundaries.rate_of_inflow(flow_.velocity);
+    flow_.fastest = std::max(flow_.fastest, flow_.enters);
+    find_eddies();
+    flow_.look_at_forcing();
+    if constexpr (has_surface)
+        stepper_.begin_history(flow_, stable_step().seconds);
+    else
+        stepper_.begin_pressure(flow_);
+}
+
+template <int Dim, FlowOptions Options>
+FluidStep GridFluid<Dim, Options>::stable_step() const {
+    detail::StepCauses<Dim> causes{.viscosity = flow_.nu(), .fastest = flow_.fastest};
+    if constexpr (Turbulence::has_eddies)
+        causes.viscosity += flow_.eddies->largest(), causes.together = flow_.eddies->rate();
+    Point<Dim> gravity;
+    if constexpr (has_surface) gravity = flow_.params.acceleration(flow_.time), causes.gravity = &gravity;
+    if constexpr (Flow::has_forcing) causes.hastens = flow_.forced->hastens();
+    FluidStep step = detail::limit_of_step<Dim>(*flow_.grid, flow_.params, causes);
+    if constexpr (Flow::has_sources) step.lower(0.5 / flow_.forced->largest_rate(), "source");
+    if constexpr (has_surface) step = stepper_.limit(flow_, step);
+    if constexpr (Solids::present)
+        step = detail::step_among_solids(step, *flow_.grid, flow_.params, flow_.solids.fastest());
+    return detail::step_of_body_force(step, flow_.params, flow_.time);
+}
+
+template <int Dim, FlowOptions Options>
+FlowChange GridFluid<Dim, Options>::change(const Vec3& x, Real /*t*/) const noexcept {
+    const Real last = flow_.history.last;
+    return detail::flow_change<Dim>(grid(), params().boundaries.periodic_axes(), velocity(),
+                                    last > 0 ? &stepper_.velocity_before() : nullptr, last,
+                                    detail::in_plane<Dim>(x));
+}
+
+template <int Dim, FlowOptions Options>
+void GridFluid<Dim, Options>::open_energy_account() {
+    flow_.energy.emplace(stepper_.energy_view(flow_), stepper_.velocity_that_carried(flow_));
+}
 
 template <int Dim, FlowOptions Options>
 void GridFluid<Dim, Options>::step(Real dt) {

@@ -48,7 +48,7 @@ public:
         const Particles& p = state_.particles;
         state_.accounts.sum.left_kinetic += p.kinetic_energy(body);
         state_.accounts.sum.left_potential += state_.potential_energy(body, p.position[at_of(body)]);
-        state_.removed.push_back(body);
+        state_.events.removed.push_back(body);
     }
 
     /// Lets go what was fixed: from now on it moves.
@@ -147,8 +147,8 @@ private:
     Index body_of(Index id) const {
         const auto& ids = state_.particles.id;
         for (Index b = 0; b < state_.particles.bodies(); ++b)
-            if (ids[at_of(b)] == id &&
-                std::find(state_.removed.begin(), state_.removed.end(), b) == state_.removed.end())
+            if (ids[at_of(b)] == id && std::find(state_.events.removed.begin(), state_.events.removed.end(),
+                                                 b) == state_.events.removed.end())
                 return b;
         fail({"Simulation: id", "of a body that is there", "", "Particles::id has them"}, std::to_string(id));
     }

@@ -34,7 +34,7 @@ public:
         const bool traffic =
             state.feed || state.scene.outlet || state.sites.recede() || !state.sites.worn_out.empty();
         const bool due = state.feed && age_ >= shortest_life && state.feed->due(t);
-        if ((traffic && age_ >= longest_life) || due || state.loosened)
+        if ((traffic && age_ >= longest_life) || due || state.events.loosened)
             renew(state, t, dt);
         else if ((2 * moved_ > inner_skin_ || state.flight.drifts > state.flight.horizon) &&
                  !refine(state, dt))
@@ -149,7 +149,7 @@ private:
                     pair.sphere < known_spheres ? departure.moved[at(pair.sphere)] : pair.sphere - left;
             mark_near(state, known, near), stand_by(state, near);
         }
-        grow_columns(state);
+        state.in_fluid.grow(state.particles), state.counter.grow(state.particles);
     }
 
     /// Slots in the order of slabs, wide enough for the skin.
@@ -166,7 +166,7 @@ private:
         built_at_.resize(at(state.store.spheres()));
         parallel_for(state.store.spheres(),
                      [&](Index s) { built_at_[at(s)] = state.store.lines.place[at(s)].centre; });
-        state.loosened = false;
+        state.events.loosened = false;
         age_ = 0, walls_moved_ = 0;
     }
 
@@ -262,14 +262,14 @@ private:
         d.moved.resize(at(state.store.spheres()));
         std::iota(d.moved.begin(), d.moved.end(), 0);
         if (state.sites.stand) retire(state, near, d.gone);
-        for (const Index body : std::exchange(state.removed, {})) d.gone[at(body)] = 1;
-        for (const Index site : std::exchange(state.worn_away, {}))
+        for (const Index body : std::exchange(state.events.removed, {})) d.gone[at(body)] = 1;
+        for (const Index site : std::exchange(state.events.worn_away, {}))
             if (const Index body = state.sites.body_of[at(site)]; body >= 0) {
                 if (p.inverse_mass[at(body)] > 0) leave(state, body, state.store.position_of(p, body), dt);
                 d.gone[at(body)] = 1;
             }
         if constexpr (P::has_bonds)
-            if (!state.components.empty()) {
+            if (!state.events.components.empty()) {
                 d.fragments = join_pieces(state, d.gone);
                 state.accounts.sum.lost_bond +=
                     state.network.drop([&](Index body) { return d.gone[at(body)] != 0; });
@@ -309,10 +309,7 @@ private:
         }
         state.accounts.sum.left_kinetic += 0.5 * state.particles.mass[at(body)] * v.squaredNorm() + turning;
         state.accounts.sum.left_potential += state.potential_energy(body, x - 0.5 * dt * v);
-        if (state.scene.flow_counter && state.particles.kind[at(body)] == Kind::stone)
-            state.cumulative_discharge +=
-                state.particles.volume[at(body)] *
-                ((x.x() >= *state.scene.flow_counter) - state.past_counter[at(body)]);
+        state.counter.leave(state.particles, body, x.x());
     }
 
     static void remove(State<P>& state, const Departure& departure) {
@@ -321,15 +318,8 @@ private:
                 state.sites.body_of[at(state.particles.site[b])] = -1;
         state.particles.remove(departure.gone);
         state.note_sites();
-        const auto compact = [&](auto& column) {
-            std::size_t to = 0;
-            for (std::size_t from = 0; from < column.size(); ++from)
-                if (!departure.gone[from]) column[to++] = column[from];
-            column.resize(to);
-        };
-        if constexpr (P::looks_ahead) compact(state.velocity_in_fluid);
-        if constexpr (P::fluid_resolves) compact(state.flow_load);
-        compact(state.past_counter);
+        state.in_fluid.remove(departure.gone);
+        state.counter.remove(departure.gone);
         leave_sleepers(state, departure.gone);
     }
 
@@ -345,18 +335,6 @@ private:
                     state.accounts.sum.fed_potential += state.potential_energy(body, before);
                 },
                 [&](const Vec3& x, Real reach) { return height_above_standing(state, x, reach); });
-    }
-
-    /// Of bodies that have just come.
-    static void grow_columns(State<P>& state) {
-        const Particles& p = state.particles;
-        if constexpr (P::looks_ahead)
-            for (std::size_t b = state.velocity_in_fluid.size(); b < p.velocity.size(); ++b)
-                state.velocity_in_fluid.push_back(p.velocity[b]);
-        if constexpr (P::fluid_resolves) state.flow_load.resize(p.velocity.size());
-        for (std::size_t b = state.past_counter.size(); b < p.position.size(); ++b)
-            state.past_counter.push_back(state.scene.flow_counter &&
-                                         p.position[b].x() >= *state.scene.flow_counter);
     }
 
     void find_pairs(State<P>& state) {
@@ -379,6 +357,12 @@ private:
         for (const SitePair& pair : near_sites_)
             if (const Index body = state.sites.body_of[at(pair.site)]; body >= 0 && pair.sphere >= 0)
                 known.push_back({pair.sphere, p.first_sphere[at(body)], pair.shift});
+        std::vector<BodyMark> marks;
+        if (state.scene.concrete) {
+            marks.resize(at(p.bodies()));
+            for (std::size_t b = 0; b < marks.size(); ++b)
+                marks[b] = {p.site[b] >= 0, p.kind[b] == Kind::concrete};
+        }
         std::vector<SphereStore::ImageRequest> requests;
         if constexpr (P::has_bonds) {
             state.network.arrange(state.store);
@@ -388,7 +372,7 @@ private:
             });
         }
         state.contacts.rebuild(state.store,
-                               {p, state.scene.walls, seeks, known, list_skin_ + film(state),
+                               {p, state.scene.walls, seeks, marks, known, list_skin_ + film(state),
                                 state.scene.periodic().period, P::has_materials},
                                std::move(requests), [&](Index first, Index second) {
                                    return P::has_bonds && state.network.holds({first, second});

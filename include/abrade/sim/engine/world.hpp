@@ -21,61 +21,16 @@ public:
     explicit World(State<P> state) : state_(std::move(state)) {}
 
     /// Before a step to `t`: a fluid that changes goes there, one among bodies follows them.
-    void advance_fluid(Real t) {
-        if constexpr (P::fluid_advances) {
-            Stopwatch watch{state_.policies.fluid.time() < t};
-            if (!P::fluid_resolves || t <= now_)  // to settle, nobody is in it yet
-                bring_fluid_to(state_.policies.fluid, t);
-            else if constexpr (P::fluid_resolves)
-                exchange_before(t);
-            watch.lap(fluid_seconds_);
-        }
-    }
+    void advance_fluid(Real t);
 
     /// Lists and forces at the start, over no time; the ledger begins.
-    void open(Real t) {
-        now_ = t;
-        lists_.renew(state_, now_, 0);
-        publish();
-        Ledger& start = state_.accounts.sum;
-        start.kinetic_start = ledger_.kinetic;
-        start.potential_start = ledger_.potential;
-        start.stored_start = ledger_.stored_contacts + ledger_.stored_bonds;
-        publish();
-    }
+    void open(Real t);
 
     /// From t to t + dt: v(t + dt/2) = v(t - dt/2) + a(t) dt, x(t + dt) = x(t) + v(t + dt/2) dt.
-    void step(Real t, Real dt, bool timed) {
-        if (dt != time_step_) change_step(dt);
-        now_ = t;
-        if (state_.sleep.speed > 0 && ++unlooked_ >= Sleep::steps_between_looks) look();
-        if (!evaluated_) make_ready(dt);
-        const Move move{whole_ ? 0.5 * dt : dt, dt, false, now_, ahead_in_fluid()};
-        pass(!evaluated_, &move, timed);
-        kicked_ += move.kick, last_kick_ = move.kick, led_here_ = dt, now_ = t + dt;
-        evaluated_ = whole_ = false;
-    }
+    void step(Real t, Real dt, bool timed);
 
     /// Writes the present state into `particles()` and the ledger. What moves is left as it is.
-    const Ledger& publish() {
-        catch_up();
-        const Move half = to_present();
-        const auto sums = parallel_sum<Published>(state_.particles.bodies(), [&](Index b) {
-            Published one;
-            publish_body(state_, b, half, one.motion);
-            one.kinetic = state_.particles.kinetic_energy(b);
-            one.potential = state_.potential_energy(b, state_.particles.position[at(b)]);
-            return one;
-        });
-        ledger_ = state_.accounts.total();
-        book(ledger_, sums.motion);
-        ledger_.wall_work += half.kick * wall_power_;
-        ledger_.kinetic = sums.kinetic, ledger_.potential = sums.potential;
-        ledger_.stored_contacts = stored_contacts_ + at_rest();
-        ledger_.stored_bonds = stored_bonds_;
-        count_passed();
-        return ledger_;
-    }
+    const Ledger& publish();
 
     /// Between steps: `change(Changes)` is made of velocities and particles that are those of now; then
     /// forces are found anew, over no time, with what contacts remember.
@@ -86,7 +41,7 @@ public:
         rouse_all(state_);
         change(Changes<P>(state_));
         state_.outline.renew(state_.scene, state_.policies);
-        state_.loosened = true;
+        state_.events.loosened = true;
         evaluated_ = false, led_here_ = kicked_ = last_kick_ = 0;
     }
 
@@ -94,20 +49,9 @@ public:
     void publish_places() { abrade::publish_places(state_); }
 
     void set_skin(Real skin) noexcept { lists_.set_skin(skin); }
-    void set_free_flight(bool allowed) {
-        // Each exchange asks where all are; what a force of the user's does over a flight nobody knows.
-        state_.flight.allowed = allowed && !P::fluid_resolves && !P::has_force;
-        find_flyers(state_);
-    }
+    void set_free_flight(bool allowed);
     /// As RunOptions says.
-    void set_sleep(Real speed, Real after) {
-        Sleep& sleep = state_.sleep;
-        const Real gravity = state_.scene.gravity.norm();
-        sleep.speed = speed;
-        sleep.after = after > 0 || gravity == 0 ? after : 200 * speed / gravity;
-        sleep.toppling = after > 0 || gravity == 0 ? 0 : 2 / std::sqrt(gravity);
-        if (speed == 0) rouse_all(state_);
-    }
+    void set_sleep(Real speed, Real after);
     Failure take_failure() noexcept { return std::exchange(failure_, {}); }
 
     const State<P>& state() const noexcept { return state_; }
@@ -117,7 +61,7 @@ public:
     const Network<decltype(P::bond)>& network() const noexcept { return state_.network; }
     const Concrete& concrete() const noexcept { return state_.concrete; }
     Real cumulative_discharge() const noexcept {
-        return state_.cumulative_discharge;
+        return state_.counter.passed();
     }  ///< solid, net downstream [m3]
     StepSeconds timed() const noexcept { return timed_; }
     Real renewal_seconds() const noexcept { return lists_.seconds(); }
@@ -178,12 +122,7 @@ private:
     }
 
     /// Before forces are evaluated, once for each time.
-    void make_ready(Real dt) {
-        move_walls(led_here_);
-        settle_concrete(state_, now_);
-        state_.free_loose_concrete();
-        lists_.freshen(state_, now_, dt);
-    }
+    void make_ready(Real dt);
 
     /// Brings walls that move to where they are now, in the step `led` that led here [s].
     void move_walls(Real led) {
@@ -222,17 +161,7 @@ private:
     }
 
     /// Sees who falls asleep. Forces are those of now, so nothing is lost or won in between.
-    void look() {
-        catch_up();
-        MotionSums sums;
-        const Real stored = at_rest();
-        if (fall_asleep(state_, to_present(), unlooked_ * time_step_, sums)) {
-            book(state_.accounts, sums);
-            lists_.repack(state_);
-            stored_contacts_ += stored - at_rest();
-        }
-        unlooked_ = 0;
-    }
+    void look();
     /// Stored in contacts that are not evaluated [J].
     Real at_rest() {
         if (std::exchange(state_.sleep.changed, false)) stored_at_rest_ = stored_at_rest(state_);
@@ -240,14 +169,7 @@ private:
     }
 
     /// Velocities come up to the present.
-    void make_whole() {
-        if (whole_) return;
-        catch_up();
-        const Move move{0.5 * time_step_, 0, true, now_, ahead_in_fluid()};
-        pass(false, &move, false);
-        kicked_ += move.kick, last_kick_ = move.kick;
-        whole_ = true;
-    }
+    void make_whole();
     /// Before a step of another length begins.
     void change_step(Real dt) {
         make_whole();
@@ -255,70 +177,20 @@ private:
     }
 
     /// Where a step to `t` is more than the fluid's, it comes to where solids are; if all stand, to `t`.
-    void exchange_before(Real t) {
-        auto& fluid = state_.policies.fluid;
-        if (fluid_due_.of(fluid) >= t) return;
-        const Real to = state_.nobody_moves() ? t : now_;
-        if (!(fluid.time() < to)) return;
-        make_whole();
-        FlowBodies<P> flow(state_);
-        fluid.advance(to, flow.bodies()), ++fluid_due_.met;
-        state_.accounts.sum.flow_work += flow.give_back(state_);
-        if constexpr (requires { fluid.solids_took(Real{}); })
-            fluid.solids_took(state_.accounts.sum.flow_work);
-    }
+    void exchange_before(Real t);
 
     /// Forces, if asked for, and motion, if asked for, of all slabs. A chunk's first slab comes last: the
     /// chunk before has a say in it.
-    void pass(bool evaluate, const Move* move, bool timed) {
-        const Slabs& slabs = state_.store.slabs;
-        const ContactStep step{led_here_, ahead()};
-        parts_.assign(at(slabs.chunks()), {});
-        parallel_tasks(slabs.chunks(), [&](Index c) {
-            PassSums& sums = parts_[at(c)];
-            Stopwatch watch{timed};
-            for (Index slab = slabs.first_slab(c); slab < slabs.first_slab(c + 1); ++slab) {
-                if (evaluate) evaluate_slab(slab, step, sums, watch);
-                if (slab > slabs.first_slab(c)) finish_slab(slab, evaluate, move, sums);
-                watch.lap(sums.seconds.motion);
-            }
-        });
-        parallel_tasks(slabs.chunks(), [&](Index c) {
-            Stopwatch watch{timed};
-            finish_slab(slabs.first_slab(c), evaluate, move, parts_[at(c)]);
-            watch.lap(parts_[at(c)].seconds.motion);
-        });
-        PassSums all;
-        for (const PassSums& part : parts_) {
-            all.contacts += part.contacts, all.bonds += part.bonds, all.motion += part.motion;
-            timed_ += part.seconds;
-            state_.presses.insert(state_.presses.end(), part.presses.begin(), part.presses.end());
-            state_.weakened.insert(state_.weakened.end(), part.weakened.begin(), part.weakened.end());
-        }
-        if (evaluate) book(all.contacts, all.bonds), kicked_ = 0, wall_power_ = all.contacts.wall_power;
-        report_overlap(move ? *move : Move{});
-        if (move) {
-            book(state_.accounts, all.motion);
-            state_.accounts.add(&Ledger::wall_work, move->kick * wall_power_);
-            state_.flight.note(move->kick, move->drift, move->time);
-            state_.sleep.stirred |= all.motion.stirs;
-            fluid_due_.fastest = std::max(std::sqrt(all.motion.fastest2), state_.flight.fastest_now());
-            const Real way = move->drift * fluid_due_.fastest;
-            lists_.note_step(way, move->drift * wall_speed_);
-            check(all.motion);
-            if (way > state_.smallest_radius)
-                land(state_), report(Diagnosis(state_).longest_stride(move->drift));
-            if (lists_.outrun()) report(Diagnosis(state_).fastest());
-        }
-    }
+    void pass(bool evaluate, const Move* move, bool timed);
 
     void evaluate_slab(Index slab, const ContactStep& step, PassSums& sums, Stopwatch& watch) noexcept {
         HotArrays& lines = state_.store.lines;
-        sums.contacts += state_.contacts.section(slab).respond(state_.policies.contact, state_.policies.wear,
+        const auto observer = state_.policies.observer();
+        sums.contacts += state_.contacts.section(slab).respond(state_.policies.contact, observer,
                                                                state_.scene.walls, lines, step);
         watch.lap(sums.seconds.contacts);
         if constexpr (P::has_bonds) {
-            sums.bonds += state_.network.respond(slab, state_.policies.bond, state_.policies.wear, lines,
+            sums.bonds += state_.network.respond(slab, state_.policies.bond, observer, lines,
                                                  state_.strength_left(), step);
             watch.lap(sums.seconds.bonds);
         }
@@ -350,18 +222,18 @@ private:
 
     void take_wear(Index slot, std::vector<Index>& weakened) {
         SphereLoad& load = state_.store.lines.load[at(slot)];
-        if (!(load.worn > 0)) return;
+        if (!(load.observed > 0)) return;
         const Index site = state_.particles.site[at(body_in(slot))];
         if (site >= 0) {
             const Real before = state_.concrete.fracture(site);
-            state_.concrete.wear(site, load.worn, now_, led_here_);
+            state_.concrete.wear(site, load.observed, now_, led_here_);
             state_.sites.note_worn(site);
             constexpr Real per_step = 1 / StandingBonds<decltype(P::bond)>::strength_step;
             if (state_.standing &&
                 std::floor(per_step * before) != std::floor(per_step * state_.concrete.fracture(site)))
                 weakened.push_back(site);
         }
-        load.worn = 0;
+        load.observed = 0;
     }
 
     /// Of what presses on a standing sphere, what is more than it bears for certain.
@@ -380,12 +252,12 @@ private:
         a.add(&Ledger::lost_sliding, contacts.lost_tangential + bonds.lost_tangential);
         a.add(&Ledger::lost_rolling, contacts.lost_rolling), a.add(&Ledger::lost_film, contacts.lost_film);
         a.add(&Ledger::lost_bond, bonds.lost_bond);
-        a.add(&Ledger::concrete_lost_normal, contacts.concrete_lost_normal + bonds.concrete_lost_normal);
+        a.add(&Ledger::concrete_lost_normal, contacts.watched_lost_normal + bonds.watched_lost_normal);
         a.add(&Ledger::concrete_lost_sliding,
-              contacts.concrete_lost_tangential + bonds.concrete_lost_tangential);
+              contacts.watched_lost_tangential + bonds.watched_lost_tangential);
         stored_contacts_ = contacts.stored, stored_bonds_ = bonds.stored;
         state_.broken_tension += bonds.broken_tension, state_.broken_shear += bonds.broken_shear;
-        state_.pattern_changed |= bonds.broken_tension + bonds.broken_shear > 0;
+        state_.events.bond_broke |= bonds.broken_tension + bonds.broken_shear > 0;
         too_deep_ |= contacts.deepest > overlap_limit * (1 + state_.size_ratio);
         if (bonds.deepest > overlap_limit) report(Diagnosis(state_).crushed_bond(bonds));
     }
@@ -414,17 +286,6 @@ private:
         report(Diagnosis(state_).unsound_or_lost());
     }
 
-    /// Stones past the flow counter, net.
-    void count_passed() {
-        if (!state_.scene.flow_counter) return;
-        for (Index b = 0; b < state_.particles.bodies(); ++b) {
-            if (state_.particles.kind[at(b)] != Kind::stone) continue;
-            const char past = state_.particles.position[at(b)].x() >= *state_.scene.flow_counter;
-            state_.cumulative_discharge +=
-                state_.particles.volume[at(b)] * (past - std::exchange(state_.past_counter[at(b)], past));
-        }
-    }
-
     State<P> state_;
     NeighbourLists<P> lists_;
     Ledger ledger_;                ///< as last published
@@ -444,5 +305,164 @@ private:
     StepSeconds timed_;
     Real fluid_seconds_ = 0;  ///< that a changing fluid took [s]
 };
+
+template <class P>
+void World<P>::advance_fluid(Real t) {
+    if constexpr (P::fluid_advances) {
+        Stopwatch watch{state_.policies.fluid.time() < t};
+        if (!P::fluid_resolves || t <= now_)  // to settle, nobody is in it yet
+            bring_fluid_to(state_.policies.fluid, t);
+        else if constexpr (P::fluid_resolves)
+            exchange_before(t);
+        watch.lap(fluid_seconds_);
+    }
+}
+
+template <class P>
+void World<P>::open(Real t) {
+    now_ = t;
+    lists_.renew(state_, now_, 0);
+    publish();
+    Ledger& start = state_.accounts.sum;
+    start.kinetic_start = ledger_.kinetic;
+    start.potential_start = ledger_.potential;
+    start.stored_start = ledger_.stored_contacts + ledger_.stored_bonds;
+    publish();
+}
+
+template <class P>
+void World<P>::step(Real t, Real dt, bool timed) {
+    if (dt != time_step_) change_step(dt);
+    now_ = t;
+    if (state_.sleep.speed > 0 && ++unlooked_ >= Sleep::steps_between_looks) look();
+    if (!evaluated_) make_ready(dt);
+    const Move move{whole_ ? 0.5 * dt : dt, dt, false, now_, ahead_in_fluid()};
+    pass(!evaluated_, &move, timed);
+    kicked_ += move.kick, last_kick_ = move.kick, led_here_ = dt, now_ = t + dt;
+    evaluated_ = whole_ = false;
+}
+
+template <class P>
+const Ledger& World<P>::publish() {
+    catch_up();
+    const Move half = to_present();
+    const auto sums = parallel_sum<Published>(state_.particles.bodies(), [&](Index b) {
+        Published one;
+        publish_body(state_, b, half, one.motion);
+        one.kinetic = state_.particles.kinetic_energy(b);
+        one.potential = state_.potential_energy(b, state_.particles.position[at(b)]);
+        return one;
+    });
+    ledger_ = state_.accounts.total();
+    book(ledger_, sums.motion);
+    ledger_.wall_work += half.kick * wall_power_;
+    ledger_.kinetic = sums.kinetic, ledger_.potential = sums.potential;
+    ledger_.stored_contacts = stored_contacts_ + at_rest();
+    ledger_.stored_bonds = stored_bonds_;
+    state_.counter.count(state_.particles);
+    return ledger_;
+}
+
+template <class P>
+void World<P>::set_free_flight(bool allowed) {
+    // Each exchange asks where all are; what a force of the user's does over a flight nobody knows.
+    state_.flight.allowed = allowed && !P::fluid_resolves && !P::has_force;
+    find_flyers(state_);
+}
+
+template <class P>
+void World<P>::set_sleep(Real speed, Real after) {
+    Sleep& sleep = state_.sleep;
+    const Real gravity = state_.scene.gravity.norm();
+    sleep.speed = speed;
+    sleep.after = after > 0 || gravity == 0 ? after : 200 * speed / gravity;
+    sleep.toppling = after > 0 || gravity == 0 ? 0 : 2 / std::sqrt(gravity);
+    if (speed == 0) rouse_all(state_);
+}
+
+template <class P>
+void World<P>::make_whole() {
+    if (whole_) return;
+    catch_up();
+    const Move move{0.5 * time_step_, 0, true, now_, ahead_in_fluid()};
+    pass(false, &move, false);
+    kicked_ += move.kick, last_kick_ = move.kick;
+    whole_ = true;
+}
+
+template <class P>
+void World<P>::make_ready(Real dt) {
+    move_walls(led_here_);
+    settle_concrete(state_, now_);
+    state_.free_loose_concrete();
+    lists_.freshen(state_, now_, dt);
+}
+
+template <class P>
+void World<P>::pass(bool evaluate, const Move* move, bool timed) {
+    const Slabs& slabs = state_.store.slabs;
+    const ContactStep step{led_here_, ahead()};
+    parts_.assign(at(slabs.chunks()), {});
+    parallel_tasks(slabs.chunks(), [&](Index c) {
+        PassSums& sums = parts_[at(c)];
+        Stopwatch watch{timed};
+        for (Index slab = slabs.first_slab(c); slab < slabs.first_slab(c + 1); ++slab) {
+            if (evaluate) evaluate_slab(slab, step, sums, watch);
+            if (slab > slabs.first_slab(c)) finish_slab(slab, evaluate, move, sums);
+            watch.lap(sums.seconds.motion);
+        }
+    });
+    parallel_tasks(slabs.chunks(), [&](Index c) {
+        Stopwatch watch{timed};
+        finish_slab(slabs.first_slab(c), evaluate, move, parts_[at(c)]);
+        watch.lap(parts_[at(c)].seconds.motion);
+    });
+    PassSums all;
+    for (const PassSums& part : parts_) {
+        all.contacts += part.contacts, all.bonds += part.bonds, all.motion += part.motion;
+        timed_ += part.seconds;
+        state_.events.put(part.presses, part.weakened);
+    }
+    if (evaluate) book(all.contacts, all.bonds), kicked_ = 0, wall_power_ = all.contacts.wall_power;
+    report_overlap(move ? *move : Move{});
+    if (move) {
+        book(state_.accounts, all.motion);
+        state_.accounts.add(&Ledger::wall_work, move->kick * wall_power_);
+        state_.flight.note(move->kick, move->drift, move->time);
+        state_.sleep.stirred |= all.motion.stirs;
+        fluid_due_.fastest = std::max(std::sqrt(all.motion.fastest2), state_.flight.fastest_now());
+        const Real way = move->drift * fluid_due_.fastest;
+        lists_.note_step(way, move->drift * wall_speed_);
+        check(all.motion);
+        if (way > state_.smallest_radius) land(state_), report(Diagnosis(state_).longest_stride(move->drift));
+        if (lists_.outrun()) report(Diagnosis(state_).fastest());
+    }
+}
+
+template <class P>
+void World<P>::exchange_before(Real t) {
+    auto& fluid = state_.policies.fluid;
+    if (fluid_due_.of(fluid) >= t) return;
+    const Real to = state_.nobody_moves() ? t : now_;
+    if (!(fluid.time() < to)) return;
+    make_whole();
+    FlowBodies<P> flow(state_);
+    fluid.advance(to, flow.bodies()), ++fluid_due_.met;
+    state_.accounts.sum.flow_work += flow.give_back(state_);
+    if constexpr (requires { fluid.solids_took(Real{}); }) fluid.solids_took(state_.accounts.sum.flow_work);
+}
+
+template <class P>
+void World<P>::look() {
+    catch_up();
+    MotionSums sums;
+    const Real stored = at_rest();
+    if (fall_asleep(state_, to_present(), unlooked_ * time_step_, sums)) {
+        book(state_.accounts, sums);
+        lists_.repack(state_);
+        stored_contacts_ += stored - at_rest();
+    }
+    unlooked_ = 0;
+}
 
 }  // namespace abrade

@@ -41,7 +41,7 @@ template <class P>
                     beside = state.acting_on(body, place.centre, motion.velocity,
                                              motion.curvature * motion.surface_velocity, move.time,
                                              move.ahead_in_fluid);
-                    state.velocity_in_fluid[static_cast<std::size_t>(body)] = motion.velocity;
+                    state.in_fluid.velocity[static_cast<std::size_t>(body)] = motion.velocity;
                     take_along(beside, load.force, mass, state.scene.gravity);
                 }
             }
@@ -82,7 +82,7 @@ template <class P>
                     beside = state.acting_on(clump.body, clump.position, clump.velocity,
                                              clump.angular_velocity(clump.angular_momentum), move.time,
                                              move.ahead_in_fluid);
-                    state.velocity_in_fluid[static_cast<std::size_t>(clump.body)] = clump.velocity;
+                    state.in_fluid.velocity[static_cast<std::size_t>(clump.body)] = clump.velocity;
                 }
             const ClumpLoad load = load_of(clump, lines);
             take_along(beside, load.force, clump.mass, state.scene.gravity);

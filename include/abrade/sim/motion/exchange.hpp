@@ -52,7 +52,7 @@ public:
                 spheres_.push_back({place.centre, place.radius});
             }
             FlowBody body{.id = p.id[at(b)], .volume = p.volume[at(b)]};
-            body.load = state.flow_load[at(b)];
+            body.load = state.in_fluid.load[at(b)];
             const bool free = p.inverse_mass[at(b)] > 0 && !state.sleep.asleep(b);
             if (const Index c = store.clump_of(b); c >= 0) {
                 const MovingClump& clump = store.clumps[at(c)];
@@ -86,7 +86,7 @@ public:
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
             const FlowBody& body = bodies_[i];
             const Index b = number_[i];
-            state.flow_load[at(b)] = body.load;
+            state.in_fluid.load[at(b)] = body.load;
             if (body.inverse_mass == 0) continue;
             const Real mass = state.particles.mass[at(b)];
             if (const Index c = state.store.clump_of(b); c >= 0) {

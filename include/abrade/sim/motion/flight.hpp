@@ -87,7 +87,7 @@ void land(State<P>& state) {
     };
     const auto note = [&](Index body, const Vec3& after, const Vec3& acceleration) {
         if constexpr (P::has_fluid)
-            state.velocity_in_fluid[static_cast<std::size_t>(body)] = after - flight.last * acceleration;
+            state.in_fluid.velocity[static_cast<std::size_t>(body)] = after - flight.last * acceleration;
     };
     MotionSums sums = parallel_sum<MotionSums>(store.spheres(), [&](Index slot) {
         MotionSums one;

@@ -80,7 +80,7 @@ std::vector<Fragment> join_pieces(State<P>& state, std::vector<char>& gone) {
         });
     std::vector<Fragment> fragments;
     const auto waits = [&](Index site) { return pressed[at(site)] != 0; };
-    std::erase_if(state.components, [&](const BondGraph::Component& component) {
+    std::erase_if(state.events.components, [&](const BondGraph::Component& component) {
         if (std::any_of(component.begin(), component.end(), waits)) return false;
         for (const BondGraph::Component& part : state.network.graph().parts(component)) {
             std::vector<Index> bodies;

@@ -92,7 +92,7 @@ void put_to_sleep(State<P>& state, Index body) {
         MovingClump& clump = state.store.clumps[static_cast<std::size_t>(c)];
         clump.velocity.setZero(), clump.angular_momentum.setZero();
     }
-    if constexpr (P::looks_ahead) state.velocity_in_fluid[static_cast<std::size_t>(body)].setZero();
+    if constexpr (P::looks_ahead) state.in_fluid.velocity[static_cast<std::size_t>(body)].setZero();
     ++state.sleep.count, state.sleep.changed = true;
 }
 

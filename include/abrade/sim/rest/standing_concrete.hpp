@@ -151,8 +151,8 @@ void settle_concrete(State<P>& state, Real time) {
     }
     if constexpr (P::has_bonds)
         if (state.standing) {
-            for (const Index site : std::exchange(state.weakened, {})) state.standing->weakened(site);
-            std::vector<Press>& presses = state.presses;
+            for (const Index site : std::exchange(state.events.weakened, {})) state.standing->weakened(site);
+            std::vector<Press>& presses = state.events.presses;
             std::sort(presses.begin(), presses.end(),
                       [](const Press& a, const Press& b) { return a.site < b.site; });
             if (!presses.empty() || !emptied.empty()) {

@@ -41,6 +41,14 @@ struct Policies {
     [[no_unique_address]] D drag;
     [[no_unique_address]] U force{};
 
+    /// Who looks at the contacts of concrete.
+    auto observer() const noexcept {
+        if constexpr (has_wear)
+            return WearObserver<W>(wear);
+        else
+            return NoObserver{};
+    }
+
     /// Laws are what they are; a fluid that goes on may have much to list.
     static void fields(auto&& field) {
         static_assert(ListsFields<F> || !AdvancingFluid<F>,

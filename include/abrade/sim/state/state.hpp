@@ -9,6 +9,9 @@
 #include <abrade/sim/scene/scene.hpp>
 #include <abrade/sim/scene/scene_outline.hpp>
 #include <abrade/sim/scene/site_bodies.hpp>
+#include <abrade/sim/state/bodies_in_fluid.hpp>
+#include <abrade/sim/state/events.hpp>
+#include <abrade/sim/state/flow_counter.hpp>
 #include <abrade/sim/state/integration_mode.hpp>
 #include <abrade/sim/state/ledger.hpp>
 
@@ -18,8 +21,9 @@ namespace abrade {
 /// `store`.
 template <class P>
 struct State {
-    State(Scene from, P chosen) : policies(std::move(chosen)), scene(std::move(from)) {
-        scene.validate();
+    State(Scene from, P chosen)
+        : policies(std::move(chosen)), scene((from.validate(), std::move(from))),
+          counter(scene.flow_counter) {
         outline = SceneOutline(scene, policies);
         if (scene.feed) feed.emplace(*scene.feed);
         if (scene.concrete) add_concrete(*scene.concrete);
@@ -50,25 +54,16 @@ struct State {
     Concrete concrete;
     SiteBodies sites;
     std::optional<StandingBonds<decltype(P::bond)>> standing;  ///< of quasi-static concrete
-    std::vector<Press> presses;                                ///< on it, beyond what it bears for certain
-    std::vector<Index> weakened;                               ///< sites whose strength has fallen by a step
-    std::vector<Index> worn_away;                              ///< sites whose bodies are to be taken out
     std::vector<Index> stone_id;                               ///< of each stone of the scene
-    std::vector<Index> removed;                    ///< bodies that a user takes out, until lists are renewed
-    Index let_go_count = 0;                        ///< spheres of standing concrete that came loose
-    std::vector<BondGraph::Component> components;  ///< that came loose and are to go on as clumps
+    Index let_go_count = 0;  ///< spheres of standing concrete that came loose
+    Events events;
     std::optional<Feed> feed;
     Accounts accounts;  ///< works and losses up to the velocities that the lines hold
-    /// [body] that drag or the user's force was last reckoned with [m/s]; empty without either.
-    std::vector<Vec3> velocity_in_fluid;
-    std::vector<FlowLoad> flow_load;  ///< [body] from the last exchange with a fluid that resolves bodies
+    BodiesInFluid<P> in_fluid;
+    FlowCounter counter;
     Index broken_tension = 0, broken_shear = 0;
-    bool pattern_changed = false;    ///< a bond broke
-    bool loosened = false;           ///< concrete came loose or is gone
-    Real smallest_radius = 0;        ///< of a sphere [m]
-    Real size_ratio = 1;             ///< smallest radius over largest [-]
-    Real cumulative_discharge = 0;   ///< solid, net downstream [m3]
-    std::vector<char> past_counter;  ///< [body]
+    Real smallest_radius = 0;  ///< of a sphere [m]
+    Real size_ratio = 1;       ///< smallest radius over largest [-]
 
     static void fields(auto&& field) {
         field("scene", &State::outline), field("policies", &State::policies),
@@ -77,16 +72,11 @@ struct State {
             field("sleep", &State::sleep), field("contacts", &State::contacts),
             field("network", &State::network), field("concrete", &State::concrete),
             field("sites", &State::sites), field("standing", &State::standing),
-            field.bytes("presses", &State::presses), field("weakened", &State::weakened),
-            field("worn_away", &State::worn_away), field("let_go_count", &State::let_go_count),
-            field("components", &State::components), field("feed", &State::feed),
-            field("accounts", &State::accounts), field("velocity_in_fluid", "m/s", &State::velocity_in_fluid),
-            field("flow_load", &State::flow_load), field("broken_tension", &State::broken_tension),
-            field("broken_shear", &State::broken_shear), field("pattern_changed", &State::pattern_changed),
-            field("loosened", &State::loosened), field("smallest_radius", "m", &State::smallest_radius),
-            field("size_ratio", &State::size_ratio),
-            field("cumulative_discharge", "m3", &State::cumulative_discharge),
-            field("past_counter", &State::past_counter);
+            field("let_go_count", &State::let_go_count), field("events", &State::events),
+            field("feed", &State::feed), field("accounts", &State::accounts),
+            field("in_fluid", &State::in_fluid), field("counter", &State::counter),
+            field("broken_tension", &State::broken_tension), field("broken_shear", &State::broken_shear),
+            field("smallest_radius", "m", &State::smallest_radius), field("size_ratio", &State::size_ratio);
     }
 
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
@@ -155,7 +145,7 @@ struct State {
             if (feels_fluid(body))
                 static_cast<typename P::FromFluid&>(load) = fluid_on(body, position, velocity, t, ahead);
         if constexpr (P::has_force) {
-            const Vec3 now = velocity + ahead * (velocity - velocity_in_fluid[at(body)]);
+            const Vec3 now = velocity + ahead * (velocity - in_fluid.velocity[at(body)]);
             load.given =
                 policies.force(BodyView{particles.id[at(body)], particles.kind[at(body)], position, now, spin,
                                         particles.mass[at(body)], particles.volume[at(body)]},
@@ -167,9 +157,9 @@ struct State {
     auto fluid_on(Index body, [[maybe_unused]] const Vec3& position, [[maybe_unused]] const Vec3& velocity,
                   [[maybe_unused]] Real t, [[maybe_unused]] Real ahead) const noexcept {
         if constexpr (P::fluid_resolves) {
-            return flow_load[at(body)];
+            return in_fluid.load[at(body)];
         } else {
-            const Vec3 now = velocity + ahead * (velocity - velocity_in_fluid[at(body)]);
+            const Vec3 now = velocity + ahead * (velocity - in_fluid.velocity[at(body)]);
             const FluidSample sample = policies.fluid.sample(position, t);
             const Immersed immersed{position, now, particles.volume[at(body)]};
             if constexpr (FeelsInertia<decltype(policies.drag)>)
@@ -183,16 +173,16 @@ struct State {
     /// Lets concrete go whose last bond to the ground broke.
     void free_loose_concrete() {
         if constexpr (P::has_bonds) {
-            if (!std::exchange(pattern_changed, false)) return;
+            if (!std::exchange(events.bond_broke, false)) return;
             for (const BondGraph::Component& component : network.take_loose()) {
                 if (component.size() > 1 && scene.concrete->fragments == Fragments::clumps)
-                    components.push_back(component);
+                    events.components.push_back(component);
                 for (const Index site : component) {
                     if (concrete.gone(site)) continue;  // worn away
                     concrete.set_gone(site);
                     if (const Index body = sites.body_of[at(site)]; body >= 0)
                         particles.kind[at(body)] = Kind::grain;
-                    loosened = true;
+                    events.loosened = true;
                 }
             }
         }
@@ -201,10 +191,10 @@ struct State {
     /// The sphere of a site is worn out and vanishes.
     void wear_away(Index site) {
         if constexpr (P::has_bonds)
-            if (!sites.stand) network.sever(site), pattern_changed = true;
+            if (!sites.stand) network.sever(site), events.bond_broke = true;
         leave_place(site);
-        if (sites.body_of[at(site)] >= 0) worn_away.push_back(site);
-        loosened = true;
+        if (sites.body_of[at(site)] >= 0) events.worn_away.push_back(site);
+        events.loosened = true;
     }
 
     /// The sphere of a site that stands is free from now on: a grain. One that has sunk into another, or that
@@ -223,7 +213,7 @@ struct State {
             store.lines.motion[at(store.slot_of(sphere))].inverse_mass = 1 / mass;
         accounts.sum.fed_potential += potential_energy(body, particles.position[at(body)]);
         leave_place(site);
-        loosened = true;
+        events.loosened = true;
     }
 
     /// Concrete that is where it was built touches nobody but those it is bonded to. Bonds that hold are no
@@ -330,7 +320,7 @@ private:
         if (sites.stand) sites.place = std::move(centre);
         concrete = Concrete(std::move(block.lattice), block.fracture_volume, block.overflow, block.worn_out);
         if (sites.stand) return;
-        pattern_changed = true;  // a packing may have spheres that nothing ties
+        events.bond_broke = true;  // a packing may have spheres that nothing ties
         free_loose_concrete();
     }
 

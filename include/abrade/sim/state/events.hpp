@@ -1,0 +1,38 @@
+#pragma once
+// What has happened in a simulation and is yet to be dealt with.
+
+#include <abrade/bond/bond_graph.hpp>
+#include <abrade/bond/standing_bonds.hpp>
+#include <abrade/core/fields.hpp>
+
+#include <vector>
+
+namespace abrade {
+
+/// Who finds something puts it here; it is dealt with before the next forces (`World::make_ready`), in this
+/// order, or where lists are renewed.
+struct Events {
+    // Put by an evaluation, taken by `settle_concrete`.
+    std::vector<Press> presses;   ///< on quasi-static concrete, beyond what it bears for certain
+    std::vector<Index> weakened;  ///< sites whose strength has fallen by a step
+    // Put by an evaluation and by wear, taken by `State::free_loose_concrete`.
+    bool bond_broke = false;
+    // Put by these two and by changes between runs, taken by a renewal of lists.
+    std::vector<Index> worn_away;                  ///< sites whose bodies are to go
+    std::vector<Index> removed;                    ///< bodies that a user takes out
+    std::vector<BondGraph::Component> components;  ///< that came loose and are to go on as clumps
+    bool loosened = false;                         ///< concrete came loose or is gone: lists are due
+
+    void put(const std::vector<Press>& new_presses, const std::vector<Index>& new_weakened) {
+        presses.insert(presses.end(), new_presses.begin(), new_presses.end());
+        weakened.insert(weakened.end(), new_weakened.begin(), new_weakened.end());
+    }
+
+    static void fields(auto&& field) {
+        field.bytes("presses", &Events::presses), field("weakened", &Events::weakened),
+            field("bond_broke", &Events::bond_broke), field("worn_away", &Events::worn_away),
+            field("components", &Events::components), field("loosened", &Events::loosened);
+    }
+};
+
+}  // namespace abrade
