@@ -25,3 +25,7 @@
 #include <abrade/wear/ishibashi.hpp>
 #include <abrade/wear/sklar_dietrich.hpp>
 #include <abrade/wear/sub_particle.hpp>
+
+#ifdef ABRADE_COMPILED
+#include <abrade/sim/compiled.hpp>
+#endif

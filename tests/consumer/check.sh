@@ -41,4 +41,11 @@ if [ "$kind" = package ]; then
         echo "an unknown component must be refused by name"
         exit 1
     fi
+    sed -i 's/COMPONENTS oi/COMPONENTS compiled/' "$work/wrong/CMakeLists.txt"
+    if "$cmake" -S "$work/wrong" -B "$work/wrong/build" >"$work/wrong/log" 2>&1 ||
+        ! grep -q "installed without its component 'compiled'" "$work/wrong/log"; then
+        cat "$work/wrong/log"
+        echo "a component that was not installed must be refused by name"
+        exit 1
+    fi
 fi

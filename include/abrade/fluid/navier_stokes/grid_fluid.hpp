@@ -1,6 +1,7 @@
 #pragma once
 // Water on a staggered Cartesian grid.
 
+#include <abrade/core/compiled_as.hpp>
 #include <abrade/fluid/mesh/fastest_face.hpp>
 #include <abrade/fluid/navier_stokes/free_surface_stepper.hpp>
 #include <abrade/fluid/navier_stokes/full_box_stepper.hpp>
@@ -314,6 +315,16 @@ void GridFluid<Dim, Options>::check(Real dt) {
     stepper_.restore(flow_);
     throw FluidError(detail::place_in_time(flow_.steps, flow_.time, dt) + cause);
 }
+
+/// The usual ones, which abrade::compiled has compiled.
+#define ABRADE_USUAL_WATER(one)                                                                   \
+    one(2, FullBox) one(3, FullBox) one(2, FreeSurface) one(3, FreeSurface) one(2, HeightSurface) \
+        one(3, HeightSurface)
+#ifdef ABRADE_COMPILED
+#define ABRADE_IS_COMPILED(...) extern template class GridFluid<__VA_ARGS__>;
+ABRADE_USUAL_WATER(ABRADE_IS_COMPILED)
+#undef ABRADE_IS_COMPILED
+#endif
 
 static_assert(AdvancingFluid<GridFluid<2>> && AdvancingFluid<GridFluid<3>>);
 static_assert(AccountsForEnergy<GridFluid<2>> && AccountsForEnergy<GridFluid<3, FullBox>>);

@@ -441,15 +441,18 @@ void World<P>::pass(bool evaluate, const Move* move, bool timed) {
 
 template <class P>
 void World<P>::exchange_before(Real t) {
-    auto& fluid = state_.policies.fluid;
-    if (fluid_due_.of(fluid) >= t) return;
-    const Real to = state_.nobody_moves() ? t : now_;
-    if (!(fluid.time() < to)) return;
-    make_whole();
-    FlowBodies<P> flow(state_);
-    fluid.advance(to, flow.bodies()), ++fluid_due_.met;
-    state_.accounts.sum.flow_work += flow.give_back(state_);
-    if constexpr (requires { fluid.solids_took(Real{}); }) fluid.solids_took(state_.accounts.sum.flow_work);
+    if constexpr (P::fluid_resolves) {
+        auto& fluid = state_.policies.fluid;
+        if (fluid_due_.of(fluid) >= t) return;
+        const Real to = state_.nobody_moves() ? t : now_;
+        if (!(fluid.time() < to)) return;
+        make_whole();
+        FlowBodies<P> flow(state_);
+        fluid.advance(to, flow.bodies()), ++fluid_due_.met;
+        state_.accounts.sum.flow_work += flow.give_back(state_);
+        if constexpr (requires { fluid.solids_took(Real{}); })
+            fluid.solids_took(state_.accounts.sum.flow_work);
+    }
 }
 
 template <class P>
