@@ -5,12 +5,19 @@
 
 namespace abrade {
 
-/// Springs f_n = k_n c (c compression), f_s = -k_s s. The bond breaks when
-///   (max(-f_n, 0) / (A sigma_t))^2 + (|f_s| / (A tau))^2 > 1,   A = pi r^2,
-/// r the smaller radius [m]: the quadratic criterion of cohesive zones (P. P. Camanho, C. G. Davila, M. F. de
-/// Moura, J. Compos. Mater. 37 (2003) 1415, doi:10.1177/0021998303034505). It counts as broken in tension
-/// where that part is the larger. Wear takes its share off both strengths. Pulled alone it breaks at a
-/// stretch of A sigma_t / k_n and gives up (A sigma_t)^2 / (2 k_n). What is left is a frictional contact.
+/// Springs that break at a quadratic criterion of both forces.
+///   f_n = k_n c,  f_s = -k_s s
+///   breaks where (max(-f_n, 0) / (A sigma_t))^2 + (|f_s| / (A tau))^2 > 1,  A = pi r^2
+/// c compression, s shear [m], k_n, k_s stiffness [N/m]
+/// r the smaller radius [m]
+/// sigma_t tensile, tau shear strength [Pa]; wear takes its share off both
+/// Validity: small shear angles; what is left of a broken bond is a frictional contact.
+/// Throws InputError for parameters out of their range.
+/// Source: P. P. Camanho, C. G. Davila, M. F. de Moura, J. Compos. Mater. 37 (2003) 1415,
+/// doi:10.1177/0021998303034505.
+///
+/// It counts as broken in tension where that part is the larger. Pulled alone it breaks at a stretch of A
+/// sigma_t / k_n and gives up (A sigma_t)^2 / (2 k_n).
 class ElasticBrittle {
 public:
     static constexpr std::string_view name = "ElasticBrittle";

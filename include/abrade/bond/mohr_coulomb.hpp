@@ -5,16 +5,22 @@
 
 namespace abrade {
 
-/// The concrete of the abrasion model (MDEM, after K. Meguro and M. Hakuno 1989; equations [2] to [4] of the
-/// sub-particle abrasion paper):
+/// The concrete of the abrasion model.
+///   f_n = k_n c,  f_s = -k_s s
 ///   sigma_t(i) = (1 - gamma_f(i)) sigma_t0                           [2]
 ///   f_b = A sigma_t,  sigma_t joined over i and j                    [3]
 ///   A = pi r_c^2                                                     [4]
-/// Springs f_n = k_n c (c compression), f_s = -k_s s. The bond breaks
-///   in tension when -f_n > f_b,
-///   in shear when |f_s| > (f_n + f_b) tan(phi).
-/// While sound, dashpots c = 2 zeta sqrt(k m_eff) act beside both springs; they are no part of the yield.
-/// A broken bond is a frictional contact with the same springs: f_n >= 0, |f_s| <= f_n tan(phi). So breaking
+///   breaks in tension where -f_n > f_b, in shear where |f_s| > (f_n + f_b) tan(phi)
+/// c compression, s shear [m], k_n, k_s stiffness [N/m]
+/// sigma_t0 tensile strength [Pa], gamma_f fracture [-], phi angle of friction
+/// r_c radius of the bond, the smaller of the two [m], f_b its strength [N]
+/// Validity: small shear angles; bonds bear no moment (TwistResistance adds one).
+/// Throws InputError for parameters out of their range.
+/// Source: equations [2] to [4] of the sub-particle abrasion paper; MDEM after K. Meguro, M. Hakuno,
+/// Structural Engineering / Earthquake Engineering 6 (1989) 283.
+///
+/// While sound, dashpots c = 2 zeta sqrt(k m_eff) act beside both springs; they are no part of the yield. A
+/// broken bond is a frictional contact with the same springs: f_n >= 0, |f_s| <= f_n tan(phi). So breaking
 /// under compression changes no normal force; what the springs then give up is booked as lost in the bond.
 class MohrCoulomb {
 public:

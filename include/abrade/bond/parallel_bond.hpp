@@ -5,17 +5,23 @@
 
 namespace abrade {
 
-/// A round beam of radius R and length L between two spheres (D. O. Potyondy, P. A. Cundall, Int. J. Rock
-/// Mech. Min. Sci. 41 (2004) 1329, doi:10.1016/j.ijrmms.2004.09.011). With A = pi R^2, I = pi R^4 / 4, J = 2
-/// I:
+/// A round beam between two spheres.
 ///   f_n = E A/L c,   f_s = -kappa E A/L s,   M_b = -E I/L theta_b,   M_t = -kappa E J/L theta_t
-/// c compression, s shear [m], theta_b bending and theta_t twist [rad]; R = `radius_factor` times the smaller
-/// radius, kappa = `stiffness_ratio` (G over E times the shear factor for a beam that shears like a solid).
 ///   sigma = -f_n/A + |M_b| R/I,  tau = |f_s|/A + |M_t| R/J
-/// It breaks in tension when sigma > sigma_t, in shear when tau > cohesion + f_n/A tan(phi); the second term
-/// counts where f_n presses. Wear takes its share off sigma_t and the cohesion. While sound, dashpots
-/// 2 zeta sqrt(k m_eff), 2 zeta sqrt(k I_eff) act beside all four. What is left of a broken bond is a
-/// frictional contact; moments end with the bond.
+///   A = pi R^2,  I = pi R^4 / 4,  J = 2 I
+///   breaks in tension where sigma > sigma_t, in shear where tau > cohesion + f_n/A tan(phi)
+/// c compression, s shear [m], theta_b bending and theta_t twist [rad]
+/// R = `radius_factor` times the smaller radius, L length [m]
+/// E Young's modulus [Pa], kappa = `stiffness_ratio`, G over E times the shear factor for a beam that shears
+/// like a solid [-]
+/// sigma_t tensile strength, cohesion [Pa], of which wear takes its share; phi angle of friction
+/// Validity: small angles; a beam about as long as it is thick. tan(phi) counts where f_n presses.
+/// Throws InputError for parameters out of their range.
+/// Source: D. O. Potyondy, P. A. Cundall, Int. J. Rock Mech. Min. Sci. 41 (2004) 1329,
+/// doi:10.1016/j.ijrmms.2004.09.011.
+///
+/// While sound, dashpots 2 zeta sqrt(k m_eff), 2 zeta sqrt(k I_eff) act beside all four. What is left of a
+/// broken bond is a frictional contact; moments end with the bond.
 class ParallelBond {
 public:
     static constexpr std::string_view name = "ParallelBond";

@@ -5,17 +5,19 @@
 
 namespace abrade {
 
-/// A bond law and a couple about the bond, equal and opposite on its two spheres, while it is sound:
-///   M_t = -k_t theta - c_t w,  k_t = a k_s r^2 / 2,  c_t = 2 zeta sqrt(k_t I_eff)
-/// theta twist since the start [rad] and w its rate [rad/s]: of i against j, about the normal; r the smaller
-/// radius [m], k_s the law's spring across the bond [N/m], zeta its share of critical damping,
-/// I_eff = 1/(1/I_i + 1/I_j) [kg m2]. a = 1 is a round beam as thick as the spheres (k_t = G J / L where
-/// k_s = G A / L and J / A = r^2 / 2; ParallelBond has no other).
+/// A bond law and a couple about the bond, equal and opposite on its two spheres, while it is sound.
+///   M_t = -k_t theta - c_t w,  k_t = a k_s r^2 / 2,  c_t = 2 zeta sqrt(k_t I_eff),  I_eff = 1/(1/I_i + 1/I_j)
+/// theta twist since the start [rad], w its rate [rad/s]: of i against j, about the normal
+/// r the smaller radius [m], k_s the law's spring across the bond [N/m]
+/// a ratio, zeta the law's share of critical damping [-], I_eff [kg m2]
+/// Validity: as the law's. The couple has no part in the yield, and ends with the bond.
+/// Throws InputError for parameters out of their range, those of the law included.
+/// Source: torsion of a round bar as thick as the spheres, a = 1: k_t = G J / L where k_s = G A / L, J /
+/// A = r^2 / 2.
 ///
-/// It has no part in the yield, and ends with the bond: what it stored then counts as lost in the bond. Made
-/// for lattices whose springs let neighbours turn against each other as gears do: a cubic one of MohrCoulomb
-/// bonds (docs/verification/03_heap_at_rest.md). Throws InputError for parameters out of their range, those of the law
-/// included.
+/// What the couple stored counts as lost in the bond when that breaks. ParallelBond has no other at a = 1.
+/// Made for lattices whose springs let neighbours turn against each other as gears do: a cubic one of
+/// MohrCoulomb bonds (docs/verification/03_heap_at_rest.md).
 template <BondLaw Law>
 requires(AnswersBondPacks<Law> && !CarriesMoments<Law>) class TwistResistance {
 public:

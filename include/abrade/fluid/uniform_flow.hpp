@@ -27,11 +27,15 @@ inline Real normal_depth(const Invert& section, Real discharge, Real manning) {
     return 0.5 * (low + high);
 }
 
-/// Uniform flow over an invert. Depth from Manning; the velocity is along x,
+/// Uniform flow over an invert, its depth from Manning; the velocity is along x.
 ///   u(y, z) = C ln(1 + (z - z_bed(y)) / z_0),  z_0 = k_s / 30,  k_s = (26 n)^6
-/// (Strickler's roughness height, H. Schlichting's fully rough z_0), with C such that the discharge is met.
-/// Bed shear stress of the section: rho g R_h S; shear velocity at the centre line: sqrt(g h S). Water at 10
-/// degrees C unless told otherwise.
+/// u [m/s], z height, z_bed that of the bed [m]; C such that the discharge is met [m/s]
+/// n Manning's [s/m^(1/3)], k_s Strickler's roughness height, z_0 the fully rough one [m]
+/// Validity: steady, fully rough flow of a wide section. Water at 10 degrees C unless given otherwise.
+/// Throws InputError for parameters out of their range.
+/// Source: H. Schlichting, Boundary-Layer Theory; A. Strickler 1923.
+///
+/// Bed shear stress of the section: rho g R_h S; shear velocity at the centre line: sqrt(g h S).
 class UniformFlow {
 public:
     static constexpr std::string_view name = "UniformFlow";

@@ -5,12 +5,15 @@
 
 namespace abrade {
 
-/// Archard's law of sliding wear (J. F. Archard, Journal of Applied Physics 24 (1953) 981,
-/// doi:10.1063/1.1721448):
+/// Archard's law of sliding wear.
 ///   dV = (k / H) beta F_n |v_t| dt
-/// k wear coefficient of the body that wears [-], H its hardness [Pa], F_n normal force, what pushes [N], v_t
-/// velocity of the two against each other across the normal at the contact point [m/s], beta time
-/// acceleration [-]. Volume only: strength stays. Throws InputError for parameters out of their range.
+/// k wear coefficient of the body that wears [-], H its hardness [Pa]
+/// F_n normal force, what pushes [N]
+/// v_t velocity of the two against each other across the normal at the contact point [m/s]
+/// beta time acceleration [-]
+/// Validity: steady sliding. Volume only: strength stays.
+/// Throws InputError for parameters out of their range.
+/// Source: J. F. Archard, Journal of Applied Physics 24 (1953) 981, doi:10.1063/1.1721448.
 ///
 /// A block that slides a distance s under N wears k N s / H; an impact that slides throughout, k / (H mu)
 /// times its frictional work. The distance is that of the bodies, elastic or not: an impact that sticks wears

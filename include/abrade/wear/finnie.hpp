@@ -5,21 +5,23 @@
 
 namespace abrade {
 
-/// Finnie's law of cutting by impacts (I. Finnie, Wear 3 (1960) 87, doi:10.1016/0043-1648(60)90055-7):
+/// Finnie's law of cutting by impacts.
 ///   V = c beta m v^2 / (p psi K) f(alpha)
 ///   f = sin(2 alpha) - (6 / K) sin^2(alpha)   for tan(alpha) <= K / 6: still cutting when it leaves
 ///   f = (K / 6) cos^2(alpha)                  above: the cut ends before
-/// m mass of what impacts [kg], v its speed [m/s], alpha the angle between v and the surface, p flow stress
-/// of what is cut [Pa], K ratio of the force along the normal to the force across it [-], psi length of the
-/// contact over depth of the cut [-], c share of impacts that cut [-], beta time acceleration [-]. Both
-/// branches meet with one slope. Made for ductile metals: nothing is cut head-on, so for brittle concrete it
-/// tells of the oblique part alone. Volume only: strength stays. Throws InputError for parameters out of
-/// their range.
+/// m mass of what impacts [kg], v its speed [m/s], alpha the angle between v and the surface
+/// p flow stress of what is cut [Pa], K ratio of the force along the normal to the force across it [-]
+/// psi length of the contact over depth of the cut [-]
+/// c share of impacts that cut [-], beta time acceleration [-]
+/// Validity: ductile metals. Nothing is cut head-on, so for brittle concrete it tells of the oblique part
+/// alone. Volume only: strength stays.
+/// Throws InputError for parameters out of their range.
+/// Source: I. Finnie, Wear 3 (1960) 87, doi:10.1016/0043-1648(60)90055-7.
 ///
-/// An impact is booked in the step in which its contact begins, with that step's velocity at the contact
-/// point (spin counts) and the effective mass: of a stone against rigid concrete its own mass, against one
-/// bonded sphere less than that sphere's. A clump that lands on several spheres at once is booked as often.
-/// Broken bonds that close again are not told to begin, and wear nothing.
+/// Both branches meet with one slope. An impact is booked in the step in which its contact begins, with that
+/// step's velocity at the contact point (spin counts) and the effective mass: of a stone against rigid
+/// concrete its own mass, against one bonded sphere less than that sphere's. A clump that lands on several
+/// spheres at once is booked as often. Broken bonds that close again are not told to begin, and wear nothing.
 class Finnie {
 public:
     static constexpr std::string_view name = "Finnie";

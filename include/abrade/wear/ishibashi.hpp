@@ -7,12 +7,14 @@
 
 namespace abrade {
 
-/// The form of Ishibashi's law for sediment bypass tunnels (T. Ishibashi, Proceedings of JSCE 334 (1983) 103;
-/// in Japanese):
+/// The form of Ishibashi's law for sediment bypass tunnels.
 ///   V = beta (C_1 sum(E_n) + C_2 sum(W_f))
-/// E_n kinetic energy of impacts along the normal [J], W_f work of friction [J], C_1, C_2 coefficients
-/// [m3/J], beta time acceleration [-]. Volume only: strength stays. Both coefficients must be given; none
-/// that is published is built in. Throws InputError where they are not.
+/// E_n kinetic energy of impacts along the normal [J], W_f work of friction [J]
+/// C_1, C_2 coefficients [m3/J], beta time acceleration [-]
+/// Validity: the concrete and gravel that C_1 and C_2 were fitted to: both must be given, none that is
+/// published is built in. Volume only: strength stays.
+/// Throws InputError where they are not.
+/// Source: T. Ishibashi, Proceedings of JSCE 334 (1983) 103 (in Japanese).
 ///
 /// E_n is booked as the work of the normal force while the two approach (`work_of_approach`), W_f as what the
 /// contact law lost across the normal.

@@ -5,13 +5,15 @@
 
 namespace abrade {
 
-/// The impact wear of Sklar and Dietrich (L. S. Sklar, W. E. Dietrich, Water Resources Research 40 (2004)
-/// W06301, doi:10.1029/2003WR002496):
+/// The impact wear of Sklar and Dietrich.
 ///   V = beta KE_n / eps_v,  KE_n = 1/2 m w^2,  eps_v = k_v sigma_T^2 / (2 Y)
-/// w speed of the impact along the normal [m/s], eps_v energy that it takes to detach a unit volume [J/m3],
-/// k_v strength coefficient [-], sigma_T tensile strength [Pa], Y Young's modulus of what wears [Pa], beta
-/// time acceleration [-]. For brittle rock; sliding wears nothing. Volume only: strength stays. Throws
-/// InputError for parameters out of their range.
+/// m effective mass [kg], w speed of the impact along the normal [m/s]
+/// eps_v energy that it takes to detach a unit volume [J/m3]
+/// k_v strength coefficient [-], sigma_T tensile strength [Pa], Y Young's modulus of what wears [Pa]
+/// beta time acceleration [-]
+/// Validity: brittle rock; sliding wears nothing. Volume only: strength stays.
+/// Throws InputError for parameters out of their range.
+/// Source: L. S. Sklar, W. E. Dietrich, Water Resources Research 40 (2004) W06301, doi:10.1029/2003WR002496.
 ///
 /// KE_n is booked as the work of the normal force while the two approach (`work_of_approach`), which needs no
 /// mass and no first instant.

@@ -5,13 +5,19 @@
 
 namespace abrade {
 
-/// The sub-particle abrasion law. A contact that loses mechanical energy dE_nm,ij leaves half of it in each
-/// body, and a constant share of that fractures concrete:
+/// The sub-particle abrasion law. A contact that loses mechanical energy leaves half of it in each body, and
+/// a constant share of that fractures concrete.
 ///   dE_nm = 1/2 dE_nm,ij                                             [11]
 ///   dV_w = C_w beta dE_nm                                            [1]
 ///   gamma_f = sum(dV_w) / V_omega, at most 1                         [10]
 ///   what is left of the strength: 1 - gamma_f                        [2]
-/// C_w abrasion coefficient [m3/J], beta time acceleration [-], V_omega volume of the sphere's cell [m3].
+/// dE_nm,ij energy that the contact lost [J]
+/// C_w abrasion coefficient [m3/J], beta time acceleration [-]
+/// V_omega volume of the sphere's cell [m3], gamma_f fracture [-]
+/// Validity: wear in proportion to the energy lost, for the concrete that C_w was fitted to; beta as long as
+/// no collision fills its sphere's cell.
+/// Throws InputError for parameters out of their range.
+/// Source: equations [1], [2], [10] and [11] of the sub-particle abrasion paper.
 ///
 /// dE_nm,ij is the contact law's dissipation (dashpot and slider; with LinearHysteretic and
 /// ElasticPlasticHertz the dent, too), summed as it occurs, and so never negative; elastic energy on loan

@@ -15,10 +15,13 @@ concept DenseDragLaw = Law<D> && requires(const D& law) {
 };
 // clang-format on
 
-/// C_d(Re) eps^(2 - chi), of Clift & Gauvin's sphere alone and with
-///   chi = 3.7 - 0.65 exp(-(1.5 - log10 Re)^2 / 2).
-/// R. Di Felice, The voidage function for fluid-particle interaction systems, Int. J. Multiphase Flow 20
-/// (1994) 153, doi:10.1016/0301-9322(94)90011-6. The pressure's gradient acts on its own.
+/// Drag of a sphere among others.
+///   C_d(Re) eps^(2 - chi),  chi = 3.7 - 0.65 exp(-(1.5 - log10 Re)^2 / 2)
+/// C_d(Re) coefficient of a sphere alone, Clift & Gauvin's [-], Re Reynolds number of the slip [-]
+/// eps porosity [-]
+/// Validity: Re up to 3e5, from a sphere alone to a packed bed; the pressure's gradient acts on its own.
+/// Throws InputError for parameters out of their range.
+/// Source: R. Di Felice, Int. J. Multiphase Flow 20 (1994) 153, doi:10.1016/0301-9322(94)90011-6.
 class DiFelice {
 public:
     static constexpr std::string_view name = "DiFelice";

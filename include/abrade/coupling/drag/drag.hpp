@@ -16,11 +16,14 @@ concept DragLaw = Law<D> && requires(const D& law) {
 };
 // clang-format on
 
-/// Drag of a sphere for Re < 3e5; beyond, where the boundary layer may turn turbulent, the value at 3e5 is
-/// kept:
+/// Drag of a sphere.
 ///   C_d = 24/Re (1 + 0.15 Re^0.687) + 0.42 / (1 + 42500 Re^-1.16)
-/// R. Clift, W. H. Gauvin, Chemeca 70 (1970) 14; as given in Clift, Grace, Weber, Bubbles, Drops and
-/// Particles (1978), table 5.1. Angular stones drag more; `shape_factor` multiplies C_d.
+/// C_d drag coefficient [-]; `shape_factor` multiplies it: angular stones drag more
+/// Re Reynolds number of the slip and the diameter [-]
+/// Validity: Re < 3e5; beyond, where the boundary layer may turn turbulent, the value at 3e5 is kept.
+/// Throws InputError for parameters out of their range.
+/// Source: R. Clift, W. H. Gauvin, Chemeca 70 (1970) 14; as given in Clift, Grace, Weber, Bubbles, Drops and
+/// Particles (1978), table 5.1.
 class CliftGauvin {
 public:
     static constexpr std::string_view name = "CliftGauvin";
@@ -101,14 +104,19 @@ concept FeelsInertia = DragLaw<D> && requires(const D& law) {
 };
 // clang-format on
 
-/// A drag law, and beside it, of the submerged volume V with coefficients C_m and C_L,
-///   rho V Du/Dt                    the pressure gradient that accelerates the fluid,
-///   C_m rho V (Du/Dt - dv/dt)      added mass,
-///   C_L rho V (u - v) x curl u     lift in a shear,
-/// u the fluid's velocity, v the body's. 1/2 for both is exact of a sphere in a fluid without friction: T. R.
-/// Auton, J. C. R. Hunt & M. Prud'homme 1988, doi:10.1017/S0022112088003246. dv/dt is that by all forces,
-/// contacts among them. What a fluid does not know of its change counts as none. Their work is the ledger's
-/// `flow_work`. Basset's history force is not among them.
+/// A drag law, and beside it what an unsteady or sheared fluid does to the submerged volume.
+///   rho V Du/Dt                    the pressure gradient that accelerates the fluid
+///   C_m rho V (Du/Dt - dv/dt)      added mass
+///   C_L rho V (u - v) x curl u     lift in a shear
+/// u the fluid's velocity, v the body's [m/s]; dv/dt is that by all forces, contacts among them [m/s2]
+/// V submerged volume [m3], rho the fluid's density [kg/m3]
+/// C_m, C_L coefficients [-]: 1/2 for both is exact of a sphere in a fluid without friction
+/// Validity: bodies smaller than what the flow varies over; Basset's history force is not among them.
+/// Throws InputError for parameters out of their range, those of the law included.
+/// Source: T. R. Auton, J. C. R. Hunt, M. Prud'homme, J. Fluid Mech. 197 (1988) 241,
+/// doi:10.1017/S0022112088003246.
+///
+/// What a fluid does not know of its change counts as none. Their work is the ledger's `flow_work`.
 template <DragLaw Drag = CliftGauvin>
 class WithInertia {
 public:

@@ -7,8 +7,7 @@
 
 namespace abrade {
 
-/// Elastic, perfectly plastic spheres (C. Thornton, Z. Ning, Powder Technol. 99 (1998) 154,
-/// doi:10.1016/S0032-5910(98)00099-0; without adhesion), and Coulomb's slider. While the overlap delta is the
+/// Elastic, perfectly plastic spheres without adhesion, and Coulomb's slider. While the overlap delta is the
 /// largest so far, delta_m:
 ///   f = 4/3 E* sqrt(R) delta^(3/2)                 up to delta_y = (pi p_y / 2 E*)^2 R
 ///   f = f_y + pi R p_y (delta - delta_y)           beyond, f_y the force at delta_y
@@ -27,13 +26,21 @@ namespace abrade {
 /// s tangential spring [m], v_t slip velocity [m/s], k_t its stiffness [N/m]; it follows k_t as
 /// HertzMindlin's incremental one does
 /// mu friction [-], m effective mass [kg], zeta damping ratio for rest [-]
-/// What the dent cost is lost while delta_m grows; a dashpot for rest acts while a contact is loaded again
-/// (Reloading), so that an impact never meets it.
+/// Validity: delta far below R, stones harder than what yields. A contact that opens loses its dent; one that
+/// is found pressed, at the start of a run or as a bond breaks, has its dent from before.
+/// Throws InputError for parameters out of their range.
+/// Source: C. Thornton, Z. Ning, Powder Technol. 99 (1998) 154, doi:10.1016/S0032-5910(98)00099-0.
 ///
-/// A normal impact at speed v [m/s] loses nothing up to the yield speed v_y; beyond it, with r = v_y / v,
+/// What the dent cost is lost while delta_m grows; a dashpot for rest acts while a contact is loaded again
+/// (Reloading), so that an impact never meets it. A normal impact at speed v [m/s] loses nothing up to the
+/// yield speed v_y; beyond it, with r = v_y / v,
 ///   v_y = (pi / 2 E*)^2 sqrt(8 pi R^3 / 15 m) p_y^(5/2)
 ///   e = sqrt(6 sqrt(3) / 5) sqrt(1 - r^2 / 6) (r / (r + 2 sqrt(6/5 - r^2 / 5)))^(1/4)
 /// or e = 1.185 r^(1/4) far above it.
+///
+/// p_y is no property of concrete that handbooks list: for ductile materials it is 1.6 (first yield) to 3
+/// times (fully plastic) the yield stress (K. L. Johnson, Contact Mechanics, 1985,
+/// doi:10.1017/CBO9781139171731, 6.2 and 6.3); for concrete fit it to a measured restitution.
 ///
 /// `softening` s divides the stiffness of the run, not the restitution: E* and G* are taken s-fold and p_y
 /// s^(4/5)-fold, which keeps v_y and with it e at every speed.
@@ -44,13 +51,6 @@ namespace abrade {
 /// and stay as they are. A contact does not say what its two are, so other pairs need a law without
 /// `flat_radius`, in a table by materials (MaterialPairs): stones with each other, and planes that spheres
 /// smaller than the concrete's may touch.
-///
-/// Range of validity: delta far below R, stones harder than what yields. p_y is no property of concrete that
-/// handbooks list: for ductile materials it is 1.6 (first yield) to 3 times (fully plastic) the yield stress
-/// (K. L. Johnson, Contact Mechanics, 1985, doi:10.1017/CBO9781139171731, 6.2 and 6.3); for concrete fit it
-/// to a measured restitution. A contact that opens loses its dent; one that is found pressed, at the start of
-/// a run or as a bond breaks, has its dent from before.
-/// Throws InputError for parameters out of their range.
 class ElasticPlasticHertz {
 public:
     static constexpr std::string_view name = "ElasticPlasticHertz";

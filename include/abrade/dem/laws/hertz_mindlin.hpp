@@ -7,24 +7,28 @@
 
 namespace abrade {
 
-/// Hertz-Mindlin with Coulomb's slider. delta overlap [m], R effective radius [m], m effective mass [kg],
-/// 1/m = 1/m_i + 1/m_j or, with `DampingMass::free`, the sum over the free bodies alone (see LinearSpring):
+/// Hertz-Mindlin with Coulomb's slider.
 ///   f_n = 4/3 E* sqrt(R delta) delta + c_n v_n,    stored 2/5 of f_elastic delta
 ///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,       k_t = 8 G* sqrt(R delta)
 ///   1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2,     1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2
 ///   G = E / (2 (1 + nu)),  c = 2 sqrt(5/6) zeta sqrt(S m),  S_n = 2 E* sqrt(R delta),  S_t = k_t
-/// v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s]. Throws InputError for
-/// parameters out of their range.
-/// The damping makes restitution independent of speed (Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71
-/// (1992) 239, doi:10.1016/0032-5910(92)88030-L); zeta follows from e by the closed form of the linear
-/// spring, which holds here too, with or without tension.
+/// delta overlap [m], R effective radius [m]
+/// E Young's and G shear modulus [Pa], nu Poisson's ratio [-]
+/// v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s]
+/// mu friction [-], zeta damping ratio, from the restitution [-]
+/// m effective mass [kg], 1/m = 1/m_i + 1/m_j or, with `DampingMass::free`, the sum over the free bodies
+/// alone (see LinearSpring)
+/// Validity: a small area of contact, delta below some 2 % of the radius.
+/// Throws InputError for parameters out of their range.
+/// Source: spring: C. Thornton, S. Cummins, P. Cleary, Powder Technol. 233 (2013) 30,
+/// doi:10.1016/j.powtec.2012.08.012; damping: Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71 (1992) 239,
+/// doi:10.1016/0032-5910(92)88030-L.
 ///
-/// The tangential spring is incremental by default: while k_t grows its force stays, while k_t falls the
-/// force falls with it (C. Thornton, S. Cummins, P. Cleary, Powder Technol. 233 (2013) 30,
-/// doi:10.1016/j.powtec.2012.08.012), and it never makes energy. What the spring gives up as k_t changes
-/// counts as lost to sliding: in a real contact it is lost to slip at the rim of the area of contact.
-/// `Spring` and `Slider` offer what other codes do, to compare with them. Valid while the area of contact is
-/// small: delta below some 2 % of the radius.
+/// The damping makes restitution independent of speed; zeta follows from e by the closed form of the linear
+/// spring, which holds here too, with or without tension. The tangential spring is incremental by default:
+/// while k_t grows its force stays, while k_t falls the force falls with it, and it never makes energy. What
+/// the spring gives up as k_t changes counts as lost to sliding: in a real contact it is lost to slip at the
+/// rim of the area of contact. `Spring` and `Slider` offer what other codes do, to compare with them.
 class HertzMindlin {
 public:
     static constexpr std::string_view name = "HertzMindlin";

@@ -6,8 +6,7 @@
 
 namespace abrade {
 
-/// A spring that is stiffer while it unloads, and Coulomb's slider (O. R. Walton, R. L. Braun, J. Rheol. 30
-/// (1986) 949, doi:10.1122/1.549893):
+/// A spring that is stiffer while it unloads, and Coulomb's slider.
 ///   loading    f = k_1 delta                     where delta is the largest overlap so far, delta_max
 ///   below      f = max(k_2 (delta - delta_0), 0),  k_2 = k_1 / e^2,  delta_0 = (1 - e^2) delta_max
 ///   stored     f^2 / (2 k_2)
@@ -19,6 +18,10 @@ namespace abrade {
 /// e restitution [-]: a normal impact loses the share 1 - e^2 at any speed, for any masses
 /// s tangential spring [m], v_t slip velocity [m/s], k_t its stiffness [N/m], a tangential ratio [-]
 /// mu friction [-], m effective mass [kg], zeta damping ratio for rest [-]
+/// Validity: delta far below the radius. A contact that opens loses its dent; one that is struck again before
+/// it opens (overlap below delta_0, but above 0) responds elastically up to delta_max.
+/// Throws InputError for parameters out of their range.
+/// Source: O. R. Walton, R. L. Braun, J. Rheol. 30 (1986) 949, doi:10.1122/1.549893.
 ///
 /// Below delta_max the two branches are one elastic line, on which a pressed bed would ring for ever. A
 /// dashpot acts there while the contact is loaded again (v_n, the speed of approach [m/s], is positive):
@@ -28,10 +31,6 @@ namespace abrade {
 /// line.
 ///
 /// A contact that is found pressed, at the start of a run or as a bond breaks, has its dent from before.
-///
-/// Range of validity: delta far below the radius. A contact that opens loses its dent; one that is struck
-/// again before it opens (overlap below delta_0, but above 0) responds elastically up to delta_max.
-/// Throws InputError for parameters out of their range.
 class LinearHysteretic {
 public:
     static constexpr std::string_view name = "LinearHysteretic";

@@ -6,18 +6,21 @@
 
 namespace abrade {
 
-/// Linear spring, dashpot and Coulomb slider (P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47,
-/// doi:10.1680/geot.1979.29.1.47):
-///   f_n = max(k_n delta + c_n v_n, 0),  c_n = 2 zeta sqrt(k_n m_eff)
-///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,  c_t = 2 zeta sqrt(k_t m_eff)
-/// delta overlap [m], v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s], m_eff
-/// effective mass [kg], 1/m_eff = 1/m_i + 1/m_j. Throws InputError for parameters out of their range.
-/// Contact time pi sqrt(m_eff / k_n) (undamped); rigid enough when the overlap stays far below the radius.
+/// Linear spring, dashpot and Coulomb slider.
+///   f_n = max(k_n delta + c_n v_n, 0),  c_n = 2 zeta sqrt(k_n m)
+///   f_t = -k_t s - c_t v_t,  |f_t| <= mu f_n,  c_t = 2 zeta sqrt(k_t m)
+/// delta overlap [m], v_n speed of approach [m/s]
+/// s tangential spring [m], v_t slip velocity [m/s]
+/// k_n, k_t stiffness [N/m], mu friction [-], zeta damping ratio, from the restitution [-]
+/// m effective mass [kg], 1/m = 1/m_i + 1/m_j
+/// Validity: overlaps far below the radius. A contact lasts pi sqrt(m / k_n) (undamped).
+/// Throws InputError for parameters out of their range.
+/// Source: P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47, doi:10.1680/geot.1979.29.1.47.
 ///
-/// `DampingMass::free` takes 1/m_eff over the free bodies alone. On a concrete sphere of `dynamic` concrete
-/// (mass m_j) the dashpot is then sqrt(1 + m_i/m_j) times as strong, and a stone (mass m_i) on stiff bonds
-/// loses 1 - e^2 of its energy as on a rigid bed. The light sphere must follow that dashpot: with friction
-/// the engine's step falls to about m_j/(7 c_n) where that is less than the springs allow.
+/// `DampingMass::free` takes 1/m over the free bodies alone. On a concrete sphere of `dynamic` concrete (mass
+/// m_j) the dashpot is then sqrt(1 + m_i/m_j) times as strong, and a stone (mass m_i) on stiff bonds loses
+/// 1 - e^2 of its energy as on a rigid bed. The light sphere must follow that dashpot: with friction the
+/// engine's step falls to about m_j/(7 c_n) where that is less than the springs allow.
 class LinearSpring {
 public:
     static constexpr std::string_view name = "LinearSpring";

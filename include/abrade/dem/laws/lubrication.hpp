@@ -9,23 +9,26 @@
 namespace abrade {
 
 /// A contact law in a liquid. Before surfaces touch, and after they have parted, the film between them
-/// resists at gaps h below a range h_c,
+/// resists at gaps h below a range h_c.
 ///   F = 6 pi mu R^2 (1/max(h, h_r) - 1/h_c) v,  0 < h < h_c
-/// R effective radius [m], v speed of approach [m/s], mu dynamic viscosity [Pa s], h_r roughness [m]: the
-/// leading term of H. Brenner 1961, doi:10.1016/0009-2509(61)80035-3, less what is left of it at h_c. A flow
-/// on a grid that resolves the bodies has the film down to about a cell itself, so h_c is a cell; where no
-/// flow resolves them, h_c is some radii. Surfaces that overlap are dry, but for the mean below.
+/// h gap, h_r roughness, h_c range [m]
+/// R effective radius [m], v speed of approach [m/s], mu dynamic viscosity [Pa s]
+/// Validity: the leading term of the resistance, less what is left of it at h_c. A flow on a grid that
+/// resolves the bodies has the film down to about a cell itself, so h_c is a cell; where no flow resolves
+/// them, h_c is some radii.
+/// Throws InputError for parameters out of their range, those of the law included.
+/// Source: H. Brenner, Chem. Eng. Sci. 16 (1961) 242, doi:10.1016/0009-2509(61)80035-3.
 ///
-/// The mean of 1/h over the way of a step counts, half of it to either side, so a film that is crossed within
-/// a step takes what it takes in many: on an overlap of less than half that way the film acts in part. Along
-/// one normal v loses in a step x v / (1 + x/2 + x^2), x = F dt / (m_eff v): stable with neighbours all
-/// around, exact to second order; where x nears 1 a step is too long for the film.
+/// Surfaces that overlap are dry, but for the mean: the mean of 1/h over the way of a step counts, half of it
+/// to either side, so a film that is crossed within a step takes what it takes in many: on an overlap of less
+/// than half that way the film acts in part. Along one normal v loses in a step x v / (1 + x/2 + x^2), x = F
+/// dt / (m_eff v): stable with neighbours all around, exact to second order; where x nears 1 a step is too
+/// long for the film.
 ///
 /// The film is there wherever the law is asked, above a surface of water, too. Its loss is of its own kind,
 /// `lost_film`: no wear law takes any of it. Contacts are answered one by one, not in packs.
 /// `Lubricated<RollingResistance<L>>` adds both; `RollingResistance<Lubricated<L>>` does not compile, for
-/// this law offers no `normal_stiffness`. Throws InputError for parameters out of their range, those of the
-/// law included.
+/// this law offers no `normal_stiffness`.
 template <ContactLaw Law>
 class Lubricated {
 public:

@@ -11,25 +11,27 @@ concept KnowsNormalStiffness = requires(const L& law) {
     { law.normal_stiffness(Real{}, Real{}) } -> std::same_as<Real>;
 };
 
-/// A contact law and a couple that resists rolling, equal and opposite on the two bodies, up to
+/// A contact law and a couple that resists rolling, equal and opposite on the two bodies, in two models:
+/// - elastic_plastic (their model C): spring, dashpot and slider,
+///   M = -k_r theta - c_r w,  |M| <= M_max,  k_r = a k_n (mu_r R)^2,  c_r = 2 eta_r sqrt(I_r k_r)
+/// - constant_torque (model A):
+///   M = -M_max w/|w|, but no more than stops the rolling in some twelve steps;
 ///   M_max = mu_r R f_n
-/// R effective radius [m], f_n the law's normal force [N]. Rolling is the relative angular velocity w [rad/s]
-/// without its part about the normal: torsion is not resisted. theta is its travel [rad]. Two models of
-/// J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, Powder Technol. 206 (2011) 269,
-/// doi:10.1016/j.powtec.2010.09.030:
-/// - elastic_plastic (their model C, after K. Iwashita, M. Oda, J. Eng. Mech. 124 (1998) 285,
-///   doi:10.1061/(ASCE)0733-9399(1998)124:3(285)): spring, dashpot and slider,
-///     M = -k_r theta - c_r w,  |M| <= M_max,  k_r = a k_n (mu_r R)^2,  c_r = 2 eta_r sqrt(I_r k_r)
-///   k_n secant of the normal spring, 1/I_r = sum 1/(1.4 m r^2). As k_n changes the spring follows as
-///   HertzMindlin's tangential one does: the couple stays while k_r grows, falls with it while it falls. The
-///   dashpot acts as far as the limit leaves it room; in the paper it acts beside the limit.
-/// - constant_torque (model A): M = -M_max w/|w|, but no more than stops the rolling in some twelve steps.
-///   Holds nothing at rest: a pile creeps.
+/// M couple [N m], f_n the law's normal force [N], k_n secant of its normal spring [N/m]
+/// R effective radius [m], mu_r rolling friction [-], a stiffness ratio [-], eta_r damping ratio [-]
+/// w relative angular velocity without its part about the normal [rad/s], theta its travel [rad]
+/// I_r [kg m2], 1/I_r = sum 1/(1.4 m r^2)
+/// Validity: torsion is not resisted. constant_torque holds nothing at rest: a pile creeps.
+/// Throws InputError for parameters out of their range, those of the law included.
+/// Source: J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, Powder Technol. 206 (2011) 269,
+/// doi:10.1016/j.powtec.2010.09.030; model C after K. Iwashita, M. Oda, J. Eng. Mech. 124 (1998) 285,
+/// doi:10.1061/(ASCE)0733-9399(1998)124:3(285).
 ///
-/// The loss is of its own kind, `lost_rolling`: not sliding, so the library's wear laws take nothing from it.
-/// With a film between the surfaces take `Lubricated<RollingResistance<L>>`:
-/// `RollingResistance<Lubricated<L>>` does not compile, for Lubricated offers no `normal_stiffness`. Throws
-/// InputError for parameters out of their range, those of the law included.
+/// As k_n changes the spring follows as HertzMindlin's tangential one does: the couple stays while k_r grows,
+/// falls with it while it falls. The dashpot acts as far as the limit leaves it room; in the paper it acts
+/// beside the limit. The loss is of its own kind, `lost_rolling`: not sliding, so the library's wear laws
+/// take nothing from it. With a film between the surfaces take `Lubricated<RollingResistance<L>>`:
+/// `RollingResistance<Lubricated<L>>` does not compile, for Lubricated offers no `normal_stiffness`.
 template <ContactLaw Law>
 requires KnowsNormalStiffness<Law>
 class RollingResistance {

@@ -7,7 +7,7 @@ namespace abrade::detail {
 
 /// Faces between columns whose mean depth d [m] is below a tenth of a cell lose
 ///   du/dt = -max(c_f |u| / d, 3 nu / d^2) u,   c_f = 0.005,
-/// turbulent friction over a depth (R. Dressler, doi 10.6028/jres.049.021) or that of a laminar film (W.
+/// turbulent friction over a depth (R. Dressler, doi:10.6028/jres.049.021) or that of a laminar film (W.
 /// Nusselt 1916); implicit, so it only ever slows. Films on slopes and behind a water's edge have bounded
 /// speeds by it.
 template <int Dim>

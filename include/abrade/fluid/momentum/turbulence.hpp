@@ -64,15 +64,22 @@ public:
     }
 };
 
-/// Large-eddy simulation: eddies below a cell,
-///   nu_t = l^2 |S|, |S| = sqrt(2 S_ij S_ij), l = min(C_s Delta, kappa d), Delta = (cell's volume)^(1/Dim).
-/// J. Smagorinsky, doi 10.1175/1520-0493(1963)091<0099:GCEWTP>2.3.CO;2. C_s: 0.1 in channels (J. Deardorff,
-/// doi 10.1017/S0022112070000691), 0.17 far from walls (D. Lilly, 1967). Near a wall eddies are no larger
-/// than their distance from it lets them be; P. Mason and D. Thomson, doi 10.1017/S0022112092002271, round
-/// off the corner of the same two limits. Van Driest's damping (doi 10.2514/8.3662) needs a smooth wall's
-/// viscous layer, of which rough walls (WallLaw::logarithmic) have none.
-/// Valid where the grid resolves the large eddies: in three dimensions, with many cells over the depth. It
-/// is no model of the mean flow: where no eddies are resolved the water runs too fast.
+/// Large-eddy simulation: eddies below a cell.
+///   nu_t = l^2 |S|,  |S| = sqrt(2 S_ij S_ij),  l = min(C_s Delta, kappa d),  Delta = (cell's volume)^(1/Dim)
+/// nu_t eddy viscosity [m2/s], S strain rate [1/s]
+/// d distance from the nearest wall [m], kappa von Karman's constant [-]
+/// C_s constant [-]: 0.1 in channels (J. Deardorff, doi:10.1017/S0022112070000691), 0.17 far from walls (D.
+/// Lilly, 1967)
+/// Validity: where the grid resolves the large eddies: in three dimensions, with many cells over the depth.
+/// It is no model of the mean flow: where no eddies are resolved the water runs too fast.
+/// Throws InputError for parameters out of their range.
+/// Source: J. Smagorinsky, Mon. Weather Rev. 91 (1963) 99,
+/// doi:10.1175/1520-0493(1963)091<0099:GCEWTP>2.3.CO;2.
+///
+/// Near a wall eddies are no larger than their distance from it lets them be; P. Mason and D. Thomson,
+/// doi:10.1017/S0022112092002271, round off the corner of the same two limits. Van Driest's damping
+/// (doi:10.2514/8.3662) needs a smooth wall's viscous layer, of which rough walls (WallLaw::logarithmic) have
+/// none.
 class Smagorinsky {
 public:
     static constexpr std::string_view name = "Smagorinsky";
@@ -104,13 +111,16 @@ private:
 };
 
 /// Large-eddy simulation whose eddies vanish beside a smooth wall as they do there, by the cube of the
-/// distance, and in pure shear:
-///   nu_t = (C_w Delta)^2 (Sd_ij Sd_ij)^(3/2) / ((S_ij S_ij)^(5/2) + (Sd_ij Sd_ij)^(5/4)),
-/// Sd the symmetric, traceless part of the square of the velocity's gradient, S that of the gradient itself.
-/// F. Nicoud, F. Ducros, Flow, Turbulence and Combustion 62 (1999) 183, doi 10.1023/A:1009995426001. C_w:
-/// sqrt(10.6) C_s, so 0.33 for Smagorinsky's 0.1 in channels, 0.5 in their decaying turbulence. Valid where
-/// Smagorinsky's model is, and where the cells beside a smooth wall resolve its viscous layer: it asks for no
-/// distance from walls.
+/// distance, and in pure shear.
+///   nu_t = (C_w Delta)^2 (Sd_ij Sd_ij)^(3/2) / ((S_ij S_ij)^(5/2) + (Sd_ij Sd_ij)^(5/4))
+/// nu_t eddy viscosity [m2/s], S strain rate [1/s]
+/// Sd the symmetric, traceless part of the square of the velocity's gradient [1/s2]
+/// C_w constant [-]: sqrt(10.6) C_s, so 0.33 for Smagorinsky's 0.1 in channels, 0.5 in their decaying
+/// turbulence
+/// Validity: where Smagorinsky's is, and where the cells beside a smooth wall resolve its viscous layer: it
+/// asks for no distance from walls.
+/// Throws InputError for parameters out of their range.
+/// Source: F. Nicoud, F. Ducros, Flow, Turbulence and Combustion 62 (1999) 183, doi:10.1023/A:1009995426001.
 class Wale {
 public:
     static constexpr std::string_view name = "Wale";
@@ -143,14 +153,20 @@ private:
     Params params_;
 };
 
-/// Mean flow of a channel, all eddies modelled: L. Prandtl's mixing length (doi 10.1002/zamm.19250050212)
-///   nu_t = l^2 |S|, l = kappa d sqrt(1 - d / h), at most kappa u* d (1 - d / h),
-/// with which the profile of uniform flow of depth h is logarithmic and nu_t that parabola. Does not depend
-/// on the grid. For coarse grids, and in two dimensions.
-/// It is no model of wakes: there the strain makes nu_t some twenty times the mean flow's, which would hold
-/// the body fast (drag of stones in a channel: four to nine times too large). So among bodies it asks for u*,
-/// and beside them eddies are those that a cell does not resolve, l <= C_s Delta: none unless told otherwise,
-/// for a wake on a coarse grid is viscous enough without.
+/// Mean flow of a channel, all eddies modelled.
+///   nu_t = l^2 |S|,  l = kappa d sqrt(1 - d / h),  at most kappa u* d (1 - d / h)
+/// nu_t eddy viscosity [m2/s], S strain rate [1/s]
+/// d distance from the nearest wall, h depth [m], kappa von Karman's constant [-]
+/// u* shear velocity [m/s]
+/// Validity: channels, on coarse grids and in two dimensions. It is no model of wakes: there the strain makes
+/// nu_t some twenty times the mean flow's, which would hold a body fast (drag of stones in a channel: four to
+/// nine times too large).
+/// Throws InputError for parameters out of their range.
+/// Source: L. Prandtl, ZAMM 5 (1925) 136, doi:10.1002/zamm.19250050212.
+///
+/// The profile of uniform flow of depth h is logarithmic with it and nu_t that parabola, whatever the grid.
+/// Among bodies it asks for u*, and beside them eddies are those that a cell does not resolve, l <= C_s
+/// Delta: none unless given otherwise, for a wake on a coarse grid is viscous enough without.
 class MixingLength {
 public:
     static constexpr std::string_view name = "MixingLength";

@@ -16,7 +16,7 @@ namespace abrade::detail {
 
 /// A step of dt: the liquid moves with the velocity (VolumeOfFluid or HeightOfFluid); momentum goes with the
 /// same fluxes, in the two stages of Heun's method; the pressure is found below the new surface, where it is
-/// 0 (F. Gibou et al., doi 10.1006/jcph.2001.6977); velocities are carried on outward. Liquid and velocity
+/// 0 (F. Gibou et al., doi:10.1006/jcph.2001.6977); velocities are carried on outward. Liquid and velocity
 /// leap over each other, the velocity half a step ahead, so waves do not decay by the time step.
 template <int Dim, FlowOptions Options>
 class FreeSurfaceStepper {

@@ -14,7 +14,7 @@
 namespace abrade {
 
 /// Incompressible flow,  du/dt + div(u u) = g - grad p / rho + nu laplace(u),  div u = 0, on a MAC grid (F.
-/// Harlow and J. Welch, doi 10.1063/1.1761178): pressures in cells, velocities on their faces. Heun's method
+/// Harlow and J. Welch, doi:10.1063/1.1761178): pressures in cells, velocities on their faces. Heun's method
 /// in time, one projection a step; velocity and pressure are of second order.
 ///
 /// `Options` say what fills the box and what is solved there (FlowOptions): FullBox, FreeSurface,

@@ -6,19 +6,21 @@
 
 namespace abrade {
 
-/// Water averaged over its depth h, with speeds u, v, over a bed z_b:
-///   dh/dt + d(hu)/dx + d(hv)/dy = 0,
-///   d(hu)/dt + d(hu^2 + g h^2/2)/dx + d(huv)/dy = -g h dz_b/dx + g_x h - g_n n^2 |u| u / h^(1/3),  likewise
-///   v;
-/// g presses on the bed, g_x drives along it, g_n is all of gravity, n Manning's. A. J. C. Barre de
-/// Saint-Venant, C. R. Acad. Sci. 73 (1871) 147. Pressure is hydrostatic: for waves that are longer than
-/// water is deep.
+/// Water averaged over its depth.
+///   dh/dt + d(hu)/dx + d(hv)/dy = 0
+///   d(hu)/dt + d(hu^2 + g h^2/2)/dx + d(huv)/dy = -g h dz_b/dx + g_x h - g_n n^2 |u| u / h^(1/3), likewise v
+/// h depth, z_b height of the bed [m], u, v speeds [m/s]
+/// g gravity that presses on the bed, g_x along it, g_n all of it [m/s2], n Manning's [s/m^(1/3)]
+/// Validity: waves that are longer than water is deep: pressure is hydrostatic.
+/// Throws InputError for parameters out of their range, FluidError where a step goes wrong.
+/// Source: A. J. C. Barre de Saint-Venant, C. R. Acad. Sci. 73 (1871) 147; hydrostatic reconstruction: E.
+/// Audusse et al., SIAM J. Sci. Comput. 25 (2004) 2050, doi:10.1137/S1064827503431090.
 ///
-/// Finite volumes: limited linear profiles of surface and speed (van Leer 1977), hydrostatic reconstruction
-/// (Audusse et al. 2004), HLLC fluxes (Toro 2001), half a step of prediction (van Leer 1984), implicit
-/// friction. Of second order where water is smooth; lakes stay at rest over any bed, depths stay positive,
-/// volume is kept to round-off, uniform flow down a slope is exact. Works only where water is and may come in
-/// the next step. A step that would make a depth negative is repeated at half its length.
+/// Finite volumes: limited linear profiles of surface and speed (van Leer 1977), hydrostatic reconstruction,
+/// HLLC fluxes (Toro 2001), half a step of prediction (van Leer 1984), implicit friction. Of second order
+/// where water is smooth; lakes stay at rest over any bed, depths stay positive, volume is kept to round-off,
+/// uniform flow down a slope is exact. Works only where water is and may come in the next step. A step that
+/// would make a depth negative is repeated at half its length.
 template <int Dim>
 class ShallowWater {
 public:

@@ -9,7 +9,7 @@ namespace abrade {
 /// Least squares fit of a plane to the liquid fractions of the 3^Dim cells around a cell, whose own fraction
 /// it holds exactly: minimises
 ///   E(normal) = sum over neighbours of [fraction below the plane - f]^2
-/// by Gauss and Newton's steps, as in LVIRA (Pilliod & Puckett 2004, doi 10.1016/j.jcp.2003.12.023). Only
+/// by Gauss and Newton's steps, as in LVIRA (Pilliod & Puckett 2004, doi:10.1016/j.jcp.2003.12.023). Only
 /// cells that carry the mark asked for take part, so sides and walls do not bend the surface: a plane is
 /// found exactly wherever its traces in those cells determine it.
 template <int Dim>

@@ -136,7 +136,7 @@ Number reach_of(const SortedNormal<Number>& m, Number fraction) noexcept {
 }  // namespace detail
 
 /// Fraction of the cell below the plane [-]. Exact to round-off for every normal: parallel to edges and
-/// faces, or nearly so. Scardovelli & Zaleski 2000 (doi 10.1006/jcph.1999.6410), in a form without
+/// faces, or nearly so. Scardovelli & Zaleski 2000 (doi:10.1006/jcph.1999.6410), in a form without
 /// cancellation.
 template <int Dim, class Number>
 Number fraction_below(const std::array<Number, Dim>& normal, Number distance) noexcept {

@@ -22,7 +22,7 @@ namespace abrade {
 /// by one sweep along each axis, their order rotating. The surface is a plane in each cell (SurfaceNormals);
 /// a sweep carries what stands in the slab that the face sweeps. Within a step sweep k also adds
 ///   c (swept_high - swept_low) / (open V),   c = 1 where f > 1/2 at the step's beginning, else 0,
-/// the dilatation of one axis (Weymouth & Yue 2010, doi 10.1016/j.jcp.2009.12.018), so that f stays within
+/// the dilatation of one axis (Weymouth & Yue 2010, doi:10.1016/j.jcp.2009.12.018), so that f stays within
 /// its bounds in between. The last sweep takes back what the others added: the volume is conserved to
 /// round-off for any velocities, divergence or not.
 ///
