@@ -30,6 +30,18 @@ std::vector<std::string> not_shown(const fs::path& root) {
     return found;
 }
 
+/// Pages of docs below `root` that show a picture and no command that draws one.
+std::vector<std::string> without_command(const fs::path& root) {
+    static const std::regex picture(R"(!\[[^\]]*\]\([^)]+\))"), command(R"((bench|examples|docs)/run)");
+    std::vector<std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
+        if (entry.path().extension() == ".md")
+            if (const std::string text = read(entry.path());
+                std::regex_search(text, picture) && !std::regex_search(text, command))
+                found.push_back(entry.path().lexically_relative(root).generic_string());
+    return found;
+}
+
 /// Links of pages below `root` that lead to no file: "docs/a.md: b.md".
 std::vector<std::string> broken_links(const fs::path& root) {
     std::vector<fs::path> pages;
@@ -67,6 +79,22 @@ TEST_CASE("a link that leads nowhere is found") {
     std::ofstream(root / "README.md") << "[a](docs/howto/a.md#top), [web](https://example.org), `f[0](x)`\n";
     std::ofstream(root / "docs/howto/a.md") << "[up](../../README.md) and [gone](../gone.md)\n";
     CHECK(broken_links(root) == std::vector<std::string>{"README.md: x", "docs/howto/a.md: ../gone.md"});
+    fs::remove_all(root);
+}
+
+TEST_CASE("pages with pictures say what draws them") {
+    for (const std::string& page : without_command(fs::path(ABRADE_INCLUDE_DIR).parent_path()))
+        FAIL_CHECK(page);
+}
+
+TEST_CASE("a page with a picture and no command is found") {
+    const fs::path root = "made_up_pictures";
+    fs::remove_all(root);
+    fs::create_directories(root / "docs");
+    std::ofstream(root / "docs/a.md") << "![a curve](a.png)\n";
+    std::ofstream(root / "docs/b.md") << "    bench/run charts b\n\n![a curve](b.png)\n";
+    std::ofstream(root / "docs/c.md") << "No picture.\n";
+    CHECK(without_command(root) == std::vector<std::string>{"docs/a.md"});
     fs::remove_all(root);
 }
 
