@@ -32,7 +32,7 @@ std::vector<std::string> not_shown(const fs::path& root) {
 
 /// Pages of docs below `root` that show a picture and no command that draws one.
 std::vector<std::string> without_command(const fs::path& root) {
-    static const std::regex picture(R"(!\[[^\]]*\]\([^)]+\))"), command(R"((bench|examples|docs)/run)");
+    static const std::regex picture(R"(!\[[^\]]*\]\([^)]+\))"), command(R"((bench|bench/charts|examples|docs)/run)");
     std::vector<std::string> found;
     for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
         if (entry.path().extension() == ".md")
