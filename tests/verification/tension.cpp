@@ -45,7 +45,7 @@ TEST_CASE(
         for (SphereLoad& load : store.lines.load) load.force.setZero();
         BondSums sums;
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
-            sums += network.respond(slab, law, NoWear{}, store.lines, [](Index) { return 1.0; }, {1e-7, 0});
+            sums += network.respond(slab, law, NoObserver{}, store.lines, [](Index) { return 1.0; }, {1e-7, 0});
         if (sums.broken_tension > 0) {
             CHECK(sums.lost_bond / sums.broken_tension == doctest::Approx(energy).epsilon(0.001).scale(0));
             at = stretch;
