@@ -203,6 +203,19 @@ TEST_CASE("an observer's answer goes to the watched spheres, whether it sees one
     CHECK(seen(SeesPacks{}, false).first == 0);
 }
 
+TEST_CASE(
+    "pairs that do not touch are seen with a load of 0, and both spheres of a contact get what was seen") {
+    Rig rig = row();
+    rig.marks.resize(3);
+    rig.marks[1].watched = true;
+    rig.place(0).centre = rig.place(1).centre - Vec3(0, 0.0211, 0);  // within the skin, apart
+    rig.list();
+    rig.respond(1e-5, SeesOne{});
+    CHECK(rig.load(0).observed == 0);
+    CHECK(rig.load(1).observed > 0);
+    CHECK(rig.load(2).observed == rig.load(1).observed);  // who is not watched is no concern of its
+}
+
 TEST_CASE("slabs, chunks and images: the same forces as pair by pair, in open and in periodic space") {
     const Clump ball = make_clump("ball", {{Vec3::Zero(), 0.01}});
     const Clump twin = make_clump("twin", {{{-0.006, 0, 0}, 0.009}, {{0.006, 0, 0}, 0.01}});

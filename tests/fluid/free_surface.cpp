@@ -122,7 +122,7 @@ FaceField<Dim> stirred(const Grid<Dim>& grid, const BoundaryConditions<Dim>& bou
 }
 
 struct Bounds {
-    Real low = 1, high = 0, deepest = 0, largest = 0;  ///< of fraction and surplus
+    Real low = 1, high = 0, deepest = 0, largest = 0;  ///< of fraction and volume defect
 };
 template <int Dim>
 Bounds bounds_of(const VolumeOfFluid<Dim>& water) {
@@ -188,7 +188,8 @@ TEST_CASE("volume to 1e-12 over 1000 steps, with divergence and without; bounds"
     check_volume<3>(mixed, true, 0.01, 1000);
 }
 
-TEST_CASE("in the bulk the surplus is minus dt div u, and the flow through faces tells all that changed") {
+TEST_CASE(
+    "in the bulk the volume defect is minus dt div u, and the flow through faces tells all that changed") {
     const Grid<3> grid = grid_of<3>({8, 8, 8}, false, false);
     const auto boundaries = BoundaryConditions<3>::all(Boundary::wall);
     VolumeOfFluid<3> water(grid, boundaries);
@@ -224,8 +225,8 @@ TEST_CASE("in the bulk the surplus is minus dt div u, and the flow through faces
 }
 
 TEST_CASE("what divergence leaves in the bulk stays small where the velocity takes it back") {
-    // The pressure is told surplus / dt as its target: here the divergence of each step is just that, and a
-    // residual of its own.
+    // The pressure is told volume defect / dt as its target: here the divergence of each step is just that,
+    // and a residual of its own.
     const Grid<2> grid = grid_of<2>({16, 16}, true, false);
     VolumeOfFluid<2> water(grid, BoundaryConditions<2>::all(Boundary::wall));
     FaceField<2> flux = face_field<2>(grid.layout());

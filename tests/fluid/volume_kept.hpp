@@ -12,9 +12,9 @@ using namespace abrade;
 
 constexpr Real g = 9.81;
 
-/// What the cells hold, fractions and surplus; sums of doubles would round to 1e-13 or so.
+/// What the cells hold, fractions and volume defects; sums of doubles would round to 1e-13 or so.
 struct Held {
-    long double volume = 0, volume_defect = 0;  ///< [m3]; surplus without its sign
+    long double volume = 0, volume_defect = 0;  ///< [m3]; the defect without its sign
     bool in_bounds = true;
 };
 template <int Dim>

@@ -89,6 +89,28 @@ const HertzMindlin hertz{{.youngs = 5e8, .restitution = 0.8, .friction = 0.3}};
 
 }  // namespace
 
+TEST_CASE("a body that was taken out before a checkpoint is gone after it") {
+    const auto two = [] {
+        Scene scene;
+        scene.gravity = {0, 0, -9.81};
+        scene.add_wall({0, 0, 0}, {0, 0, 1});
+        for (const Real x : {0.0, 0.1}) scene.add_sphere(0.02, {.position = {x, 0, 0.05}});
+        return simulate(scene).contact(linear);
+    };
+    auto sim = two();
+    sim.run({.end_time = 0.05});
+    sim.remove(0);
+    save_state("removed.h5", "removed", StatePart{"simulation", sim});
+    auto restored = two();
+    restored.build();
+    restore_state("removed.h5", "removed", StatePart{"simulation", restored});
+    std::vector<Real> there, here;
+    sim.run({.end_time = 0.2}), append_state(there, sim);
+    restored.run({.end_time = 0.2}), append_state(here, restored);
+    CHECK(sim.particles().bodies() == 1);
+    CHECK(same_bits(there, here));
+}
+
 TEST_CASE("a gas in periodic space") {
     check_restarts("gas", [] { return simulate(gas(11)).contact(hertz); },
                    {.end_time = 0.05, .observe_every = 0.01});

@@ -16,8 +16,8 @@ namespace abrade {
 /// Source: P. P. Camanho, C. G. Davila, M. F. de Moura, J. Compos. Mater. 37 (2003) 1415,
 /// doi:10.1177/0021998303034505.
 ///
-/// It counts as broken in tension where that part is the larger. Pulled alone it breaks at a stretch of A
-/// sigma_t / k_n and gives up (A sigma_t)^2 / (2 k_n).
+/// The bond counts as broken in tension where that part is the larger. Pulled alone it breaks at a stretch of
+/// A sigma_t / k_n and gives up (A sigma_t)^2 / (2 k_n).
 class ElasticBrittle {
 public:
     static constexpr std::string_view name = "ElasticBrittle";

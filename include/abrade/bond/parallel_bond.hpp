@@ -10,6 +10,8 @@ namespace abrade {
 ///   sigma = -f_n/A + |M_b| R/I,  tau = |f_s|/A + |M_t| R/J
 ///   A = pi R^2,  I = pi R^4 / 4,  J = 2 I
 ///   breaks in tension where sigma > sigma_t, in shear where tau > cohesion + f_n/A tan(phi)
+/// f_n, f_s forces [N], M_b, M_t couples [N m], sigma, tau stresses [Pa]
+/// A area [m2], I, J its second moments [m4]
 /// c compression, s shear [m], theta_b bending and theta_t twist [rad]
 /// R = `radius_factor` times the smaller radius, L length [m]
 /// E Young's modulus [Pa], kappa = `stiffness_ratio`, G over E times the shear factor for a beam that shears

@@ -6,7 +6,8 @@
 namespace abrade {
 
 /// A bond law and a couple about the bond, equal and opposite on its two spheres, while it is sound.
-///   M_t = -k_t theta - c_t w,  k_t = a k_s r^2 / 2,  c_t = 2 zeta sqrt(k_t I_eff),  I_eff = 1/(1/I_i + 1/I_j)
+///   M_t = -k_t theta - c_t w,  k_t = a k_s r^2 / 2,  c_t = 2 zeta sqrt(k_t I_eff),  I_eff = 1/(1/I_i +
+///   1/I_j)
 /// theta twist since the start [rad], w its rate [rad/s]: of i against j, about the normal
 /// r the smaller radius [m], k_s the law's spring across the bond [N/m]
 /// a ratio, zeta the law's share of critical damping [-], I_eff [kg m2]
@@ -15,7 +16,8 @@ namespace abrade {
 /// Source: torsion of a round bar as thick as the spheres, a = 1: k_t = G J / L where k_s = G A / L, J /
 /// A = r^2 / 2.
 ///
-/// What the couple stored counts as lost in the bond when that breaks. ParallelBond has no other at a = 1.
+/// What the couple stored counts as lost in the bond when that breaks. With a = 1 the stiffness is that
+/// of a ParallelBond of the radius r.
 /// Made for lattices whose springs let neighbours turn against each other as gears do: a cubic one of
 /// MohrCoulomb bonds (docs/verification/03_heap_at_rest.md).
 template <BondLaw Law>

@@ -1,19 +1,20 @@
 #pragma once
-// A program and the compiled library that it links must lay out packs alike.
+// A program and the compiled library that it links must lay out packs and vectors alike.
 
 #include <abrade/core/simd.hpp>
+#include <abrade/core/types.hpp>
 
 namespace abrade::detail {
 
-/// Where linking misses `CompiledAs<lanes>::same`, abrade::compiled was compiled for another processor than
-/// the program: give both the same -march.
-template <int Lanes>
+/// Where linking misses `CompiledAs<lanes, alignment>::same`, abrade::compiled was compiled for another
+/// processor than the program: give both the same -march.
+template <int Lanes, int Alignment>
 struct CompiledAs {
     static int same();
 };
 
 #ifdef ABRADE_COMPILED
-inline const int compiled_as_the_library = CompiledAs<pack_lanes>::same();
+inline const int compiled_as_the_library = CompiledAs<pack_lanes, EIGEN_MAX_STATIC_ALIGN_BYTES>::same();
 #endif
 
 }  // namespace abrade::detail

@@ -35,7 +35,8 @@ inline Real normal_depth(const Invert& section, Real discharge, Real manning) {
 /// Throws InputError for parameters out of their range.
 /// Source: H. Schlichting, Boundary-Layer Theory; A. Strickler 1923.
 ///
-/// Bed shear stress of the section: rho g R_h S; shear velocity at the centre line: sqrt(g h S).
+/// Bed shear stress of the section: rho g R_h S [Pa]; shear velocity at the centre line: sqrt(g h S) [m/s];
+/// R_h hydraulic radius, h depth [m], S slope [-].
 class UniformFlow {
 public:
     static constexpr std::string_view name = "UniformFlow";

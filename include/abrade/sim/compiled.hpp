@@ -1,6 +1,6 @@
 #pragma once
 // The usual simulations, which abrade::compiled has compiled: a program that links it does not compile them
-// again.
+// again. Without that library this declares nothing.
 
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/parallel_bond.hpp>
@@ -13,23 +13,28 @@
 #include <abrade/wear/sub_particle.hpp>
 
 /// Calls one(contact, bond, wear, fluid, drag, force) for each of them.
-#define ABRADE_USUAL_SIMULATIONS(one)                                                                    \
-    one(LinearSpring, NoBond, NoWear, NoFluid, NoDrag, NoForceOnBodies)                                  \
-        one(HertzMindlin, NoBond, NoWear, NoFluid, NoDrag, NoForceOnBodies)                              \
-            one(MaterialPairs<LinearSpring>, NoBond, NoWear, NoFluid, NoDrag, NoForceOnBodies)           \
-                one(LinearSpring, NoBond, SubParticleAbrasion, NoFluid, NoDrag, NoForceOnBodies)         \
-                    one(LinearSpring, ParallelBond, NoWear, NoFluid, NoDrag, NoForceOnBodies)            \
-                        one(LinearSpring, MohrCoulomb, NoWear, NoFluid, NoDrag, NoForceOnBodies)         \
-                            one(LinearSpring, MohrCoulomb, SubParticleAbrasion, NoFluid, NoDrag,         \
-                                NoForceOnBodies) one(LinearHysteretic, MohrCoulomb, SubParticleAbrasion, \
-                                                     NoFluid, NoDrag, NoForceOnBodies)
+// clang-format off
+#define ABRADE_USUAL_GRAINS(one) \
+    one(LinearSpring, NoBond, NoWear, NoFluid, NoDrag, NoForceOnBodies) \
+    one(HertzMindlin, NoBond, NoWear, NoFluid, NoDrag, NoForceOnBodies) \
+    one(MaterialPairs<LinearSpring>, NoBond, NoWear, NoFluid, NoDrag, NoForceOnBodies) \
+    one(LinearSpring, NoBond, SubParticleAbrasion, NoFluid, NoDrag, NoForceOnBodies)
+#define ABRADE_USUAL_BONDED(one) \
+    one(LinearSpring, ParallelBond, NoWear, NoFluid, NoDrag, NoForceOnBodies) \
+    one(LinearSpring, MohrCoulomb, NoWear, NoFluid, NoDrag, NoForceOnBodies) \
+    one(LinearSpring, MohrCoulomb, SubParticleAbrasion, NoFluid, NoDrag, NoForceOnBodies) \
+    one(LinearHysteretic, MohrCoulomb, SubParticleAbrasion, NoFluid, NoDrag, NoForceOnBodies)
+// clang-format on
 
+#ifdef ABRADE_COMPILED
 namespace abrade {
 
 #define ABRADE_IS_COMPILED(...)                         \
     extern template class World<Policies<__VA_ARGS__>>; \
     extern template class Simulation<__VA_ARGS__>;
-ABRADE_USUAL_SIMULATIONS(ABRADE_IS_COMPILED)
+ABRADE_USUAL_GRAINS(ABRADE_IS_COMPILED)
+ABRADE_USUAL_BONDED(ABRADE_IS_COMPILED)
 #undef ABRADE_IS_COMPILED
 
 }  // namespace abrade
+#endif

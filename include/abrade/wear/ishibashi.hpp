@@ -13,7 +13,7 @@ namespace abrade {
 /// C_1, C_2 coefficients [m3/J], beta time acceleration [-]
 /// Validity: the concrete and gravel that C_1 and C_2 were fitted to: both must be given, none that is
 /// published is built in. Volume only: strength stays.
-/// Throws InputError where they are not.
+/// Throws InputError for parameters out of their range, and where C_1 or C_2 is not given.
 /// Source: T. Ishibashi, Proceedings of JSCE 334 (1983) 103 (in Japanese).
 ///
 /// E_n is booked as the work of the normal force while the two approach (`work_of_approach`), W_f as what the

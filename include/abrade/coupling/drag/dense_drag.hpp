@@ -16,10 +16,10 @@ concept DenseDragLaw = Law<D> && requires(const D& law) {
 // clang-format on
 
 /// Drag of a sphere among others.
-///   C_d(Re) eps^(2 - chi),  chi = 3.7 - 0.65 exp(-(1.5 - log10 Re)^2 / 2)
-/// C_d(Re) coefficient of a sphere alone, Clift & Gauvin's [-], Re Reynolds number of the slip [-]
-/// eps porosity [-]
-/// Validity: Re up to 3e5, from a sphere alone to a packed bed; the pressure's gradient acts on its own.
+///   C = C_d(Re) eps^(2 - chi),  Re = eps rho |u - v| d / mu,  chi = 3.7 - 0.65 exp(-(1.5 - log10 Re)^2 / 2)
+/// C drag coefficient, C_d(Re) that of a sphere alone, Clift & Gauvin's [-]
+/// eps porosity [-], u - v slip [m/s], d diameter [m], rho density [kg/m3], mu viscosity [Pa s]
+/// Validity: Re up to 3e5, porosities from 0.2 to 1 (held there); the pressure's gradient acts on its own.
 /// Throws InputError for parameters out of their range.
 /// Source: R. Di Felice, Int. J. Multiphase Flow 20 (1994) 153, doi:10.1016/0301-9322(94)90011-6.
 class DiFelice {

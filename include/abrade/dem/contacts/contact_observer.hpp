@@ -5,9 +5,10 @@
 
 namespace abrade {
 
-/// Sees the contacts of spheres that are watched, once in each step, after the contact law has answered: a
-/// pure function, whose answer is added up in `SphereLoad::observed` of each watched side. With a template on
-/// the number type it sees a pack of contacts at once.
+/// Sees the contacts of which a sphere is watched, once in each evaluation, after the contact law has
+/// answered: a pure function. Its answer is added to `SphereLoad::observed` of both spheres; who reads that
+/// asks which of them are watched, and clears it. Pairs that do not touch may be shown, too: their load is 0,
+/// and so must the answer be. With a template on the number type an observer sees a pack of contacts at once.
 // clang-format off
 template <class O>
 concept ContactObserver =

@@ -14,6 +14,7 @@ namespace abrade {
 ///   G = E / (2 (1 + nu)),  c = 2 sqrt(5/6) zeta sqrt(S m),  S_n = 2 E* sqrt(R delta),  S_t = k_t
 /// delta overlap [m], R effective radius [m]
 /// E Young's and G shear modulus [Pa], nu Poisson's ratio [-]
+/// k_t, S stiffness [N/m], c dashpots [N s/m]
 /// v_n speed of approach [m/s], s tangential spring [m], v_t slip velocity [m/s]
 /// mu friction [-], zeta damping ratio, from the restitution [-]
 /// m effective mass [kg], 1/m = 1/m_i + 1/m_j or, with `DampingMass::free`, the sum over the free bodies

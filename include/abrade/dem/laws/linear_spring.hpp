@@ -30,7 +30,7 @@ public:
         Real restitution = 1;             ///< of a normal impact, in (0, 1] [-]
         Real friction = 0;                ///< mu [-]
         Real tangential_ratio = 2.0 / 7;  ///< k_t / k_n [-]; 2/7 gives both directions the same period
-        DampingMass damping_mass = DampingMass::both;  ///< what m_eff counts
+        DampingMass damping_mass = DampingMass::both;  ///< what m counts
 
         void validate() const {
             require_positive(stiffness, "LinearSpring.stiffness", "N/m",
@@ -123,7 +123,7 @@ public:
 private:
     Params params_;
     Real damping_ratio_ = 0;
-    Real dashpot_normal_ = 0, dashpot_tangential_ = 0;  ///< 2 zeta sqrt(k); times sqrt(m_eff) [N s/m]
+    Real dashpot_normal_ = 0, dashpot_tangential_ = 0;  ///< 2 zeta sqrt(k); times sqrt(m) [N s/m]
 };
 
 static_assert(ContactLaw<LinearSpring> && MayDampFreeMass<LinearSpring>);

@@ -12,7 +12,7 @@ namespace abrade {
 /// resists at gaps h below a range h_c.
 ///   F = 6 pi mu R^2 (1/max(h, h_r) - 1/h_c) v,  0 < h < h_c
 /// h gap, h_r roughness, h_c range [m]
-/// R effective radius [m], v speed of approach [m/s], mu dynamic viscosity [Pa s]
+/// R effective radius [m], m_eff effective mass [kg], v speed of approach [m/s], mu dynamic viscosity [Pa s]
 /// Validity: the leading term of the resistance, less what is left of it at h_c. A flow on a grid that
 /// resolves the bodies has the film down to about a cell itself, so h_c is a cell; where no flow resolves
 /// them, h_c is some radii.

@@ -12,11 +12,11 @@ concept KnowsNormalStiffness = requires(const L& law) {
 };
 
 /// A contact law and a couple that resists rolling, equal and opposite on the two bodies, in two models:
-/// - elastic_plastic (their model C): spring, dashpot and slider,
+///   M_max = mu_r R f_n
+/// - elastic_plastic (model C of the source): spring, dashpot and slider,
 ///   M = -k_r theta - c_r w,  |M| <= M_max,  k_r = a k_n (mu_r R)^2,  c_r = 2 eta_r sqrt(I_r k_r)
 /// - constant_torque (model A):
-///   M = -M_max w/|w|, but no more than stops the rolling in some twelve steps;
-///   M_max = mu_r R f_n
+///   M = -M_max w/|w|, but no more than stops the rolling in some twelve steps
 /// M couple [N m], f_n the law's normal force [N], k_n secant of its normal spring [N/m]
 /// R effective radius [m], mu_r rolling friction [-], a stiffness ratio [-], eta_r damping ratio [-]
 /// w relative angular velocity without its part about the normal [rad/s], theta its travel [rad]

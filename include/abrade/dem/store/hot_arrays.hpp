@@ -37,7 +37,7 @@ struct alignas(64) SphereMotion {
 /// radii, arm = lambda r, lambda = distance / (r_i + r_j): both spheres of a contact feel the same lever.
 struct alignas(64) SphereLoad {
     Vec3 force = Vec3::Zero();  ///< [N]
-    Real observed = 0;          ///< what an observer of contacts has found in this step
+    Real observed = 0;          ///< what an observer of contacts has found in this step [its unit]
     /// Sum of lambda f x n, and of couples over the radius; times that: the torque about the centre [N].
     Vec3 torque_over_radius = Vec3::Zero();
     Real mass = 0;  ///< of its body: no load, but its place is free [kg]

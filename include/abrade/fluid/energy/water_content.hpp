@@ -30,7 +30,9 @@ struct EnergyView {
     Real time = 0;                            ///< when the step began [s]
     const Field<State>* eddies = nullptr;  ///< nu_t of cells that acted in the step [m2/s]; none: no eddies
     const Liquid* liquid = nullptr;
-    const FaceField<Dim>* flux = nullptr;  ///< that moved the liquid, solids among it included [m3]
+    /// That moved the liquid, solids among it included [m3]; once a step is done, what carried momentum in
+    /// its second stage.
+    const FaceField<Dim>* flux = nullptr;
     const EmbeddedBoundary<Dim>* walls = nullptr;
     const WetRows<Dim>* rows = nullptr;
     const Field<Real>* liquid_fraction_before = nullptr;  ///< liquid in whole cells when the step began [-]

@@ -2,6 +2,7 @@
 // Columns of cells above a bed: how much liquid stands in one below a height, and how high a volume stands.
 
 #include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/vof/cell_marks.hpp>
 #include <abrade/fluid/vof/plic.hpp>
 

@@ -132,12 +132,12 @@ public:
         fluxes_.find(flow);
         fluxes_.limit(flow);
         fluxes_.sum(flow, next);
-        detail::carry_solids(water_, std::exchange(solid_fluxes_, {}), dt, flux, solid_moved_);
+        solid_moved_ = detail::carry_solids(water_, std::exchange(solid_fluxes_, {}), dt, flux);
         take_sources(sources, dt, next);
         if (dt > 0)
-            detail::hold_slopes(water_, near_solid_,
-                                {params_.steepest, params_.most_overturning, -gravity_[vertical]}, next, flux,
-                                overturning_);
+            detail::hold_slopes(
+                water_, {params_.steepest, params_.most_overturning, -gravity_[vertical], near_solid_}, next,
+                flux, overturning_);
         detail::ColumnRenewal<Dim> renewal(water_, touched_, next, flux);
         const bool rose_far = renewal.run();
         renewal.raise_by(sources);
@@ -204,9 +204,8 @@ public:
     const detail::HeightColumns<Dim>& columns() const noexcept { return water_.shape; }
     Real height(Index column) const noexcept { return water_.height[at(column)]; }         ///< [m]
     Real column_volume(Index column) const noexcept { return water_.volume[at(column)]; }  ///< [m3]
-    int top(Index column) const noexcept {
-        return water_.top[at(column)];
-    }  ///< level of the cell at the surface
+    /// Level of the cell at the surface.
+    int top(Index column) const noexcept { return water_.top[at(column)]; }
 
     /// Whether the centre of a cell lies below the surface of its column.
     bool is_liquid(Offset cell) const noexcept {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace abrade {
@@ -48,8 +50,9 @@ std::vector<std::uint8_t> columns_near_solids(const WaterColumns<Dim>& water) {
 
 /// What of the surface may be how steep.
 struct SlopeLimits {
-    Real steepest = 0, most_overturning = 0;  ///< see HeightOfFluid::Params
-    Real weight = 0;                          ///< gravity, positive downwards [m/s2]
+    Real steepest = 0, most_overturning = 0;     ///< see HeightOfFluid::Params
+    Real weight = 0;                             ///< gravity, positive downwards [m/s2]
+    std::span<const std::uint8_t> near_solid{};  ///< [column] where steeper ones are no error
 };
 
 /// Where two columns differ by more than the steepest slope allows, after the step and by more than before
@@ -57,9 +60,8 @@ struct SlopeLimits {
 /// of it would make a dam's front on a thin film slower than it is. `next` [m3]: volumes after the step;
 /// `flux` [m3]: what goes through faces. Throws InputError where too much of the surface is held so.
 template <int Dim>
-void hold_slopes(const WaterColumns<Dim>& water, const std::vector<std::uint8_t>& near_solid,
-                 const SlopeLimits& limits, std::vector<Real>& next, FaceField<Dim>& flux,
-                 Overturning& overturning) {
+void hold_slopes(const WaterColumns<Dim>& water, const SlopeLimits& limits, std::vector<Real>& next,
+                 FaceField<Dim>& flux, Overturning& overturning) {
     if (!(limits.weight > 0)) return;
     const auto at = [](auto i) { return static_cast<std::size_t>(i); };
     const HeightColumns<Dim>& shape = water.shape;
@@ -92,7 +94,7 @@ void hold_slopes(const WaterColumns<Dim>& water, const std::vector<std::uint8_t>
             const Real amount =
                 std::min(share * 0.5 * beyond * plan, 0.1 * std::max(next[at(from)], Real(0)));
             all.push_back({from, down ? below : n, a, plane, j, down, amount, std::abs(rise),
-                           !near_solid[at(n)] && !near_solid[at(below)]});
+                           !limits.near_solid[at(n)] && !limits.near_solid[at(below)]});
         }
     });
     if (all.empty()) return;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <span>
 #include <vector>
 
 namespace abrade::detail {
@@ -240,8 +241,8 @@ void WaterColumns<Dim>::fill_ghost_columns() {
 /// Solid carries momentum's volumes with it, as far as it is below the surface: adds to `flux` [m3] what goes
 /// through upright faces, and answers it.
 template <int Dim>
-void carry_solids(const WaterColumns<Dim>& water, std::span<const SolidFlux> fluxes, Real dt,
-                  FaceField<Dim>& flux, std::vector<SolidVolume>& moved) {
+std::vector<SolidVolume> carry_solids(const WaterColumns<Dim>& water, std::span<const SolidFlux> fluxes,
+                                      Real dt, FaceField<Dim>& flux) {
     constexpr int vertical = Grid<Dim>::vertical;
     const auto at = [](auto i) { return static_cast<std::size_t>(i); };
     const auto below_surface = [&](const SolidFlux& f) {
@@ -254,7 +255,7 @@ void carry_solids(const WaterColumns<Dim>& water, std::span<const SolidFlux> flu
         const Real area = water.shape.plan() / water.grid.size(f.axis, 0) * size;
         return share * f.speed * area * dt * (water.apertures ? (*water.apertures)[f.axis][f.face] : 1);
     };
-    moved.resize(fluxes.size());
+    std::vector<SolidVolume> moved(fluxes.size());
     const auto plane_of = [&](Index i) {
         return water.layout.number(fluxes[at(i)].face)[Layout<Dim>::outer];
     };
@@ -273,6 +274,7 @@ void carry_solids(const WaterColumns<Dim>& water, std::span<const SolidFlux> flu
             if (volume != 0) flux[f.axis][f.face] += volume;
         }
     });
+    return moved;
 }
 
 }  // namespace abrade::detail

@@ -4,6 +4,7 @@
 #include <abrade/core/parallel.hpp>
 #include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
 #include <abrade/fluid/mesh/ghost_cells.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/mesh/water_cells.hpp>
 
 #include <algorithm>

@@ -66,7 +66,7 @@ public:
 
 /// Large-eddy simulation: eddies below a cell.
 ///   nu_t = l^2 |S|,  |S| = sqrt(2 S_ij S_ij),  l = min(C_s Delta, kappa d),  Delta = (cell's volume)^(1/Dim)
-/// nu_t eddy viscosity [m2/s], S strain rate [1/s]
+/// nu_t eddy viscosity [m2/s], S strain rate [1/s], l mixing length, Delta the cell's size [m]
 /// d distance from the nearest wall [m], kappa von Karman's constant [-]
 /// C_s constant [-]: 0.1 in channels (J. Deardorff, doi:10.1017/S0022112070000691), 0.17 far from walls (D.
 /// Lilly, 1967)
@@ -113,7 +113,7 @@ private:
 /// Large-eddy simulation whose eddies vanish beside a smooth wall as they do there, by the cube of the
 /// distance, and in pure shear.
 ///   nu_t = (C_w Delta)^2 (Sd_ij Sd_ij)^(3/2) / ((S_ij S_ij)^(5/2) + (Sd_ij Sd_ij)^(5/4))
-/// nu_t eddy viscosity [m2/s], S strain rate [1/s]
+/// nu_t eddy viscosity [m2/s], S strain rate [1/s], Delta the cell's size [m]
 /// Sd the symmetric, traceless part of the square of the velocity's gradient [1/s2]
 /// C_w constant [-]: sqrt(10.6) C_s, so 0.33 for Smagorinsky's 0.1 in channels, 0.5 in their decaying
 /// turbulence
@@ -155,7 +155,7 @@ private:
 
 /// Mean flow of a channel, all eddies modelled.
 ///   nu_t = l^2 |S|,  l = kappa d sqrt(1 - d / h),  at most kappa u* d (1 - d / h)
-/// nu_t eddy viscosity [m2/s], S strain rate [1/s]
+/// nu_t eddy viscosity [m2/s], S strain rate [1/s], l mixing length [m]
 /// d distance from the nearest wall, h depth [m], kappa von Karman's constant [-]
 /// u* shear velocity [m/s]
 /// Validity: channels, on coarse grids and in two dimensions. It is no model of wakes: there the strain makes

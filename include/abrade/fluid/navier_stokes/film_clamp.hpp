@@ -3,6 +3,7 @@
 
 #include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
 #include <abrade/fluid/mesh/row_index.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/mesh/water_cells.hpp>
 
 #include <algorithm>

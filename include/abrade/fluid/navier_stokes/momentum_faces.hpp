@@ -39,8 +39,10 @@ void find_momentum_faces(const WetRows<Dim>& wet, const Layout<Dim>& layout,
     }
 }
 
-/// Liquid in cells before and after a step, as shares of whole cells [-]; more than `full` is full.
-struct LiquidOfStep {
+/// A step of the liquid: its length [s], and shares of whole cells before and after it [-]; more than `full`
+/// is full.
+struct LiquidStep {
+    Real dt;
     const Field<Real>&before, &now;
     Real full;
 };
@@ -50,8 +52,8 @@ struct LiquidOfStep {
 /// pushed it for another, and a speed that carries itself would grow without bound. A trace of air makes no
 /// surface, or round-off would choose between the two.
 template <int Dim>
-void carry_bulk_by(const FaceField<Dim>& stage, Real dt, const Grid<Dim>& grid, const WetRows<Dim>& rows,
-                   const LiquidOfStep& liquid, FaceField<Dim>& flux) {
+void carry_bulk_by(const FaceField<Dim>& stage, const Grid<Dim>& grid, const WetRows<Dim>& rows,
+                   const LiquidStep& liquid, FaceField<Dim>& flux) {
     const auto at_level = [&](int k) {
         CellNumber<Dim> cell{};
         cell[Grid<Dim>::vertical] = k;
@@ -62,7 +64,7 @@ void carry_bulk_by(const FaceField<Dim>& stage, Real dt, const Grid<Dim>& grid, 
     for (int a = 0; a < Dim; ++a) {
         const LevelTable<Dim, Real> swept(grid, [&](int k) {
             const CellNumber<Dim> cell = at_level(k);
-            return dt * grid.volume(cell) / grid.size(a, cell[a]);
+            return liquid.dt * grid.volume(cell) / grid.size(a, cell[a]);
         });
         const Offset back = grid.layout().stride[a];
         rows.for_each_row([&](int plane, int row, const RowRange& r) {

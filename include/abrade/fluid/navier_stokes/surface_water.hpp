@@ -104,7 +104,7 @@ public:
 
     /// The second stage's flux: see `carry_bulk_by`.
     void carry_by(const FaceField<Dim>& stage, Real step) {
-        carry_bulk_by(stage, step, *grid_, rows_, {before_, liquid_fraction(), liquid_.full()}, flux_);
+        carry_bulk_by(stage, *grid_, rows_, {step, before_, liquid_fraction(), liquid_.full()}, flux_);
         join(flux_);
     }
 

@@ -2,6 +2,7 @@
 // Velocities of the air beside water, and of the liquid in it: the water's, carried on outward.
 
 #include <abrade/fluid/embedded_boundary/embedded_boundary.hpp>
+#include <abrade/fluid/mesh/volume_tolerance.hpp>
 #include <abrade/fluid/mesh/water_cells.hpp>
 
 #include <algorithm>

@@ -8,7 +8,6 @@
 #include <abrade/fluid/vof/solids_in_cells.hpp>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 

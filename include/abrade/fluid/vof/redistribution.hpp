@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <unordered_set>
 #include <vector>
@@ -22,12 +23,12 @@ public:
         : liquid_(liquid), surface_(surface), layout_(liquid.layout), most_(largest_volume_defect),
           flux_(flux) {}
 
-    struct Settled {
+    struct Result {
         Real redistributed = 0;     ///< [m3]
         int not_redistributed = 0;  ///< cells
     };
     /// Those of the band, and `overfull` ones of the bulk.
-    Settled settle(const CellsOfPlanes& overfull);
+    Result run(const CellsOfPlanes& overfull);
 
     /// Hands on what all full cells hold beyond their volume, as far as there is a way.
     void make_room() {
@@ -55,11 +56,11 @@ private:
 };
 
 template <int Dim>
-typename Redistribution<Dim>::Settled Redistribution<Dim>::settle(const CellsOfPlanes& overfull) {
+typename Redistribution<Dim>::Result Redistribution<Dim>::run(const CellsOfPlanes& overfull) {
     fill_periodic(liquid_.fraction, layout_, liquid_.boundaries);
     // One after the other, in order: few, and the same for any number of threads.
     constexpr std::size_t reach = Dim == 3 ? 2000 : 200;
-    Settled done;
+    Result done;
     for (const auto& plane : bound_band())
         for (const auto& [c, level] : plane) {
             Real& defect = liquid_.volume_defect[c];

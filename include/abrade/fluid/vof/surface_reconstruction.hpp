@@ -66,7 +66,7 @@ public:
         locate(liquid);
     }
     /// A cell outside of the last band that may have to be closed: it was given redistributed liquid.
-    void look_again_at(Offset cell) { settled_.push_back(static_cast<Index>(cell)); }
+    void look_again_at(Offset cell) { to_close_.push_back(static_cast<Index>(cell)); }
 
     /// Planes of all cells of the band that are neither full nor dry; `keep`: with the normals that they
     /// have.
@@ -101,7 +101,7 @@ public:
             field("at_walls", &SurfaceReconstruction::at_walls_), field("wet", &SurfaceReconstruction::wet_),
             field("active", &SurfaceReconstruction::active_),
             field("touched", &SurfaceReconstruction::touched_),
-            field("settled", &SurfaceReconstruction::settled_);
+            field("to_close", &SurfaceReconstruction::to_close_);
     }
 
 private:
@@ -116,7 +116,7 @@ private:
     SurfacePlanes<Dim> planes_, planes_before_;
     SurfaceBand<Dim> band_;
     WetRows<Dim> wet_, active_, touched_;
-    std::vector<Index> settled_;
+    std::vector<Index> to_close_;
 };
 
 template <int Dim>
@@ -137,8 +137,8 @@ void SurfaceReconstruction<Dim>::locate(LiquidCells<Dim>& liquid) {
     };
     parallel_for(static_cast<Index>(band_before.size()),
                  [&](Index i) { close(band_before[static_cast<std::size_t>(i)]); });
-    for (const Index c : settled_) close(c);
-    settled_.clear();
+    for (const Index c : to_close_) close(c);
+    to_close_.clear();
     reconstruct(liquid, false);
 }
 

@@ -4,7 +4,9 @@
 #include <abrade/core/parallel.hpp>
 #include <abrade/fluid/vof/surface_reconstruction.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -38,34 +40,36 @@ struct LevelSizes {
     std::vector<Real> per_volume;
 };
 
-/// One step of `dt` [s] with `velocity` [m/s]: what goes through each face is `flux` [m3], as VolumeOfFluid
-/// has it.
+/// One step of a VolumeOfFluid: what goes through each face is `flux` [m3].
 template <int Dim>
 class Sweeps {
     static constexpr int vertical = Grid<Dim>::vertical, inner = Layout<Dim>::inner,
                          outer = Layout<Dim>::outer;
 
 public:
-    struct Params {
-        bool fit_every_sweep = false;
-        Real largest_volume_defect = 0;  ///< see VolumeOfFluid::Params
+    struct Step {
+        const FaceField<Dim>& velocity;  ///< [m/s]
+        Real dt;                         ///< [s]
+        FaceField<Dim>& flux;
+        bool fit_every_sweep;        ///< see VolumeOfFluid::Params
+        Real largest_volume_defect;  ///< likewise
     };
 
     Sweeps(LiquidCells<Dim>& liquid, SurfaceReconstruction<Dim>& surface, const LevelSizes<Dim>& sizes,
-           const FaceField<Dim>& velocity, Real dt, FaceField<Dim>& flux, const Params& params)
-        : liquid_(liquid), surface_(surface), layout_(liquid.layout), sizes_(sizes), velocity_(velocity),
-          flux_(flux), params_(params), swept_per_speed_(sizes.area),
+           const Step& step)
+        : liquid_(liquid), surface_(surface), layout_(liquid.layout), sizes_(sizes), velocity_(step.velocity),
+          flux_(step.flux), step_(step), swept_per_speed_(sizes.area),
           filled_(static_cast<std::size_t>(layout_.planes())),
           overfull_(static_cast<std::size_t>(layout_.planes())) {
         for (auto& areas : swept_per_speed_)
-            for (Real& area : areas) area *= dt;
+            for (Real& area : areas) area *= step.dt;
     }
 
     /// All of it, axes in the order of the step's number.
-    void run(Index step) {
+    void run(Index number) {
         carry_bulk();
         find_filled();
-        const PerAxis<int, Dim> axes = order(step);
+        const PerAxis<int, Dim> axes = order(number);
         for (int n = 0; n < Dim; ++n) sweep(axes, n);
     }
 
@@ -110,7 +114,7 @@ private:
     const LevelSizes<Dim>& sizes_;
     const FaceField<Dim>& velocity_;
     FaceField<Dim>& flux_;
-    Params params_;
+    Step step_;
     PerAxis<std::vector<Real>, Dim>
         swept_per_speed_;  ///< dt times area, by level from the first ghost [m2 s]
     /// [plane] c of Weymouth and Yue, 0 or 1, of the cells of its band packs.
@@ -145,7 +149,7 @@ void Sweeps<Dim>::carry_row(Offset start, Index level, const RowRange& range, bo
     const std::uint8_t* band = surface_.band().data() + start;
     const Field<Real>* const room = liquid_.room();
     const bool walls = liquid_.apertures != nullptr;
-    const Real most = params_.largest_volume_defect;
+    const Real most = step_.largest_volume_defect;
     PerAxis<const Real*, Dim> u, open{};
     PerAxis<Real*, Dim> out;
     for (int a = 0; a < Dim; ++a) {
@@ -208,7 +212,7 @@ template <int Dim>
 void Sweeps<Dim>::sweep(const PerAxis<int, Dim>& axes, int number) {
     const int axis = axes[number];
     if (number > 0) {
-        surface_.reconstruct(liquid_, !params_.fit_every_sweep);
+        surface_.reconstruct(liquid_, !step_.fit_every_sweep);
         fluxes_of_band(axis);
     }
     fluxes_of_planes(axis);

@@ -92,24 +92,26 @@ public:
 
     /// One step. `velocity` [m/s]: component a of a cell on its lower face along a, also at the upper sides
     /// and, where cells at the surface have air beside them, on the faces of that air. `flux` [m3]: liquid,
-    /// and solids below the surface, that went through each lower face, where either was. `sources`: water
-    /// that is put into cells that hold some, or taken out of them, at the end; told how much that was.
-    /// Throws InputError beyond `courant_end`.
+    /// and solids below the surface, that went through each lower face; the same field in each step, 0 at
+    /// first: faces that no water comes near are not written. `sources`: water that is put into cells that
+    /// hold some, or taken out of them, at the end; told how much that was. Throws InputError beyond
+    /// `courant_end`.
     VolumeStep advance(const FaceField<Dim>& velocity, Real dt, FaceField<Dim>& flux,
                        std::span<CellSource> sources = {}) {
         require_not_negative(dt, "VolumeOfFluid.advance: dt", "s");
         VolumeStep step{.courant = dt * outflow_rate(velocity)};
         if (!(step.courant <= courant_end)) fail_courant(velocity, dt);
 
-        detail::Sweeps<Dim> sweeps(liquid_, surface_, sizes_, velocity, dt, flux,
-                                   {params_.fit_every_sweep, params_.largest_volume_defect});
+        detail::Sweeps<Dim> sweeps(
+            liquid_, surface_, sizes_,
+            {velocity, dt, flux, params_.fit_every_sweep, params_.largest_volume_defect});
         sweeps.run(steps_++);
         const bool solids = liquid_.solids.any();
         if (solids)
             solid_moved_ = detail::move_solids(liquid_, std::exchange(solid_fluxes_, {}), dt,
                                                1 - surface_.void_inside_water(), flux);
-        const auto settled = redistribution(flux).settle(sweeps.overfull());
-        step.redistributed = settled.redistributed, step.not_redistributed = settled.not_redistributed;
+        const auto done = redistribution(flux).run(sweeps.overfull());
+        step.redistributed = done.redistributed, step.not_redistributed = done.not_redistributed;
         if (solids) detail::close_voids(liquid_, surface_);
         take_sources(sources, dt);
         surface_.follow(liquid_);

@@ -60,9 +60,8 @@ public:
     const ContactList<PairLaw<decltype(P::contact)>>& contacts() const noexcept { return state_.contacts; }
     const Network<decltype(P::bond)>& network() const noexcept { return state_.network; }
     const Concrete& concrete() const noexcept { return state_.concrete; }
-    Real cumulative_discharge() const noexcept {
-        return state_.counter.passed();
-    }  ///< solid, net downstream [m3]
+    /// Solid that passed the flow counter, net downstream [m3].
+    Real cumulative_discharge() const noexcept { return state_.counter.passed(); }
     StepSeconds timed() const noexcept { return timed_; }
     Real renewal_seconds() const noexcept { return lists_.seconds(); }
     Real fluid_seconds() const noexcept { return fluid_seconds_; }

@@ -17,7 +17,8 @@ struct Events {
     std::vector<Index> weakened;  ///< sites whose strength has fallen by a step
     // Put by an evaluation and by wear, taken by `State::free_loose_concrete`.
     bool bond_broke = false;
-    // Put by these two and by changes between runs, taken by a renewal of lists.
+    // Put by `settle_concrete`, `State::free_loose_concrete` and changes between runs, taken by a renewal of
+    // lists.
     std::vector<Index> worn_away;                  ///< sites whose bodies are to go
     std::vector<Index> removed;                    ///< bodies that a user takes out
     std::vector<BondGraph::Component> components;  ///< that came loose and are to go on as clumps
@@ -31,7 +32,8 @@ struct Events {
     static void fields(auto&& field) {
         field.bytes("presses", &Events::presses), field("weakened", &Events::weakened),
             field("bond_broke", &Events::bond_broke), field("worn_away", &Events::worn_away),
-            field("components", &Events::components), field("loosened", &Events::loosened);
+            field("removed", &Events::removed), field("components", &Events::components),
+            field("loosened", &Events::loosened);
     }
 };
 

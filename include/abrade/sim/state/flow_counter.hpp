@@ -22,12 +22,12 @@ public:
         if (!place_) return;
         for (Index b = 0; b < particles.bodies(); ++b) see(particles, b, particles.position[at(b)].x());
     }
-    /// A stone that leaves from x, whatever `particles` say.
+    /// A stone that leaves from x, where it is now; `particles` may be older.
     void leave(const Particles& particles, Index body, Real x) {
         if (place_) see(particles, body, x);
     }
 
-    /// Bodies that have come since are where they are, and bodies that go are told by `gone` [body].
+    /// Of bodies that have come since; `gone` [body] marks those that leave.
     void grow(const Particles& particles) {
         for (std::size_t b = past_.size(); b < particles.position.size(); ++b)
             past_.push_back(place_ && particles.position[b].x() >= *place_);
