@@ -10,9 +10,9 @@ mkdir -p "$work"
 place=()
 if [ "$kind" = package ]; then
     "$cmake" --install "$build_dir" --prefix "$work/prefix" >/dev/null
-    # What is installed may be moved, so it must not point back to where it was made.
+    # What is installed may be moved, so it must not point back to where it was made; an archive tells debuggers only.
     mv "$work/prefix" "$work/moved"
-    if grep -rlF -e "$source_dir" -e "$work/prefix" "$work/moved"; then
+    if grep -rlF --exclude="*.a" -e "$source_dir" -e "$work/prefix" "$work/moved"; then
         echo "the installed files above name the folder they were made in"
         exit 1
     fi
