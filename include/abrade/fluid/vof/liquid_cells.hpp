@@ -8,6 +8,7 @@
 #include <abrade/fluid/vof/solids_in_cells.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -89,27 +90,31 @@ struct LiquidCells {
         return total;
     }
 
-    /// A cell beside another one, through a face that is open.
+    /// A cell beside another one.
     struct Beside {
         Offset cell, face, twin;  ///< twin: the same face at the other end of a periodic axis, or -1
         Index level;
         int axis, side;  ///< side: -1 or 1
     };
+    /// At `side` (-1 or 1) along an axis, also across a periodic end; none beyond other ends.
+    std::optional<Beside> beside(Offset c, Index level, int axis, int side) const noexcept {
+        const Offset step = layout.stride[axis];
+        Beside b{c + side * step, side > 0 ? c + step : c, -1, level, axis, side};
+        if (axis == vertical) b.level += side;
+        if (is_inside(b.cell)) return b;
+        if (!boundaries.periodic(axis)) return std::nullopt;
+        const Offset around = side * layout.cells[axis] * step;
+        b.cell -= around, b.twin = b.face - around;
+        if (axis == vertical) b.level -= side * layout.cells[axis];
+        return b;
+    }
     /// Calls visit(Beside) for the cells to which liquid may flow.
     void for_each_beside(Offset c, Index level, auto&& visit) const {
         for (int a = 0; a < Dim; ++a)
-            for (const int side : {-1, 1}) {
-                const Offset step = layout.stride[a];
-                Beside b{c + side * step, side > 0 ? c + step : c, -1, level, a, side};
-                if (a == vertical) b.level += side;
-                if (!is_inside(b.cell)) {
-                    if (!boundaries.periodic(a)) continue;
-                    const Offset around = side * layout.cells[a] * step;
-                    b.cell -= around, b.twin = b.face - around;
-                    if (a == vertical) b.level -= side * layout.cells[a];
-                }
-                if (is_open(b.cell) && aperture(a, b.face) > 0) visit(b);
-            }
+            for (const int side : {-1, 1})
+                if (const auto b = beside(c, level, a, side);
+                    b && is_open(b->cell) && aperture(a, b->face) > 0)
+                    visit(*b);
     }
 
     static std::string text(const CellNumber<Dim>& cell) {

@@ -57,9 +57,8 @@ public:
 
     Sweeps(LiquidCells<Dim>& liquid, SurfaceReconstruction<Dim>& surface, const LevelSizes<Dim>& sizes,
            const Step& step)
-        : liquid_(liquid), surface_(surface), layout_(liquid.layout), sizes_(sizes), velocity_(step.velocity),
-          flux_(step.flux), step_(step), swept_per_speed_(sizes.area),
-          filled_(static_cast<std::size_t>(layout_.planes())),
+        : liquid_(liquid), surface_(surface), layout_(liquid.layout), sizes_(sizes), step_(step),
+          swept_per_speed_(sizes.area), filled_(static_cast<std::size_t>(layout_.planes())),
           overfull_(static_cast<std::size_t>(layout_.planes())) {
         for (auto& areas : swept_per_speed_)
             for (Real& area : areas) area *= step.dt;
@@ -87,11 +86,11 @@ private:
 
     /// Volume that a lower face sweeps in the step, positive upwards [m3].
     Real swept(int axis, Offset c, Index level) const noexcept {
-        const Real volume = velocity_[axis][c] * sizes_.at(swept_per_speed_[axis], level);
+        const Real volume = step_.velocity[axis][c] * sizes_.at(swept_per_speed_[axis], level);
         return liquid_.apertures ? volume * (*liquid_.apertures)[axis][c] : volume;
     }
     Pack swept_of_pack(int axis, Offset c, Index level) const noexcept {
-        const Pack volume = Pack::load_from_anywhere(velocity_[axis].data() + c) *
+        const Pack volume = Pack::load_from_anywhere(step_.velocity[axis].data() + c) *
                             sizes_.of_pack(swept_per_speed_[axis], level);
         return liquid_.apertures ? volume * Pack::load_from_anywhere((*liquid_.apertures)[axis].data() + c)
                                  : volume;
@@ -112,8 +111,6 @@ private:
     SurfaceReconstruction<Dim>& surface_;
     const Layout<Dim>& layout_;
     const LevelSizes<Dim>& sizes_;
-    const FaceField<Dim>& velocity_;
-    FaceField<Dim>& flux_;
     Step step_;
     PerAxis<std::vector<Real>, Dim>
         swept_per_speed_;  ///< dt times area, by level from the first ghost [m2 s]
@@ -153,8 +150,8 @@ void Sweeps<Dim>::carry_row(Offset start, Index level, const RowRange& range, bo
     PerAxis<const Real*, Dim> u, open{};
     PerAxis<Real*, Dim> out;
     for (int a = 0; a < Dim; ++a) {
-        u[a] = velocity_[a].data() + start;
-        out[a] = flux_[a].data() + start;
+        u[a] = step_.velocity[a].data() + start;
+        out[a] = step_.flux[a].data() + start;
         if (walls) open[a] = (*liquid_.apertures)[a].data() + start;
     }
     const auto level_of = [&](int i) { return Dim == 3 ? level : Index{i}; };
@@ -222,7 +219,7 @@ void Sweeps<Dim>::sweep(const PerAxis<int, Dim>& axes, int number) {
     const auto dilatation = [&](int a, Offset c, Index level) {
         return swept_of_pack(a, c + layout_.stride[a], level) - swept_of_pack(a, c, level);
     };
-    const Real* const moved = flux_[axis].data();
+    const Real* const moved = step_.flux[axis].data();
     const Field<Real>* const room = liquid_.room();
     const bool last = number == Dim - 1;
     surface_.for_band_packs([&](const BandPack& pack) {
@@ -269,12 +266,13 @@ void Sweeps<Dim>::fluxes_of_band(int axis) {
                 const Offset c = start + i;
                 const std::uint8_t* const band = surface_.band().data() + c;
                 if (!any(flags_at(band) | flags_at(band - step))) continue;
-                const Pack speed = Pack::load(velocity_[axis].data() + c);
+                const Pack speed = Pack::load(step_.velocity[axis].data() + c);
                 const Pack f = select(speed > Pack(0), Pack::load_from_anywhere(fraction + c - step),
                                       Pack::load(fraction + c));
                 const Pack share = select(f > Pack(1 - volume_tolerance::round_off), Pack(1), f);
                 const Pack flux = swept_of_pack(axis, c, Dim == 3 ? Index{r} : Index{i}) * share;
-                select(f < Pack(volume_tolerance::round_off), Pack(0), flux).store(flux_[axis].data() + c);
+                select(f < Pack(volume_tolerance::round_off), Pack(0), flux)
+                    .store(step_.flux[axis].data() + c);
             }
         }
     };
@@ -290,8 +288,8 @@ void Sweeps<Dim>::fluxes_of_planes(int axis) {
     constexpr Real next_to_nothing = 0.01;  // what round-off of a normal makes of nothing is far below it
     const Offset step = layout_.stride[axis];
     const SurfacePlanes<Dim>& planes = surface_.planes();
-    const auto& u = velocity_[axis];
-    auto& moved = flux_[axis];
+    const auto& u = step_.velocity[axis];
+    auto& moved = step_.flux[axis];
     parallel_blocks(planes.count(), [&](Index, Index first, Index last) {
         for (Index i = first; i < last; i += pack_lanes) {
             const int lanes = std::min<int>(pack_lanes, last - i);
@@ -338,8 +336,8 @@ void Sweeps<Dim>::fluxes_of_planes(int axis) {
 template <int Dim>
 void Sweeps<Dim>::join_periodic(int axis) {
     if (!liquid_.boundaries.periodic(axis)) return;
-    const auto& u = velocity_[axis];
-    auto& moved = flux_[axis];
+    const auto& u = step_.velocity[axis];
+    auto& moved = step_.flux[axis];
     const Offset length = layout_.cells[axis] * layout_.stride[axis];
     const auto join = [&](Offset face) {
         (u[face] > 0 ? moved[face] : moved[face + length]) = moved[u[face] > 0 ? face + length : face];
@@ -354,8 +352,8 @@ void Sweeps<Dim>::join_periodic(int axis) {
     });
 }
 
-/// A film or a drop whose plane lies at the end that it comes from: a slab of the
-/// other end would find next to nothing, for ever, while its weight makes it faster. Unless the cell behind
+/// A film or a drop whose plane lies at the end that it comes from: a slab of the other end would find next
+/// to nothing, for ever, while its weight makes it faster. Unless the cell behind
 /// is at least as full, a closed face that gravity does not pull it off holds it, or it is part of a surface
 /// that its neighbours tell, it leaves as if it filled the cell evenly; where it fills half of it or more, if
 /// it is alone: what belongs to a bore's roller stays with it. A wall that cuts the cell holds nothing back:
@@ -379,8 +377,7 @@ bool Sweeps<Dim>::is_detached_film(int axis, Offset c, int way) const noexcept {
 /// band beside them holds a trace of air in this sweep, too little to be a surface, they have a trace less.
 template <int Dim>
 void Sweeps<Dim>::even_out_rims(int axis) {
-    const Offset s = layout_.stride[axis];
-    const auto& moved = flux_[axis];
+    const auto& moved = step_.flux[axis];
     const SurfacePlanes<Dim>& planes = surface_.planes();
     const SurfaceBand<Dim>& band = surface_.band();
     for (const int side : {-1, 1})  // a cell is the neighbour of one: threads do not meet
@@ -388,18 +385,11 @@ void Sweeps<Dim>::even_out_rims(int axis) {
             const auto k = static_cast<std::size_t>(i);
             const Offset c = planes.cell[k];
             if (band.airy(c)) return;  // all its neighbours are in the band
-            const Offset face = side > 0 ? c + s : c;
             const Index face_level = planes.level[k] + (axis == vertical && side > 0 ? 1 : 0);
-            Offset n = c + side * s;
-            Index level = planes.level[k] + (axis == vertical ? side : 0);
-            if (!liquid_.is_inside(n)) {
-                if (!liquid_.boundaries.periodic(axis)) return;
-                n -= side * layout_.cells[axis] * s;
-                if (axis == vertical) level -= side * layout_.cells[vertical];
-            }
-            if (band.holds(n) || liquid_.fraction[n] != 1) return;
-            liquid_.volume_defect[n] +=
-                side * (moved[face] - swept(axis, face, face_level)) / liquid_.open_volume(n, level);
+            const auto n = liquid_.beside(c, planes.level[k], axis, side);
+            if (!n || band.holds(n->cell) || liquid_.fraction[n->cell] != 1) return;
+            liquid_.volume_defect[n->cell] += side * (moved[n->face] - swept(axis, n->face, face_level)) /
+                                              liquid_.open_volume(n->cell, n->level);
         });
 }
 
