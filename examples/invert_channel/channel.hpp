@@ -131,7 +131,7 @@ ChannelResults make_results(const ChannelConfig& c, const Sim& sim, LedgerHistor
     r.energy_lost_sliding_J = ledger.concrete_lost_sliding;
     r.ledger_residual_relative = ledger.residual_relative();
     r.integration_residue_J = ledger.integration_residue();
-    const auto shares = sim.wall_shares();
+    const auto shares = sim.time_shares();
     r.wall_contacts_s = shares.contacts * r.wall_s, r.wall_bonds_s = shares.bonds * r.wall_s;
     r.wall_motion_s = shares.motion * r.wall_s, r.wall_lists_s = shares.renewal * r.wall_s;
     r.wall_fluid_s = shares.fluid * r.wall_s;

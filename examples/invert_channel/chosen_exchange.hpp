@@ -34,10 +34,10 @@ public:
     auto resolved_parts() const { return base().resolved_parts(); }
     auto fluxes() const { return base().fluxes(); }
     void mix_last(FaceField<3>& u) const { base().mix_last(u); }
-    void seep(FaceField<3>& u) {
-        visit(*this, [&](auto& one) { one.seep(u); });
+    void to_superficial(FaceField<3>& u) {
+        visit(*this, [&](auto& one) { one.to_superficial(u); });
     }
-    void unseep(FaceField<3>& u) const { base().unseep(u); }
+    void to_interstitial(FaceField<3>& u) const { base().to_interstitial(u); }
     void slow(FaceField<3>& u, const FlowStage& stage) {
         visit(*this, [&](auto& one) { one.slow(u, stage); });
     }
@@ -58,8 +58,8 @@ public:
     Index averaged() const {
         return visit(*this, [](const auto& one) { return one.averaged(); });
     }
-    void keep_wet(const Poisson<3>& m) {
-        visit(*this, [&](auto& one) { one.keep_wet(m); });
+    void find_closed_cells(const Poisson<3>& m) {
+        visit(*this, [&](auto& one) { one.find_closed_cells(m); });
     }
     void place(const Grid<3>& grid, const BoundaryConditions<3>& boundaries, std::span<const FlowBody> bodies,
                const FaceField<3>* aperture, Real density) {

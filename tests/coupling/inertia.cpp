@@ -82,7 +82,7 @@ TEST_CASE("a ball that lags in a shear is lifted to where the water is faster") 
     const FluidLoad load = fluid_load(Inertia{}, fluid.sample(body.position, 0),
                                       fluid.change(body.position, 0), body, {0, 0, -g});
     CHECK((load.inertial - Vec3(0, 0, 0.5 * rho * body.volume * 0.8 * 10)).norm() < 1e-12);
-    CHECK(std::abs(load.along - 0.5 * rho * body.volume) < 1e-15);
+    CHECK(std::abs(load.added_mass - 0.5 * rho * body.volume) < 1e-15);
     // Half out of the water half of it.
     FluidSample half = fluid.sample(body.position, 0);
     half.depth = 0;

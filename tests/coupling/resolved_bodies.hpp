@@ -44,7 +44,7 @@ struct Ball {
         if (body.position.z() < floor + sphere.radius)
             body.position.z() = floor + sphere.radius, body.velocity.z() = std::max(body.velocity.z(), 0.0);
         sphere.centre = body.position;
-        body.load.along = 0, body.load.shared.setZero();  // the floor stops the body alone
+        body.load.added_mass = 0, body.load.shared.setZero();  // the floor stops the body alone
     }
 };
 

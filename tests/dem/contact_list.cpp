@@ -37,8 +37,8 @@ struct Rig {
         went += contacts.keep(law, store, walls, moved);
         p = rest;
         store.arrange(p, moved, 0.002, {Vec3::Zero(), period});
-        const std::vector<Seeks> seeks(static_cast<std::size_t>(p.spheres()), Seeks::all);
-        contacts.rebuild(store, {p, walls, seeks, marks, {}, 0.002, period}, {},
+        const std::vector<SearchRole> role(static_cast<std::size_t>(p.spheres()), SearchRole::all);
+        contacts.rebuild(store, {p, walls, role, marks, {}, 0.002, period}, {},
                          [](Index, Index) { return false; });
         contacts.refine(store.lines, walls, 0.002);
     }
@@ -235,10 +235,10 @@ TEST_CASE("slabs, chunks and images: the same forces as pair by pair, in open an
         rig.respond(0);
         const auto count = static_cast<std::size_t>(rig.p.spheres());
         std::vector<Vec3> expected(count, Vec3::Zero());
-        const std::vector<Seeks> seeks(count, Seeks::all);
+        const std::vector<SearchRole> role(count, SearchRole::all);
         const std::vector<Vec3> centre = rig.p.centre;
         for (const VerletPair& pair :
-             verlet_pairs_brute_force({centre, rig.p.radius, rig.p.body, seeks, 0, period})) {
+             verlet_pairs_brute_force({centre, rig.p.radius, rig.p.body, role, 0, period})) {
             HotArrays two;
             two.resize(2);
             const auto i = static_cast<std::size_t>(pair.first), j = static_cast<std::size_t>(pair.second);

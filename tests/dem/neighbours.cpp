@@ -13,14 +13,14 @@ struct Spheres {
     std::vector<Vec3> centre;
     std::vector<Real> radius;
     std::vector<Index> body;
-    std::vector<Seeks> seeks;
+    std::vector<SearchRole> role;
 
     void add(const Vec3& x, Real r, Index of, bool is_passive = false) {
         centre.push_back(x), radius.push_back(r), body.push_back(of),
-            seeks.push_back(is_passive ? Seeks::passive : Seeks::all);
+            role.push_back(is_passive ? SearchRole::passive : SearchRole::all);
     }
     Vec3 period = Vec3::Zero();
-    NeighbourQuery query(Real skin) const { return {centre, radius, body, seeks, skin, period}; }
+    NeighbourQuery query(Real skin) const { return {centre, radius, body, role, skin, period}; }
 };
 
 struct Random {

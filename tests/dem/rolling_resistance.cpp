@@ -234,9 +234,9 @@ TEST_CASE("unequal spheres feel opposite torques, not opposite levers") {
     SphereStore store;
     ContactList<Linear> contacts;
     const std::vector<Index> nothing;
-    const std::vector<Seeks> seeks(2, Seeks::all);
+    const std::vector<SearchRole> role(2, SearchRole::all);
     store.arrange(p, nothing, 0.002, {});
-    contacts.rebuild(store, {p, {}, seeks, {}, {}, 0.002}, {}, [](Index, Index) { return false; });
+    contacts.rebuild(store, {p, {}, role, {}, {}, 0.002}, {}, [](Index, Index) { return false; });
     contacts.refine(store.lines, {}, 0.002);
     // Without friction what is left of the levers is the couple.
     const Linear law{{.contact = {.stiffness = 1e6}, .friction = 0.3}};

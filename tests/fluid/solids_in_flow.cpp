@@ -14,17 +14,17 @@ struct Idle {
                Real) {}
     void close(Poisson<3>&, std::span<const OpenFace>) {}
     void mix_last(FaceField<3>&) const {}
-    void seep(FaceField<3>&) const {}
+    void to_superficial(FaceField<3>&) const {}
     std::vector<SolidPart> parts() const { return {}; }
     std::vector<SolidPart> resolved_parts() const { return {}; }
     std::span<const SolidFlux> fluxes() const { return {}; }
     Real water_share(std::size_t) const { return 1; }
-    void keep_wet(const Poisson<3>&) {}
+    void find_closed_cells(const Poisson<3>&) {}
     void slow(FaceField<3>&, const FlowStage&) {}
     void give_back(FaceField<3>&, Real) const {}
     void mix(FaceField<3>&) const {}
     void unmix(FaceField<3>&) const {}
-    void unseep(FaceField<3>&) const {}
+    void to_interstitial(FaceField<3>&) const {}
     void force(FaceField<3>&, const Field<Real>&, const FlowStage&) {}
     void push(const auto&, Real) {}
     void correct(FaceField<3>&, const auto&, Real, int, bool) const {}

@@ -15,6 +15,7 @@ inline constexpr std::string_view law_places[] = {"dem/laws",
                                                   "wear",
                                                   "coupling/drag",
                                                   "fluid/momentum/turbulence.hpp",
+                                                  "fluid/momentum/advection_schemes.hpp",
                                                   "fluid/uniform_flow.hpp",
                                                   "fluid/shallow_water/shallow_water.hpp"};
 
@@ -38,7 +39,8 @@ inline std::vector<std::string> incomplete_laws(const std::filesystem::path& hea
             comment.push_back(line);
         } else {
             const bool heads_class = line.starts_with("template") || line.starts_with("requires");
-            if (line.starts_with("class ") || (heads_class && line.find(" class ") != std::string::npos))
+            if (line.starts_with("class ") || line.starts_with("struct ") ||
+                (heads_class && line.find(" class ") != std::string::npos))
                 of_class = comment;
             if (!heads_class) comment.clear();
             constexpr std::string_view names = "    static constexpr std::string_view name = \"";

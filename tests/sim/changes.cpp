@@ -155,3 +155,27 @@ TEST_CASE("what cannot be changed is refused, and nothing has changed") {
     CHECK(sim.world().scene().walls.empty());
     check_closed(sim, 1e-9);
 }
+
+TEST_CASE("a refused change leaves a run as it would have been, to the bit") {
+    Scene scene;
+    scene.add_wall({0, 0, 0}, {0, 0, 1}).add_sphere(0.01, {.position = {0, 0, 0.01}});
+    scene.add_sphere(0.01, {.position = {0.1, 0, 0.05}, .velocity = {0.3, 0, 0}});
+    const auto end_of = [&](bool asks) {
+        auto sim = simulate(scene).contact(law);
+        sim.run({.end_time = 0.09});
+        if (asks) {
+            CHECK_THROWS_AS(sim.remove(17), InputError);
+            CHECK_THROWS_AS(sim.let_go(0), InputError);
+            CHECK_THROWS_AS(sim.hold(5), InputError);
+            CHECK_THROWS_AS(sim.add_sphere(0.01, {.material = 1}), InputError);
+            CHECK_THROWS_AS(sim.add_wall({0, 0, 0}, {0, 0, 1}, 1), InputError);
+        }
+        sim.run({.end_time = 0.2});
+        return sim.particles();
+    };
+    const Particles asked = end_of(true), left_alone = end_of(false);
+    for (std::size_t b : {0, 1}) {
+        CHECK(asked.position[b] == left_alone.position[b]);
+        CHECK(asked.velocity[b] == left_alone.velocity[b]);
+    }
+}

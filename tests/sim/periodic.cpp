@@ -119,8 +119,8 @@ TEST_CASE("at the smallest period near pairs are those that all images give, one
         std::sort(sorted.rbegin(), sorted.rend());
         const Real period = 2 * (sorted[0] + sorted[1] + skin);
         for (Vec3& x : centre) x.x() -= period * std::floor(x.x() / period);
-        const std::vector<Seeks> seeks(12, Seeks::all);
-        auto pairs = verlet_pairs({centre, radius, body, seeks, skin, {period, 0, 0}});
+        const std::vector<SearchRole> role(12, SearchRole::all);
+        auto pairs = verlet_pairs({centre, radius, body, role, skin, {period, 0, 0}});
         std::sort(pairs.begin(), pairs.end());
         std::vector<VerletPair> expected;
         for (Index i = 0; i < 12; ++i)

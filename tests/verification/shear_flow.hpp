@@ -93,7 +93,7 @@ struct Turning {
         spheres = spheroid.spheres(body.position);
         body.spheres = spheres;
         water.advance(water.time() + dt, {&body, 1});
-        body.load.along = 0, body.load.shared.setZero();  // what holds it holds the body alone
+        body.load.added_mass = 0, body.load.shared.setZero();  // what holds it holds the body alone
         if (held) body.velocity.setZero();
     }
 };

@@ -9,8 +9,8 @@
 
 namespace abrade {
 
-/// What presses on the sphere of a site: force, and torque over its radius [N].
-struct Press {
+/// A load on the sphere of a site: force, and torque over its radius [N].
+struct SiteLoad {
     Index site = 0;
     Screw load{};
 };
@@ -19,7 +19,7 @@ struct Press {
 /// it, and all within `cluster` bonds of it, give way on their bonds to what stands around them, and bonds
 /// break where the law says so, the most overloaded first. What bonds no longer tie to the ground is a piece
 /// in a seat: it stays as long as the contacts that its broken bonds are can hold it, all of it as one rigid
-/// body, under what presses on it and its weight; then it comes loose. Spheres are numbered by site.
+/// body, under the load on it and its weight; then it comes loose. Spheres are numbered by site.
 template <BondLaw Law>
 class StandingBonds {
 public:
@@ -53,14 +53,15 @@ public:
         for (const BondGraph::End& end : graph_.of(site)) forget(end.other);
     }
 
-    /// Takes in what presses and which sites are empty from now on. `left(site)` is what is left of a
+    /// Takes in the loads, and which sites are empty from now on. `left(site)` is what is left of a
     /// sphere's strength. Returns the sites that are no longer held, in ascending order.
     template <class Left>
-    std::vector<Index> settle(std::span<const Press> presses, std::span<const Index> emptied, Left&& left) {
+    std::vector<Index> settle(std::span<const SiteLoad> site_loads, std::span<const Index> emptied,
+                              Left&& left) {
         std::vector<Index> loose;
         for (const Index site : emptied)
             if (!lost_[at(site)]) lose(site);
-        for (const Press& press : presses)
+        for (const SiteLoad& press : site_loads)
             if (!lost_[at(press.site)] && !graph_.held(press.site)) check(press, left, loose);
         seat_pieces(nullptr, loose);
         std::sort(loose.begin(), loose.end());
@@ -172,7 +173,7 @@ private:
     }
 
     template <class Left>
-    void check(const Press& press, Left&& left, std::vector<Index>& loose) {
+    void check(const SiteLoad& press, Left&& left, std::vector<Index>& loose) {
         const Real load2 = press.load.along.squaredNorm() + press.load.about.squaredNorm();
         if (!known_[at(press.site)]) find_safe(press.site, left);
         if (load2 <= safe2_[at(press.site)]) return;
@@ -267,7 +268,7 @@ private:
     }
 
     /// Finds what has come off the ground, and sees whether it, and what else may have lost support, stays.
-    void seat_pieces(const Press* press, std::vector<Index>& loose) {
+    void seat_pieces(const SiteLoad* press, std::vector<Index>& loose) {
         for (bool more = true; more;) {
             for (const BondGraph::Component& component : graph_.take_loose()) add_seats(component);
             std::sort(doubtful_.begin(), doubtful_.end());
@@ -296,7 +297,7 @@ private:
         std::erase_if(component, [&](Index site) { return lost_[at(site)] || seat_of_[at(site)] != seat; });
         if (!component.empty()) add_seats(component);
     }
-    void try_seat(Index seat, const Press* press, std::vector<Index>& loose) {
+    void try_seat(Index seat, const SiteLoad* press, std::vector<Index>& loose) {
         const BondGraph::Component component = seats_[at(seat)];
         if (component.empty()) return;
         Vec3 centre = Vec3::Zero();

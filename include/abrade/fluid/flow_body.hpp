@@ -15,16 +15,16 @@ namespace abrade {
 struct FlowLoad {
     Vec3 force = Vec3::Zero();   ///< [N]
     Vec3 torque = Vec3::Zero();  ///< [N m]
-    Real along = 0;              ///< mass of water that goes along as contacts move the body [kg]
+    Real added_mass = 0;         ///< water that moves with the body as contacts push it [kg]
     Vec3 shared = Vec3::Zero();  ///< its part of the contacts' force, as `force` counts it already [N]
 
     static void fields(auto&& field) {
         field("force", "N", &FlowLoad::force), field("torque", "N m", &FlowLoad::torque);
-        field("along", "kg", &FlowLoad::along), field("shared", "N", &FlowLoad::shared);
+        field("added_mass", "kg", &FlowLoad::added_mass), field("shared", "N", &FlowLoad::shared);
     }
     /// What acts on a body of that mass beside its contacts' whole force [N].
     Vec3 force_among(const Vec3& contacts, Real mass) const noexcept {
-        return force + shared - along / (mass + along) * contacts;
+        return force + shared - added_mass / (mass + added_mass) * contacts;
     }
     FlowLoad& operator+=(const FlowLoad& o) noexcept { return force += o.force, torque += o.torque, *this; }
     friend FlowLoad operator-(const FlowLoad& a, const FlowLoad& b) noexcept {
@@ -51,12 +51,12 @@ struct FlowBody {
 
 /// Velocity that contacts gave a body since the last exchange, and what is left of it if it was a blow:
 /// what the last time had of it as well is a force that lasts.
-struct Struck {
+struct ContactImpulse {
     Vec3 velocity = Vec3::Zero(), blow = Vec3::Zero();  ///< [m/s]
 
-    Struck() = default;
+    ContactImpulse() = default;
     /// `had`: velocity after the last exchange, of a body that has fallen since then.
-    Struck(const FlowBody& body, const Vec3& had, const Vec3& before, const Vec3& falls, Real dt)
+    ContactImpulse(const FlowBody& body, const Vec3& had, const Vec3& before, const Vec3& falls, Real dt)
         : velocity(body.velocity - had -
                    dt * (falls + body.inverse_mass * (body.load.force + body.load.shared))),
           blow(velocity) {
@@ -66,7 +66,7 @@ struct Struck {
     }
     /// The part of added mass in it [N]: the water took it at once, and does not go on to.
     Vec3 taken_by(Real added, const FlowBody& body, Real dt) const noexcept {
-        if (body.load.along > 0) return Vec3::Zero();  // it went along
+        if (body.load.added_mass > 0) return Vec3::Zero();  // it went along
         return added / ((1 + added * body.inverse_mass) * dt) * blow;
     }
     /// Water that goes along in a contact, over the added mass far from anything: between 1 and the 1.38 of a
@@ -76,9 +76,9 @@ struct Struck {
     /// Hands out how much water goes along from here on, and its part of the contacts' force.
     void hand_out(FlowBody& body, Real added, Real dt) const noexcept {
         if (body.inverse_mass == 0) return;
-        const Real mass = 1 / body.inverse_mass, impulse = mass + body.load.along;  // over `velocity`
-        body.load.along = near * added;
-        body.load.shared = body.load.along / (mass + body.load.along) * impulse / dt * velocity;
+        const Real mass = 1 / body.inverse_mass, impulse = mass + body.load.added_mass;  // over `velocity`
+        body.load.added_mass = near * added;
+        body.load.shared = body.load.added_mass / (mass + body.load.added_mass) * impulse / dt * velocity;
     }
 };
 

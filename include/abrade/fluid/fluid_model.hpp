@@ -108,7 +108,7 @@ FlowChange change_of([[maybe_unused]] const F& fluid, [[maybe_unused]] const Vec
 
 /// Whether a fluid means to change: one that does so in part only would be taken for one that stays as it is.
 template <class F>
-inline constexpr bool goes_on = requires(F& fluid) {
+inline constexpr bool advances_in_time = requires(F& fluid) {
     fluid.advance(Real{});
 };
 

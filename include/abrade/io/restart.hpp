@@ -29,7 +29,7 @@ StatePart(const char*, const T&) -> StatePart<const T>;
 
 namespace detail {
 
-inline constexpr std::int64_t state_version = 3;
+inline constexpr std::int64_t state_version = 4;
 inline constexpr std::string_view state_version_name = "abrade_state_version";
 
 /// Asks the disk to have a file, or a folder's list of files, for good: some say only then that they are

@@ -30,7 +30,7 @@ std::ostream& operator<<(std::ostream& out, const Simulation<All...>& sim) {
         << describe(sim.wear_) << "\nfluid    " << describe(sim.fluid_);
     if constexpr (!std::same_as<F, NoFluid>) out << " with " << describe(sim.drag_);
     if (!sim.world_) return out << "\nnot run yet\n";
-    const auto shares = sim.wall_shares();
+    const auto shares = sim.time_shares();
     const auto percent = [](Real share) {
         return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
     };

@@ -111,7 +111,7 @@ public:
     const Snapshot& last_good() const noexcept { return last_good_; }
 
     /// Timed steps stand for all.
-    WallShares wall_shares() const noexcept {
+    TimeShares time_shares() const noexcept {
         if (!world_) return {};
         return shares_of(wall_seconds_, world_->timed(), world_->renewal_seconds(), world_->fluid_seconds());
     }
@@ -258,7 +258,8 @@ private:
 
 template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
 Index Simulation<C, B, W, F, D, U>::add_stone(Clump clump, const BodyState& state, Real density) {
-    return changed([&](auto change) { return change.add({std::move(clump), density, state}); });
+    const Scene::Stone stone{std::move(clump), density, state};
+    return changed([&](auto change) { return change.add(stone); });
 }
 
 template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>

@@ -111,7 +111,8 @@ public:
     auto fluid(L law, Drag drag = Drag{}) && {
         check_not_run();
         static_assert(FluidModel<L>, "Simulation::fluid(law): the fluid misses what the notes below name");
-        static_assert(!goes_on<L> || AdvancingFluid<L>, "fluid(law): advance() needs a stable_step()");
+        static_assert(!advances_in_time<L> || AdvancingFluid<L>,
+                      "fluid(law): advance() needs a stable_step()");
         static_assert(DragLaw<Drag>,
                       "Simulation::fluid(law, drag): the drag law misses what the notes below name");
         if constexpr (FluidModel<L> && DragLaw<Drag>)

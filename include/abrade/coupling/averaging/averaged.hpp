@@ -145,7 +145,7 @@ private:
         Real rate = 0;                       ///< beta / (rho V) [1/s]
         Real coefficient = 0;                ///< C_m [-]
         Real added = 0;                      ///< C_m rho V, as far as there is water [kg]
-        Struck struck;                       ///< by contacts
+        ContactImpulse struck;               ///< by contacts
     };
     /// What is known of a body from the last step.
     struct Memory {
@@ -229,7 +229,7 @@ private:
         if (falls) {
             if (before) m.struck = {body, before->v, before->struck, stage.falls, dt};
             m.begun = body.velocity / body.inverse_mass - dt * (body.load.force + body.load.shared) +
-                      body.load.along * m.struck.velocity;
+                      body.load.added_mass * m.struck.velocity;
             const Vec3 drags = dt * m.rate * weight;
             const Vec3 heavy = Vec3::Constant(1 / body.inverse_mass + m.added) + drags;
             const Vec3 gains = dt * ((1 + m.coefficient) * last + m.by_slip) + drags.cwiseProduct(flow);

@@ -76,7 +76,7 @@ struct FluidLoad {
     Vec3 buoyancy = Vec3::Zero();        ///< [N]
     Vec3 fluid_velocity = Vec3::Zero();  ///< that the drag was reckoned with [m/s]
     Vec3 inertial = Vec3::Zero();        ///< of a law that FeelsInertia [N]
-    Real along = 0;                      ///< added mass [kg]
+    Real added_mass = 0;                 ///< [kg]
 };
 
 inline Vec3 force_of(const FluidLoad& load) noexcept { return load.drag + load.buoyancy + load.inertial; }
@@ -178,8 +178,8 @@ FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Flo
     const Real share = submerged_share(surroundings.depth, std::cbrt(0.75 / pi * body.volume));
     const Real displaced = share * surroundings.density * body.volume;
     const Vec3 relative = surroundings.velocity - body.velocity;
-    load.along = law.added_mass() * displaced;
-    load.inertial = (displaced + load.along) * change.acceleration +
+    load.added_mass = law.added_mass() * displaced;
+    load.inertial = (displaced + load.added_mass) * change.acceleration +
                     law.lift() * displaced * relative.cross(change.vorticity());
     return load;
 }
@@ -187,7 +187,8 @@ FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Flo
 /// Contacts and all other forces move the water along that a body takes with it: its added mass. `other`: all
 /// that acts on the body beside the fluid [N].
 inline void take_along(FluidLoad& fluid, const Vec3& other, Real mass) noexcept {
-    if (fluid.along > 0) fluid.inertial -= fluid.along / (mass + fluid.along) * (other + force_of(fluid));
+    if (fluid.added_mass > 0)
+        fluid.inertial -= fluid.added_mass / (mass + fluid.added_mass) * (other + force_of(fluid));
 }
 
 }  // namespace abrade

@@ -32,16 +32,16 @@ public:
     void mix_last(FaceField<3>& u) const {
         for_fluxes([&](std::size_t i) { at(u, i) += beyond_[i]; });
     }
-    void seep(FaceField<3>& u) {
-        unseeped_.resize(fluxes_.size());
-        for_fluxes([&](std::size_t i) { unseeped_[i] = at(u, i); },
+    void to_superficial(FaceField<3>& u) {
+        interstitial_.resize(fluxes_.size());
+        for_fluxes([&](std::size_t i) { interstitial_[i] = at(u, i); },
                    [&](std::size_t i) { at(u, i) += beyond_[i] - fluxes_[i].speed; });
     }
-    void unseep(FaceField<3>& u) const {
-        for_fluxes([&](std::size_t i) { at(u, i) = unseeped_[i]; });
+    void to_interstitial(FaceField<3>& u) const {
+        for_fluxes([&](std::size_t i) { at(u, i) = interstitial_[i]; });
     }
     Real water_share(std::size_t n) const noexcept { return faces_.water_share(n); }
-    void keep_wet(const Poisson<3>& m) { faces_.keep_wet(m); }
+    void find_closed_cells(const Poisson<3>& m) { faces_.find_closed_cells(m); }
     void mix(FaceField<3>& u) {
         FaceColumns& f = faces_.columns();
         faces_.covered_by_planes(
@@ -112,8 +112,8 @@ protected:
         Six push = Six::Zero();         ///< its change by the last pressure
         Six by_friction = Six::Zero();  ///< [N], [N m]
         Real curvature = 0;
-        Real covers = 0;  ///< mass of water in the body's place [kg]
-        Struck struck;    ///< by contacts
+        Real covers = 0;        ///< mass of water in the body's place [kg]
+        ContactImpulse struck;  ///< by contacts
     };
     /// What is known of a body from the last step.
     struct Memory {
@@ -220,7 +220,7 @@ protected:
                 motion.struck.velocity =
                     body.velocity - dt * stage_.falls - flow.cwiseQuotient(weight.cwiseMax(tiny<Real>));
             Six went = Six::Zero();  // what contacts gave to the water along with the body
-            went.template head<3>() = body.load.along * motion.struck.velocity - dt * body.load.shared;
+            went.template head<3>() = body.load.added_mass * motion.struck.velocity - dt * body.load.shared;
             const Six begun =
                 inertia * motion.q - dt * (Six() << body.load.force, body.load.torque).finished() + went;
             // Friction meets the last force of the pressure, whatever cells have become wet or dry since, and
@@ -338,10 +338,10 @@ private:
         return sum;
     }
 
-    std::vector<Memory> memory_;           ///< by id
-    std::vector<SolidFlux> fluxes_;        ///< as the last step left them, plane by plane
-    std::vector<Real> beyond_, unseeped_;  ///< mixture's velocity beyond the water's there; this [m/s]
-    std::vector<std::size_t> flux_start_;  ///< [plane] in them
+    std::vector<Memory> memory_;               ///< by id
+    std::vector<SolidFlux> fluxes_;            ///< as the last step left them, plane by plane
+    std::vector<Real> beyond_, interstitial_;  ///< mixture's velocity beyond the water's there; this [m/s]
+    std::vector<std::size_t> flux_start_;      ///< [plane] in them
     Real fastest_ = 0;
     Real lost_to_friction_ = 0;       ///< in the last step [J]
     std::vector<Index> seen_, here_;  ///< ids of the bodies of the last step and of this one, sorted

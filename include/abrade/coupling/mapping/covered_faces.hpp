@@ -173,7 +173,7 @@ public:
     /// closed without being covered is a pocket, as between a body and a floor that it touches. What a body
     /// pushes into it goes on to cells beside it that have a pressure, if it closes a face to one, or the
     /// same pressure all around would press on the body.
-    void keep_wet(const Poisson<3>& m) {
+    void find_closed_cells(const Poisson<3>& m) {
         const auto wet = [&](Offset cell) { return m.inverse_diagonal[cell] > 0; };
         parallel_for(
             static_cast<Index>(covers_.size()),

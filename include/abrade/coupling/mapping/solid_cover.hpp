@@ -39,7 +39,7 @@ struct SolidCell {
 struct SolidCover {
     std::vector<SolidFace> faces;
     std::vector<SolidCell> cells;   ///< of which it covers some; later those of them that have a pressure
-    std::vector<SolidCell> inside;  ///< and those that have none (CoveredFaces::keep_wet)
+    std::vector<SolidCell> inside;  ///< and those that have none (CoveredFaces::find_closed_cells)
     std::vector<SolidPart> parts;   ///< its volume in cells
     bool cut = false;               ///< some of it lies beyond a side where water flows in or out
     bool averaged = false;          ///< too small for its shape to count: it has its part in a cloud

@@ -76,7 +76,7 @@ public:
     struct Build {
         const Particles& particles;
         std::span<const Plane> planes;
-        std::span<const Seeks> seeks;       ///< [sphere]
+        std::span<const SearchRole> role;   ///< [sphere]
         std::span<const BodyMark> marks;    ///< [body] none: nobody watched or held
         std::span<const VerletPair> known;  ///< pairs of spheres that are found already
         Real skin = 0;                      ///< [m]
@@ -179,11 +179,11 @@ private:
         std::vector<Vec3> centre(count);
         std::vector<Real> radius(count);
         std::vector<Index> body(count);
-        std::vector<Seeks> seeks(count);
+        std::vector<SearchRole> role(count);
         for (std::size_t s = 0; s < count; ++s) {
             const auto sphere = at(store.sphere_of(static_cast<Index>(s)));
             centre[s] = store.lines.place[s].centre, radius[s] = store.lines.place[s].radius;
-            body[s] = build.particles.body[sphere], seeks[s] = build.seeks[sphere];
+            body[s] = build.particles.body[sphere], role[s] = build.role[sphere];
         }
         slab_.resize(count), mark_.assign(count, {});
         for (Index slab = 0; slab < store.slabs.count(); ++slab)
@@ -194,7 +194,7 @@ private:
         material_.assign(count, 0);
         if (build.by_material)
             for (std::size_t s = 0; s < count; ++s) material_[s] = build.particles.material[at(body[s])];
-        std::vector<VerletPair> near = verlet_pairs({centre, radius, body, seeks, build.skin, build.period});
+        std::vector<VerletPair> near = verlet_pairs({centre, radius, body, role, build.skin, build.period});
         near.reserve(near.size() + build.known.size());
         for (const VerletPair& pair : build.known)
             near.push_back(
@@ -229,7 +229,7 @@ private:
         if (build.planes.empty()) return;
         for (Index slot = 0; slot < store.spheres(); ++slot) {
             const Index sphere = store.sphere_of(slot);
-            if (build.seeks[at(sphere)] != Seeks::all) continue;
+            if (build.role[at(sphere)] != SearchRole::all) continue;
             const SpherePlace& place = store.lines.place[at(slot)];
             for (Index p = 0; p < static_cast<Index>(build.planes.size()); ++p) {
                 if (!(build.planes[at(p)].distance(place.centre) < place.radius + 0.5 * build.skin)) continue;

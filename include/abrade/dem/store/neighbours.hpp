@@ -34,14 +34,14 @@ struct VerletPair {
 
 /// Whom a sphere looks for. `passive` ones do not look for each other (sound concrete, a fixed bed); those
 /// left out are found by other means.
-enum class Seeks : char { all, passive, left_out };
+enum class SearchRole : char { all, passive, left_out };
 
 /// The spheres to search.
 struct NeighbourQuery {
     std::span<const Vec3> centre;  ///< [m], within one period
     std::span<const Real> radius;  ///< [m]
     std::span<const Index> body;   ///< spheres of one body are never a pair
-    std::span<const Seeks> seeks;
+    std::span<const SearchRole> role;
     Real skin = 0;               ///< pairs whose surfaces are nearer than this [m]
     Vec3 period = Vec3::Zero();  ///< of space along each axis [m]; 0 where it is open
 
@@ -201,14 +201,16 @@ inline std::vector<CellGrid> cell_grids(const NeighbourQuery& q, std::span<const
     Vec3 low = q.centre[0], high = low;
     for (const Vec3& x : q.centre) low = low.cwiseMin(x), high = high.cwiseMax(x);
     std::vector<std::vector<CellGrid::Member>> members(2 * levels);
-    const auto grid_of = [&](std::size_t s) { return 2 * level[s] + (q.seeks[s] == Seeks::passive ? 1 : 0); };
+    const auto grid_of = [&](std::size_t s) {
+        return 2 * level[s] + (q.role[s] == SearchRole::passive ? 1 : 0);
+    };
     const auto of = [&](std::size_t s) -> auto& { return members[grid_of(s)]; };
     std::vector<std::size_t> count(members.size(), 0);
     for (std::size_t s = 0; s < q.centre.size(); ++s)
-        if (q.seeks[s] != Seeks::left_out) ++count[grid_of(s)];
+        if (q.role[s] != SearchRole::left_out) ++count[grid_of(s)];
     for (std::size_t m = 0; m < members.size(); ++m) members[m].reserve(count[m] + count[m] / 4);
     for (std::size_t s = 0; s < q.centre.size(); ++s) {
-        if (q.seeks[s] == Seeks::left_out) continue;
+        if (q.role[s] == SearchRole::left_out) continue;
         const Vec3& x = q.centre[s];
         of(s).push_back({static_cast<Index>(s), {}, x});
         const Real reach = q.radius[s] + largest + q.skin;
@@ -235,9 +237,9 @@ inline std::vector<VerletPair> verlet_pairs_brute_force(const NeighbourQuery& q)
     for (std::size_t i = 0; i < q.centre.size(); ++i)
         for (std::size_t j = i + 1; j < q.centre.size(); ++j) {
             const auto test = [&](const ImageShift& shift) {
-                const bool candidate = q.body[i] != q.body[j] && q.seeks[i] != Seeks::left_out &&
-                                       q.seeks[j] != Seeks::left_out &&
-                                       (q.seeks[i] == Seeks::all || q.seeks[j] == Seeks::all);
+                const bool candidate = q.body[i] != q.body[j] && q.role[i] != SearchRole::left_out &&
+                                       q.role[j] != SearchRole::left_out &&
+                                       (q.role[i] == SearchRole::all || q.role[j] == SearchRole::all);
                 const Real near = q.radius[i] + q.radius[j] + q.skin;
                 if (candidate && (q.centre[i] - q.image(j, shift)).squaredNorm() < square(near))
                     pairs.push_back({static_cast<Index>(i), static_cast<Index>(j), shift});

@@ -34,7 +34,7 @@ public:
                 if (const Boundary side = flow.params.boundaries[a][high];
                     side == Boundary::inflow || side == Boundary::outflow)
                     flow.grid.for_each_beside(a, high, [&](const CellNumber<Dim>&, Offset c) {
-                        openings_.push_back({c, a, high, side == Boundary::inflow});
+                        open_sides_.push_back({c, a, high, side == Boundary::inflow});
                     });
         look(flow);
         energy_.kinetic_start = energy_.kinetic, energy_.potential_start = energy_.potential;
@@ -45,12 +45,12 @@ public:
     /// Below a surface, when the liquid has moved with the velocity and nothing else has.
     void liquid_moved(const View& flow) {
         mid_ = flow.velocity;
-        for (Opening& o : openings_) {
+        for (OpenSide& o : open_sides_) {
             o.volume = (*flow.flux)[o.axis][o.face(flow.grid)];
             o.pressure = static_cast<Real>(pressure_at(flow, o));
         }
         for (const SolidVolume& s : flow.liquid->solid_moved())
-            if (Opening* o = opening_at(flow, s.axis, s.face)) o->volume -= s.volume;
+            if (OpenSide* o = opening_at(flow, s.axis, s.face)) o->volume -= s.volume;
     }
     void walls_took(const typename WallFriction<Dim>::PerFace& taken) { taken_ = taken; }
 
@@ -98,13 +98,13 @@ public:
     }
 
     static void fields(auto&& field) {
-        field("mid", "m/s", &EnergyAccount::mid_), field.bytes("openings", &EnergyAccount::openings_),
+        field("mid", "m/s", &EnergyAccount::mid_), field.bytes("open_sides", &EnergyAccount::open_sides_),
             field("energy", &EnergyAccount::energy_);
     }
 
 private:
     /// A face through which water may flow in or out of the box.
-    struct Opening {
+    struct OpenSide {
         Offset cell = 0;
         int axis = 0;
         bool high = false, inflow = false;
@@ -141,10 +141,10 @@ private:
         for (const SolidVolume& s : solids) sum += s.volume * of_face(s.axis, s.face);
         return flow.params.density * sum;
     }
-    Opening* opening_at(const View& flow, int axis, Offset face) noexcept {
+    OpenSide* opening_at(const View& flow, int axis, Offset face) noexcept {
         const auto found = std::ranges::find_if(
-            openings_, [&](const Opening& o) { return o.axis == axis && o.face(flow.grid) == face; });
-        return found == openings_.end() ? nullptr : &*found;
+            open_sides_, [&](const OpenSide& o) { return o.axis == axis && o.face(flow.grid) == face; });
+        return found == open_sides_.end() ? nullptr : &*found;
     }
 
     /// Of a full box, the velocity in the middle of the step and what it carried through openings.
@@ -153,14 +153,14 @@ private:
             parallel_for(static_cast<Index>(mid_[a].size()), [&](Index c) {
                 mid_[a][c] = State(0.5) * (flow.before[a][c] + flow.velocity[a][c]);
             });
-        for (Opening& o : openings_) {
+        for (OpenSide& o : open_sides_) {
             const CellNumber<Dim> cell = flow.grid.layout().number(o.cell);
             o.volume = dt * static_cast<Real>(mid_[o.axis][o.face(flow.grid)]) * flow.grid.volume(cell) /
                        flow.grid.size(o.axis, cell[o.axis]);
             o.pressure = pressure_at(flow, o);
         }
         for (const SolidFlux& s : flow.solid_fluxes)
-            if (Opening* o = opening_at(flow, s.axis, s.face)) {
+            if (OpenSide* o = opening_at(flow, s.axis, s.face)) {
                 const CellNumber<Dim> cell = flow.grid.layout().number(o->cell);
                 o->volume -= dt * s.speed * flow.grid.volume(cell) / flow.grid.size(s.axis, cell[s.axis]);
             }
@@ -256,7 +256,7 @@ private:
     /// the next face does. After `stage_work`.
     Real work_in_openings(const View& flow) const {
         Real work = 0;
-        for (const Opening& o : openings_) {
+        for (const OpenSide& o : open_sides_) {
             const Offset face = o.face_inside(flow.grid);
             const Real gained =
                 static_cast<Real>(scratch_[o.axis][face]) - static_cast<Real>(mid_[o.axis][face]);
@@ -345,7 +345,7 @@ private:
     }
 
     /// Led on to the face from two cells, if the second one is wet.
-    static Real pressure_at(const View& flow, const Opening& o) noexcept {
+    static Real pressure_at(const View& flow, const OpenSide& o) noexcept {
         const Offset in = (o.high ? -1 : 1) * flow.grid.layout().stride[o.axis];
         const auto p = static_cast<Real>(flow.pressure[o.cell]);
         const bool two = flow.grid.cells(o.axis) > 1 && (!flow.wet || (*flow.wet)[o.cell + in] != 0);
@@ -355,7 +355,7 @@ private:
     /// Books what went through; answers how much kinetic energy came in [J].
     Real through_openings(const View& flow, WaterEnergy& change) const {
         Real carried = 0;
-        for (const Opening& o : openings_) {
+        for (const OpenSide& o : open_sides_) {
             if (o.volume == 0) continue;
             const CellNumber<Dim> cell = flow.grid.layout().number(o.cell);
             const Offset out = (o.high ? 1 : -1) * flow.grid.layout().stride[o.axis];
@@ -384,7 +384,7 @@ private:
     FaceField<Dim, State> mid_;      ///< the velocity that moves the water in the step [m/s]
     FaceField<Dim, State> scratch_;  ///< [m/s]
     FaceField<Dim, State> still_;    ///< 0: carries nothing
-    std::vector<Opening> openings_;
+    std::vector<OpenSide> open_sides_;
     typename WallFriction<Dim>::PerFace taken_{};  ///< by walls in the step [m/s]
     WaterEnergy energy_;
 };

@@ -96,7 +96,7 @@ public:
     /// InputError where a force is no number or a resistance below 0.
     template <class State>
     void find(const F& forcing, const FaceField<Dim, State>& u, const Step& step) {
-        Real hastens = 0;
+        Real push_rate = 0;
         for (int a = 0; a < Dim; ++a) {
             std::vector<Real> pushes(places_[a].size(), 0);
             parallel_for(static_cast<Index>(places_[a].size()), [&](Index n) {
@@ -125,9 +125,9 @@ public:
                 if (!std::isfinite(gains_[a][k].gain)) fail_at(forcing, u, a, k, step);
                 most = std::max(most, pushes[k]);
             }
-            hastens += most;
+            push_rate += most;
         }
-        hastens_ = hastens;
+        push_rate_ = push_rate;
     }
     /// Gives a share of that.
     template <class State>
@@ -171,11 +171,11 @@ public:
 
     /// Sum over axes of the largest push over density and distance of cells [1/s2], and the largest source
     /// [1/s]: they limit the step.
-    Real hastens() const noexcept { return hastens_; }
+    Real push_rate() const noexcept { return push_rate_; }
     Real largest_rate() const noexcept { return largest_rate_; }
 
     static void fields(auto&& field) {
-        field("hastens", "1/s2", &AppliedForcing::hastens_),
+        field("push_rate", "1/s2", &AppliedForcing::push_rate_),
             field("largest_rate", "1/s", &AppliedForcing::largest_rate_);
     }
 
@@ -246,7 +246,7 @@ private:
     std::vector<Point<Dim>> centres_;            ///< of cells
     std::vector<CellSource> sources_;            ///< of the same
     Field<Real> rate_;                           ///< of sources, over the liquid of a cell [1/s]
-    Real hastens_ = 0, largest_rate_ = 0;
+    Real push_rate_ = 0, largest_rate_ = 0;
 };
 
 }  // namespace detail

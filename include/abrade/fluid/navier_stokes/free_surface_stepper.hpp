@@ -354,9 +354,9 @@ private:
         if constexpr (Solids::present) {
             struct Back {  // a step that goes wrong takes it back, too
                 Flow& flow;
-                ~Back() { flow.solids.unseep(flow.velocity), flow.boundaries.join(flow.velocity); }
+                ~Back() { flow.solids.to_interstitial(flow.velocity), flow.boundaries.join(flow.velocity); }
             };
-            flow.solids.seep(flow.velocity);
+            flow.solids.to_superficial(flow.velocity);
             const Back back{flow};
             flow.boundaries.enter(flow.velocity), flow.boundaries.join(flow.velocity);
             use();

@@ -189,10 +189,10 @@ template <int Dim, FlowOptions Options>
 FluidStep GridFluid<Dim, Options>::stable_step() const {
     detail::StepCauses<Dim> causes{.viscosity = flow_.nu(), .fastest = flow_.fastest};
     if constexpr (Turbulence::has_eddies)
-        causes.viscosity += flow_.eddies->largest(), causes.together = flow_.eddies->rate();
+        causes.viscosity += flow_.eddies->largest(), causes.combined = flow_.eddies->rate();
     Point<Dim> gravity;
     if constexpr (has_surface) gravity = flow_.params.acceleration(flow_.time), causes.gravity = &gravity;
-    if constexpr (Flow::has_forcing) causes.hastens = flow_.forced->hastens();
+    if constexpr (Flow::has_forcing) causes.push_rate = flow_.forced->push_rate();
     FluidStep step = detail::limit_of_step<Dim>(*flow_.grid, flow_.params, causes);
     if constexpr (Flow::has_sources) step.lower(0.5 / flow_.forced->largest_rate(), "source");
     if constexpr (has_surface) step = stepper_.limit(flow_, step);
@@ -309,8 +309,8 @@ void GridFluid<Dim, Options>::check(Real dt) {
         return;
     const std::string cause =
         brimful
-            ? "more flows in than out, or solids take more room, and no surface is left to rise; make a "
-              "side that it reaches an outflow, or leave air above it"
+            ? "inflows, drains or solids ask for another volume of water, and no surface is left to rise or "
+              "fall; make a side that the water reaches an outflow, or leave air above it"
             : detail::wrong_flow(grid(), velocity(), flow_.report.after, flow_.most_left(), flow_.enters > 0);
     stepper_.restore(flow_);
     throw FluidError(detail::place_in_time(flow_.steps, flow_.time, dt) + cause);

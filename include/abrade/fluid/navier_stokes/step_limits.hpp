@@ -15,10 +15,10 @@ template <int Dim>
 struct StepCauses {
     Real viscosity = 0;  ///< kinematic, that of eddies included [m2/s]
     Real fastest = 0;    ///< largest sum |u_a| / h_a [1/s]
-    /// Largest of what both make of a cell, where it is known: eddies are seldom where water is fastest
-    /// [1/s].
-    Real together = std::numeric_limits<Real>::infinity();
-    Real hastens = 0;  ///< sum of what a user's force hastens it by along each axis, over h_a [1/s2]
+    /// Largest rate of a cell with speed and eddies together, where it is known: eddies are seldom where
+    /// water is fastest [1/s].
+    Real combined = std::numeric_limits<Real>::infinity();
+    Real push_rate = 0;  ///< sum over the axes of the acceleration by a user's force, over h_a [1/s2]
     const Point<Dim>* gravity = nullptr;  ///< below a surface, body forces included [m/s2]
 };
 
@@ -39,9 +39,9 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
     // One limit for both, or what each of them allows alone would be too much together. Heun's method is
     // stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum 1/h^2.
     const Real friction = 2 * causes.viscosity * per_h2;
-    const Real rate = std::max(causes.fastest, std::min(causes.fastest + friction, causes.together));
+    const Real rate = std::max(causes.fastest, std::min(causes.fastest + friction, causes.combined));
     // At its end gravity may have made the water faster by g dt.
-    const Real twice = rate + std::sqrt(square(rate) + 4 * (fall + causes.hastens) * params.courant);
+    const Real twice = rate + std::sqrt(square(rate) + 4 * (fall + causes.push_rate) * params.courant);
     if (twice > 0) {
         const Real dt = 2 * params.courant / twice;
         step.lower(dt, dt * friction > 0.5 * params.courant ? "viscosity" : "CFL");

@@ -76,7 +76,7 @@ public:
             State sum = 0;
             // Reals from 0 on compare as their bits do, and clang++ has packs for the largest of these only.
             auto most = std::bit_cast<Bits>(fastest);
-            const auto all = [&]<bool Open, bool Surplus>() {
+            const auto all = [&]<bool Open, bool Defect>() {
 #pragma omp simd reduction(+ : sum) reduction(max : most)
                 for (int i = r.begin; i < r.end; ++i) {
                     const auto net = [&](State area, const State* from, const State* to,
@@ -94,7 +94,7 @@ public:
                         out += net(area2[i], low[2], high[2], low_open[2], high_open[2]);
                         rate += std::abs(low[2][i]) * per2[i];
                     }
-                    if constexpr (Surplus) {
+                    if constexpr (Defect) {
                         const Real beyond = Open ? volume_defect[i] * volume[i] : volume_defect[i];
                         out -= static_cast<State>(beyond) * per_step * (area0[i] / per0[i]);
                     }

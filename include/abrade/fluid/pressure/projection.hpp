@@ -81,7 +81,7 @@ public:
             m.dirichlet[open.cell] += static_cast<float>(area * std::abs(open.slope));
         }
         solver_.build();
-        if constexpr (Solids::present) solids.keep_wet(m);
+        if constexpr (Solids::present) solids.find_closed_cells(m);
         find_faces();
     }
 

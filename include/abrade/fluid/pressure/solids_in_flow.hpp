@@ -32,12 +32,12 @@ struct FlowStage {
 // clang-format off
 /// Solids that move in water on a grid. There are two velocities at a face: the water's, which momentum is reckoned
 /// with, and that of the mixture of water and solid, which advects and has no divergence. A step asks
-/// - `mix_last`, `seep`: from the water's velocity that of the mixture, or that of the water times its share of a face,
-///   as the last step left them, and `unseep`, back from it; `fluxes`: the solids' part of it, plane by plane;
+/// - `mix_last`, `to_superficial`: from the water's velocity that of the mixture, or that of the water times its share of a face,
+///   as the last step left them, and `to_interstitial`, back from it; `fluxes`: the solids' part of it, plane by plane;
 /// - `place`: where they stand at its end, in water of a density, and `parts`, what they cover of cells there; of `resolved_parts` the water
 ///   flows around the shape;
 /// - `close`, `water_share`: what they take from what faces conduct, those at the surface by their numbers, before the
-///   operator is built; `keep_wet`, once it is: which of their cells are left without a pressure. In a full
+///   operator is built; `find_closed_cells`, once it is: which of their cells are left without a pressure. In a full
 ///   box both come before the stages, below a surface after them and before `force`;
 /// - `slow`: friction on the water of the first stage, that the second starts from a flow which knows of them, and
 ///   `give_back`: a share of it, before `force` does it all: so a steady flow does not depend on the step;
@@ -60,10 +60,10 @@ concept SolidsInFlow = !S::present || requires(S& s, const S& still, FaceField<3
     s.place(grid, boundaries, bodies, open, Real{});
     s.close(m, std::span<const OpenFace>{});
     { still.water_share(std::size_t{}) } -> std::same_as<Real>;
-    s.keep_wet(m);
+    s.find_closed_cells(m);
     s.slow(u, FlowStage{}), still.give_back(u, Real{});
     s.mix(u), still.unmix(u);
-    still.mix_last(u), s.seep(u), still.unseep(u);
+    still.mix_last(u), s.to_superficial(u), still.to_interstitial(u);
     { still.parts() } -> std::convertible_to<std::span<const SolidPart>>;
     { still.resolved_parts() } -> std::convertible_to<std::span<const SolidPart>>;
     { still.fluxes() } -> std::convertible_to<std::span<const SolidFlux>>;

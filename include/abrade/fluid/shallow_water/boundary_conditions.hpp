@@ -132,7 +132,7 @@ public:
     }
 
     /// Of water that comes in: sum over axes of (u + sqrt(g h)) / spacing, the largest [1/s].
-    Real swiftest(Real spacing, Real other_spacing, Real gravity) const noexcept {
+    Real largest_rate(Real spacing, Real other_spacing, Real gravity) const noexcept {
         Real most = 0;
         for (std::size_t k = 0; k < depth.size(); ++k) {
             const Real c = std::sqrt(gravity * depth[k]);

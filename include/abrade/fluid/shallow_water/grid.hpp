@@ -159,10 +159,10 @@ struct ShallowBed {
 /// A part of the grid that is worked on by itself, where and while there is water in it.
 struct ShallowTile {
     CellBox cells;
-    CellBox wet;        ///< that hold water, as of the last step; whole blocks of a row
-    CellBox reached;    ///< that a step may wet
-    CellBox before;     ///< those of the step before
-    Real swiftest = 0;  ///< sum over axes of (|u| + sqrt(g h)) / spacing, the largest [1/s]
+    CellBox wet;            ///< that hold water, as of the last step; whole blocks of a row
+    CellBox reached;        ///< that a step may wet
+    CellBox before;         ///< those of the step before
+    Real largest_rate = 0;  ///< sum over axes of (|u| + sqrt(g h)) / spacing, the largest [1/s]
     bool unsound = false;
 
     /// Cells that the next step works on. Those of the step before are among them, so that all copies of what

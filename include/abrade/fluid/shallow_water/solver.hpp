@@ -73,7 +73,7 @@ public:
     /// What `courant` allows, with the cell that sets it, counted row by row.
     FluidStep stable_step(Real courant) const noexcept {
         FluidStep step;
-        if (swiftest_ > 0) step.lower(courant / swiftest_, "CFL", swiftest_cell());
+        if (largest_rate_ > 0) step.lower(courant / largest_rate_, "CFL", largest_rate_cell());
         if (const Real inflow = inflow_swiftest(); inflow > 0)
             step.lower(courant / inflow, "CFL of the inflow");
         return step;
@@ -97,9 +97,10 @@ public:
             }
             current_ = 1 - current_;
             ++steps_;
-            swiftest_ = 0;
+            largest_rate_ = 0;
             for (const Index t : tiles_.due)
-                swiftest_ = std::max(swiftest_, tiles_.list[static_cast<std::size_t>(t)].swiftest);
+                largest_rate_ =
+                    std::max(largest_rate_, tiles_.list[static_cast<std::size_t>(t)].largest_rate);
             each_side([&](ShallowBoundaryCells<Dim>& side) {
                 volume_in_[static_cast<std::size_t>(side.axis())][side.high()] += dt * side.rate();
             });
@@ -110,7 +111,7 @@ public:
     static void fields(auto&& field) {
         field("tiles", &ShallowSolver::tiles_), field("boundaries", &ShallowSolver::boundaries_),
             field("states", &ShallowSolver::states_), field("current", &ShallowSolver::current_),
-            field("swiftest", "1/s", &ShallowSolver::swiftest_),
+            field("largest_rate", "1/s", &ShallowSolver::largest_rate_),
             field("volume_at_start", "m3", &ShallowSolver::volume_at_start_),
             field("volume_in", "m3", &ShallowSolver::volume_in_), field("steps", &ShallowSolver::steps_),
             field("repeated", &ShallowSolver::repeated_), field("raised", "m", &ShallowSolver::raised_);
@@ -187,15 +188,15 @@ private:
         states_.fill(start);
         volume_at_start_ = volume();
         for (ShallowTile& tile : tiles_.list) {
-            tile.swiftest = 0;
+            tile.largest_rate = 0;
             for (Index j = tile.cells.first[1]; j < tile.cells.last[1]; ++j)
                 for (Index i = tile.cells.first[0]; i < tile.cells.last[0]; ++i) {
                     const Real swift = swiftness(i, j);
                     if (swift == 0) continue;
                     tile.wet = tile.wet.with({{i, j}, {i + 1, j + 1}});
-                    tile.swiftest = std::max(tile.swiftest, swift);
+                    tile.largest_rate = std::max(tile.largest_rate, swift);
                 }
-            swiftest_ = std::max(swiftest_, tile.swiftest);
+            largest_rate_ = std::max(largest_rate_, tile.largest_rate);
         }
     }
 
@@ -211,14 +212,14 @@ private:
                 grid_.spacing(a);
         return sum;
     }
-    Index swiftest_cell() const noexcept {
-        const ShallowTile* swiftest = &tiles_.list.front();
+    Index largest_rate_cell() const noexcept {
+        const ShallowTile* fastest = &tiles_.list.front();
         for (const ShallowTile& tile : tiles_.list)
-            if (tile.swiftest > swiftest->swiftest) swiftest = &tile;
+            if (tile.largest_rate > fastest->largest_rate) fastest = &tile;
         Index found = -1;
         Real most = 0;
-        for (Index j = swiftest->cells.first[1]; j < swiftest->cells.last[1]; ++j)
-            for (Index i = swiftest->cells.first[0]; i < swiftest->cells.last[0]; ++i)
+        for (Index j = fastest->cells.first[1]; j < fastest->cells.last[1]; ++j)
+            for (Index i = fastest->cells.first[0]; i < fastest->cells.last[0]; ++i)
                 if (const Real swift = swiftness(i, j); swift > most)
                     most = swift, found = j * grid_.count(0) + i;
         return found;
@@ -228,7 +229,7 @@ private:
         for (int a = 0; a < Dim; ++a)
             for (const auto& side : boundaries_[static_cast<std::size_t>(a)])
                 most = std::max(
-                    most, side.swiftest(grid_.spacing(a), grid_.spacing(Dim - 1 - a), forces_.pressing));
+                    most, side.largest_rate(grid_.spacing(a), grid_.spacing(Dim - 1 - a), forces_.pressing));
         return most;
     }
 
@@ -291,7 +292,7 @@ private:
     std::array<bool, 2> periodic_{};
     std::array<ShallowState<Dim>, 2> states_;  ///< the present one, and the next
     std::size_t current_ = 0;
-    Real swiftest_ = 0;  ///< of all cells [1/s]
+    Real largest_rate_ = 0;  ///< of all cells [1/s]
     Real volume_at_start_ = 0;
     std::array<std::array<Real, 2>, Dim> volume_in_{};
     Index steps_ = 0, repeated_ = 0;

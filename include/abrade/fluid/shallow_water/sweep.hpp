@@ -35,7 +35,7 @@ public:
         from_ = &from, to_ = &to, dt_ = dt;
         const CellBox box = tile.due();
         first_ = box.first[0], last_ = box.last[0];
-        tile.wet = {}, tile.swiftest = 0, tile.unsound = false;
+        tile.wet = {}, tile.largest_rate = 0, tile.unsound = false;
         if constexpr (Dim == 2) {
             level(box.first[1] - 2), level(box.first[1] - 1);
             predict_row(box.first[1] - 1), predict_row(box.first[1]);
@@ -246,7 +246,7 @@ private:
         const Pack per_x(dt_ / grid_.spacing(0)), per_y(dt_ / grid_.spacing(Dim - 1));
         const Pack each_x(1 / grid_.spacing(0)), each_y(1 / grid_.spacing(Dim - 1));
         const Fluxes &y_low = across(j - 1), &y_high = across(j);
-        Pack swiftest(0);
+        Pack largest_rate(0);
         Index wet_first = last_, wet_last = first_;
         for (Index i = first_; i < last_; i += lanes) {
             const std::size_t b = here(i), k = cell(i, j);
@@ -293,10 +293,10 @@ private:
             if (i + lanes > grid_.count(0))
                 counts = counts & inside_row(i), unsound = unsound & inside_row(i);
             tile.unsound |= any(unsound);
-            swiftest = max(swiftest, select(counts, swift, Pack(0)));
+            largest_rate = max(largest_rate, select(counts, swift, Pack(0)));
             if (any(counts)) wet_first = std::min(wet_first, i), wet_last = i + lanes;
         }
-        tile.swiftest = std::max(tile.swiftest, largest(swiftest));
+        tile.largest_rate = std::max(tile.largest_rate, largest(largest_rate));
         if (wet_first < wet_last)
             tile.wet = tile.wet.with({{wet_first, j}, {std::min(wet_last, grid_.count(0)), j + 1}});
     }

@@ -76,7 +76,7 @@ public:
     std::span<const Index> cells() const noexcept { return cell_; }
     std::span<const Index> levels() const noexcept { return level_; }
     /// Whether air is in the cell.
-    bool airy(Offset cell) const noexcept { return air_[cell] != 0; }
+    bool has_air(Offset cell) const noexcept { return air_[cell] != 0; }
 
     static void fields(auto&& field) {
         field("air", &SurfaceBand::air_), field("edge", &SurfaceBand::edge_),

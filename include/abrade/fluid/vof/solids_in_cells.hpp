@@ -84,7 +84,7 @@ public:
             room_[c] = room;
             put(c, liquid, at_once, fraction, volume_defect);
         }
-        tell_covered(grid, boundaries, full, fraction, volume_defect);
+        reconstruct_covered(grid, boundaries, full, fraction, volume_defect);
         std::erase_if(cells_, [&](Offset c) {
             const bool gone = next_[c] == open_of(c) && lag_[c] == 0;
             if (gone) forget(c);
@@ -117,7 +117,7 @@ private:
         Offset cell = 0;
         Real room = 1, lag = 0;
     };
-    struct Told {
+    struct Reconstructed {
         Offset cell;
         CellNumber<Dim> number{};
         int beside = 0;
@@ -154,16 +154,16 @@ private:
         volume_defect[c] = liquid - fraction[c] + part / room_[c];
     }
     /// Fractions of covered cells: what those beside them have, layer by layer from outside.
-    void tell_covered(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries, Real full,
-                      Field<Real>& fraction, Field<Real>& volume_defect) {
+    void reconstruct_covered(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries, Real full,
+                             Field<Real>& fraction, Field<Real>& volume_defect) {
         constexpr std::uint8_t known = 1, unknown = 2;
-        std::vector<Told> told;
+        std::vector<Reconstructed> covered_cells;
         for (const Offset c : cells_) {
             if (!(open_of(c) > 0 && next_[c] < covered * open_of(c))) continue;
-            told.push_back({c, grid.layout().number(c)}), marks_[c] = unknown;
+            covered_cells.push_back({c, grid.layout().number(c)}), marks_[c] = unknown;
         }
-        for (std::size_t left = told.size(); left > 0;) {
-            for (Told& cell : told) {
+        for (std::size_t left = covered_cells.size(); left > 0;) {
+            for (Reconstructed& cell : covered_cells) {
                 if (marks_[cell.cell] == known) continue;
                 Real sum = 0;
                 cell.beside = 0;
@@ -174,18 +174,18 @@ private:
                 cell.fraction = sum < 1 - full ? 0 : sum > full ? 1 : sum;
             }
             const std::size_t before = std::exchange(left, 0);
-            for (Told& cell : told) {
+            for (Reconstructed& cell : covered_cells) {
                 if (marks_[cell.cell] == known) continue;
                 if (cell.beside == 0)
                     ++left;
                 else
-                    tell(cell, fraction, volume_defect), marks_[cell.cell] = known;
+                    reconstruct(cell, fraction, volume_defect), marks_[cell.cell] = known;
             }
             if (left == before) break;
         }
-        for (const Told& cell : told) marks_[cell.cell] = known;
+        for (const Reconstructed& cell : covered_cells) marks_[cell.cell] = known;
     }
-    void tell(const Told& cell, Field<Real>& fraction, Field<Real>& volume_defect) {
+    void reconstruct(const Reconstructed& cell, Field<Real>& fraction, Field<Real>& volume_defect) {
         const Offset c = cell.cell;
         lag_[c] += (fraction[c] + volume_defect[c] - cell.fraction) * room_[c];
         fraction[c] = cell.fraction, volume_defect[c] = 0;

@@ -384,7 +384,7 @@ void Sweeps<Dim>::even_out_rims(int axis) {
         parallel_for(planes.count(), [&](Index i) {
             const auto k = static_cast<std::size_t>(i);
             const Offset c = planes.cell[k];
-            if (band.airy(c)) return;  // all its neighbours are in the band
+            if (band.has_air(c)) return;  // all its neighbours are in the band
             const Index face_level = planes.level[k] + (axis == vertical && side > 0 ? 1 : 0);
             const auto n = liquid_.beside(c, planes.level[k], axis, side);
             if (!n || band.holds(n->cell) || liquid_.fraction[n->cell] != 1) return;

@@ -10,31 +10,39 @@ namespace abrade {
 
 /// What these do to a state whose `particles` are as of now and whose velocities are whole. What they put in
 /// is the ledger's `fed_*`, what they take out its `left_*`. Lists must be renewed afterwards. Each throws
-/// InputError and has then changed nothing.
+/// InputError before it acts; one that does not act only checks, of any state.
 template <class P>
 class Changes {
 public:
-    explicit Changes(State<P>& state) : state_(state) {}
+    enum class Acts : bool { no, yes };
+    Changes(State<P>& state, Acts acts) : state_(state), acts_(acts == Acts::yes) {}
 
     /// Returns the body's id.
     Index add(const Scene::Stone& stone) {
         Scene scene = empty_scene();
         scene.stones.push_back(stone);
         scene.validate();
-        if constexpr (!P::has_materials) require_one_material(scene);
+        if constexpr (!P::has_materials) {
+            require_one_material(scene);
+            if (!acts_) return 0;
+        }
         BodyState at = stone.state;
         at.position += state_.scene.periodic().way_back(at.position);
         Particles& p = state_.particles;
         const Index body = p.add(stone.clump, stone.density, at, stone.fixed ? Kind::fixed : Kind::stone);
         if constexpr (P::has_materials) {
-            try {
-                require_laws_for(state_.policies.contact, p, state_.scene);
-            } catch (...) {
+            const auto take_back = [&] {
                 std::vector<char> last(at_of(p.bodies()), 0);
                 last.back() = 1;
                 p.remove(last), --p.next_id;
+            };
+            try {
+                require_laws_for(state_.policies.contact, p, state_.scene);
+            } catch (...) {
+                take_back();
                 throw;
             }
+            if (!acts_) return take_back(), 0;
         }
         state_.scene.stones.push_back(stone), state_.stone_id.push_back(p.id[at_of(body)]);
         state_.accounts.sum.fed_kinetic += p.kinetic_energy(body);
@@ -45,6 +53,7 @@ public:
     void remove(Index id) {
         const Index body = body_of(id);
         refuse_concrete(body, "remove");
+        if (!acts_) return;
         const Particles& p = state_.particles;
         state_.accounts.sum.left_kinetic += p.kinetic_energy(body);
         state_.accounts.sum.left_potential += state_.potential_energy(body, p.position[at_of(body)]);
@@ -58,6 +67,7 @@ public:
         require(state_.particles.kind[at_of(body)] == Kind::fixed,
                 {"Simulation.let_go: id", "of a body that is fixed", "", "others move already"}, id);
         const Scene::Stone& stone = stone_of(id);
+        if (!acts_) return;
         Particles& p = state_.particles;
         p.kind[at_of(body)] = Kind::stone;
         set_mobility(body, 1 / p.mass[at_of(body)],
@@ -72,6 +82,7 @@ public:
         require(p.kind[at_of(body)] == Kind::stone,
                 {"Simulation.hold: id", "of a stone that moves", "", "concrete is held by its bonds"}, id);
         stone_of(id);  // so that it can be let go again
+        if (!acts_) return;
         state_.accounts.sum.left_kinetic += p.kinetic_energy(body);
         state_.accounts.sum.left_potential += state_.potential_energy(body, p.position[at_of(body)]);
         p.kind[at_of(body)] = Kind::fixed;
@@ -94,6 +105,7 @@ public:
                 throw;
             }
         }
+        if (!acts_) state_.scene.walls.pop_back();
         return static_cast<Index>(state_.scene.walls.size()) - 1;
     }
 
@@ -104,6 +116,7 @@ public:
                  "of a wall, below " + std::to_string(state_.scene.walls.size()), "",
                  "add_wall returns it; those of the scene count from 0"},
                 number);
+        if (!acts_) return;
         state_.contacts.each_touching([&](const auto& touching) {
             if (touching.pair.second != -1 - number) return;
             const auto contact = contact_between(state_.store.lines, state_.scene.walls, touching.pair, 0);
@@ -125,6 +138,7 @@ public:
                   "asked of scenes without standing concrete and without water on a grid", "",
                   "both stand under the gravity that they were built with"},
                  state_.standing ? "standing concrete" : "water on a grid");
+        if (!acts_) return;
         const auto potential = [&] {
             Real sum = 0;
             for (Index b = 0; b < state_.particles.bodies(); ++b)
@@ -183,6 +197,7 @@ private:
     }
 
     State<P>& state_;
+    bool acts_;
 };
 
 }  // namespace abrade

@@ -105,9 +105,9 @@ private:
     /// Squares of the longest way since the list was made [m2], and of the highest speed [m2/s2].
     struct Extremes {
         Real way2 = 0, speed2 = 0;
-        bool strays = false;  ///< concrete that looked for nobody as the list was made has left its place
+        bool displaced = false;  ///< concrete that looked for nobody as the list was made has left its place
         Extremes& operator+=(const Extremes& o) noexcept {
-            way2 = std::max(way2, o.way2), speed2 = std::max(speed2, o.speed2), strays |= o.strays;
+            way2 = std::max(way2, o.way2), speed2 = std::max(speed2, o.speed2), displaced |= o.displaced;
             return *this;
         }
     };
@@ -230,7 +230,7 @@ private:
         land(state);
         if (!state.flight.sound) return true;
         const Extremes most = extremes(state);
-        if (most.strays && age_ > 0) return false;
+        if (most.displaced && age_ > 0) return false;
         const Real left = list_skin_ - 2 * (std::sqrt(most.way2) + walls_moved_);
         const Real way = 2 * (dt * std::sqrt(most.speed2) + walls_way_);
         if (left < 4 * way && age_ > 0) return false;
@@ -339,19 +339,19 @@ private:
 
     void find_pairs(State<P>& state) {
         const Particles& p = state.particles;
-        std::vector<Seeks> seeks(at(p.spheres()));
+        std::vector<SearchRole> role(at(p.spheres()));
         parallel_for(p.spheres(), [&](Index s) {
             const Index body = p.body[at(s)];
             const bool stands = state.sites.stand && p.kind[at(body)] == Kind::concrete;
-            seeks[at(s)] = stands                        ? Seeks::left_out
-                           : state.keeps_its_place(body) ? Seeks::passive
-                                                         : Seeks::all;
+            role[at(s)] = stands                        ? SearchRole::left_out
+                          : state.keeps_its_place(body) ? SearchRole::passive
+                                                        : SearchRole::all;
         });
         passive_.clear();
         if (state.scene.concrete && !state.sites.stand) {
-            passive_.resize(seeks.size());
+            passive_.resize(role.size());
             for (Index s = 0; s < p.spheres(); ++s)
-                passive_[at(state.store.slot_of(s))] = seeks[at(s)] == Seeks::passive;
+                passive_[at(state.store.slot_of(s))] = role[at(s)] == SearchRole::passive;
         }
         std::vector<VerletPair> known;
         for (const SitePair& pair : near_sites_)
@@ -372,7 +372,7 @@ private:
             });
         }
         state.contacts.rebuild(state.store,
-                               {p, state.scene.walls, seeks, marks, known, list_skin_ + film(state),
+                               {p, state.scene.walls, role, marks, known, list_skin_ + film(state),
                                 state.scene.periodic().period, P::has_materials},
                                std::move(requests), [&](Index first, Index second) {
                                    return P::has_bonds && state.network.holds({first, second});

@@ -32,14 +32,16 @@ public:
     /// Writes the present state into `particles()` and the ledger. What moves is left as it is.
     const Ledger& publish();
 
-    /// Between steps: `change(Changes)` is made of velocities and particles that are those of now; then
-    /// forces are found anew, over no time, with what contacts remember.
+    /// Between steps: `change(Changes)` is checked first, then made of velocities and particles that are those
+    /// of now; then forces are found anew, over no time, with what contacts remember.
     void change(auto&& change) {
+        using Acts = typename Changes<P>::Acts;
+        change(Changes<P>(state_, Acts::no));
         make_whole();
         publish();
         land(state_);  // what flies has flown under what was there until now
         rouse_all(state_);
-        change(Changes<P>(state_));
+        change(Changes<P>(state_, Acts::yes));
         state_.outline.renew(state_.scene, state_.policies);
         state_.events.loosened = true;
         evaluated_ = false, led_here_ = kicked_ = last_kick_ = 0;
@@ -88,8 +90,8 @@ public:
             field("stored_bonds", "J", &World::stored_bonds_),
             field("stored_at_rest", "J", &World::stored_at_rest_), field("unlooked", &World::unlooked_),
             field("too_deep", &World::too_deep_), field("timed", &World::timed_),
-            field("fluid_seconds", "s", &World::fluid_seconds_), field("fluid_due", &World::fluid_due_),
-            field("wall_power", "W", &World::wall_power_);
+            field("fluid_seconds", "s", &World::fluid_seconds_),
+            field("next_fluid_step", &World::next_fluid_step_), field("wall_power", "W", &World::wall_power_);
     }
     void restored() { move_walls(led_here_); }
 
@@ -99,8 +101,8 @@ private:
         BondSums bonds;
         MotionSums motion;
         StepSeconds seconds;
-        std::vector<Press> presses;   ///< on standing concrete
-        std::vector<Index> weakened;  ///< sites
+        std::vector<SiteLoad> site_loads;  ///< on standing concrete
+        std::vector<Index> weakened;       ///< sites
     };
     struct Published {
         MotionSums motion;
@@ -204,7 +206,7 @@ private:
         if constexpr (P::has_bonds)
             if (evaluated && state_.standing)
                 for (Index slot = first; slot < store.first_clump_slot(slab); ++slot)
-                    note_press(slot, sums.presses);
+                    note_site_load(slot, sums.site_loads);
         if constexpr (P::has_wear)
             for (Index slot = first; slot < last; ++slot) take_wear(slot, sums.weakened);
         if (!move) return;
@@ -235,14 +237,14 @@ private:
         load.observed = 0;
     }
 
-    /// Of what presses on a standing sphere, what is more than it bears for certain.
-    void note_press(Index slot, std::vector<Press>& presses) const {
+    /// The load on a standing sphere, where that is more than it bears for certain.
+    void note_site_load(Index slot, std::vector<SiteLoad>& site_loads) const {
         const SphereLoad& load = state_.store.lines.load[at(slot)];
         const Real load2 = load.force.squaredNorm() + load.torque_over_radius.squaredNorm();
         if (!(load2 > 0) || state_.store.lines.motion[at(slot)].inverse_mass > 0) return;
         const Index site = state_.particles.site[at(body_in(slot))];
         if (site >= 0 && load2 > state_.standing->safe_squared(site))
-            presses.push_back({site, {load.force, load.torque_over_radius}});
+            site_loads.push_back({site, {load.force, load.torque_over_radius}});
     }
 
     void book(const ContactSums& contacts, const BondSums& bonds) {
@@ -297,7 +299,7 @@ private:
     Real stored_contacts_ = 0, stored_bonds_ = 0;  ///< in what is evaluated [J]
     Real stored_at_rest_ = 0;                      ///< [J]
     Real wall_power_ = 0, wall_speed_ = 0;  ///< of walls that move: on bodies [W], where these are [m/s]
-    FluidDue fluid_due_;
+    NextFluidStep next_fluid_step_;
     Index unlooked_ = 0;     ///< steps since the last look at who falls asleep
     bool too_deep_ = false;  ///< some contact may be, as of the last evaluation
     Failure failure_;
@@ -420,7 +422,7 @@ void World<P>::pass(bool evaluate, const Move* move, bool timed) {
     for (const PassSums& part : parts_) {
         all.contacts += part.contacts, all.bonds += part.bonds, all.motion += part.motion;
         timed_ += part.seconds;
-        state_.events.put(part.presses, part.weakened);
+        state_.events.put(part.site_loads, part.weakened);
     }
     if (evaluate) book(all.contacts, all.bonds), kicked_ = 0, wall_power_ = all.contacts.wall_power;
     report_overlap(move ? *move : Move{});
@@ -429,8 +431,8 @@ void World<P>::pass(bool evaluate, const Move* move, bool timed) {
         state_.accounts.add(&Ledger::wall_work, move->kick * wall_power_);
         state_.flight.note(move->kick, move->drift, move->time);
         state_.sleep.stirred |= all.motion.stirs;
-        fluid_due_.fastest = std::max(std::sqrt(all.motion.fastest2), state_.flight.fastest_now());
-        const Real way = move->drift * fluid_due_.fastest;
+        next_fluid_step_.fastest = std::max(std::sqrt(all.motion.fastest2), state_.flight.fastest_now());
+        const Real way = move->drift * next_fluid_step_.fastest;
         lists_.note_step(way, move->drift * wall_speed_);
         check(all.motion);
         if (way > state_.smallest_radius) land(state_), report(Diagnosis(state_).longest_stride(move->drift));
@@ -442,12 +444,12 @@ template <class P>
 void World<P>::exchange_before(Real t) {
     if constexpr (P::fluid_resolves) {
         auto& fluid = state_.policies.fluid;
-        if (fluid_due_.of(fluid) >= t) return;
+        if (next_fluid_step_.of(fluid) >= t) return;
         const Real to = state_.nobody_moves() ? t : now_;
         if (!(fluid.time() < to)) return;
         make_whole();
         FlowBodies<P> flow(state_);
-        fluid.advance(to, flow.bodies()), ++fluid_due_.met;
+        fluid.advance(to, flow.bodies()), ++next_fluid_step_.met;
         state_.accounts.sum.flow_work += flow.give_back(state_);
         if constexpr (requires { fluid.solids_took(Real{}); })
             fluid.solids_took(state_.accounts.sum.flow_work);

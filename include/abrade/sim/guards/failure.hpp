@@ -40,13 +40,13 @@ struct StepSeconds {
 
 /// Shares of wall time [-]: contacts with their wear; bonds; motion with what the fluid does to it; renewal
 /// of lists; a fluid that changes.
-struct WallShares {
+struct TimeShares {
     Real contacts = 0, bonds = 0, motion = 0, renewal = 0, fluid = 0;
 };
 
 /// `timed`: seconds of the parts of some steps; what renewal and fluid leave of the wall time goes by their
 /// shares.
-inline WallShares shares_of(Real wall, const StepSeconds& timed, Real renewal, Real fluid) noexcept {
+inline TimeShares shares_of(Real wall, const StepSeconds& timed, Real renewal, Real fluid) noexcept {
     const Real all = timed.contacts + timed.bonds + timed.motion;
     if (!(all > 0 && wall > 0)) return {};
     const Real share = std::max(0.0, wall - renewal - fluid) / all / wall;

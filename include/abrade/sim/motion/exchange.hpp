@@ -13,7 +13,7 @@ namespace abrade {
 /// Until when a fluid's next step would lead, found once for each of them: solids ask before every step of
 /// theirs. Water whose cells bodies cross (`step_of_body`) is due sooner where a body is fast, and twice
 /// early as it first meets bodies: what starts at once is no load that lasts, so the second tells that.
-class FluidDue {
+class NextFluidStep {
 public:
     Real fastest = 0;  ///< of bodies as they moved last [m/s]
     Index met = 0;     ///< how often fluid and bodies have met
@@ -27,7 +27,7 @@ public:
             return begins_ + takes_;
     }
     static void fields(auto&& field) {
-        field("fastest", "m/s", &FluidDue::fastest), field("met", &FluidDue::met);
+        field("fastest", "m/s", &NextFluidStep::fastest), field("met", &NextFluidStep::met);
     }
 
 private:

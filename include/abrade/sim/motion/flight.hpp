@@ -155,11 +155,11 @@ void publish_places(State<P>& state) {
 namespace detail {
 
 /// What flyers may come to.
-struct Outlook {
+struct FlightBounds {
     Real fastest = 0, hardest = 0;                        ///< [m/s], [m/s2]
     Real margin = std::numeric_limits<Real>::infinity();  ///< to the nearest bound of space [m]
     bool in_fluid = false;                                ///< somebody whose drag changes
-    Outlook& operator+=(const Outlook& o) noexcept {
+    FlightBounds& operator+=(const FlightBounds& o) noexcept {
         in_fluid |= o.in_fluid;
         fastest = std::max(fastest, o.fastest), hardest = std::max(hardest, o.hardest);
         margin = std::min(margin, o.margin);
@@ -238,10 +238,10 @@ void take_off(State<P>& state, Real horizon) {
             [&](const auto& bond) { ground(bond.slots.first), ground(bond.slots.second); });
     const Box space = state.scene.open_bounds();
     const bool bounded = space.low.array().isFinite().any() || space.high.array().isFinite().any();
-    const auto all = parallel_sum<detail::Outlook>(
+    const auto all = parallel_sum<detail::FlightBounds>(
         state.particles.bodies(),
         [&](Index body) {
-            detail::Outlook one;
+            detail::FlightBounds one;
             const Index first = state.first_slot_of(body);
             const SphereMotion& motion = store.lines.motion[at(first)];
             if (mode[at(first)] != IntegrationMode::flying || motion.inverse_mass == 0) return one;

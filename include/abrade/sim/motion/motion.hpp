@@ -74,7 +74,7 @@ void book(auto& to, const MotionSums& motion, const Vec3& gravity) noexcept {
 /// What contacts and weight do to the water that a body takes along, its added mass. A flow that resolves
 /// bodies knows of their weight.
 inline void take_along(FlowLoad& fluid, const Vec3& contacts, Real mass, const Vec3& /*gravity*/) noexcept {
-    if (fluid.along > 0) fluid.force = fluid.force_among(contacts, mass);
+    if (fluid.added_mass > 0) fluid.force = fluid.force_among(contacts, mass);
 }
 inline void take_along(FluidLoad& fluid, const Vec3& contacts, Real mass, const Vec3& gravity) noexcept {
     take_along(fluid, contacts + mass * gravity, mass);

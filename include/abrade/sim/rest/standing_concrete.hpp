@@ -152,15 +152,15 @@ void settle_concrete(State<P>& state, Real time) {
     if constexpr (P::has_bonds)
         if (state.standing) {
             for (const Index site : std::exchange(state.events.weakened, {})) state.standing->weakened(site);
-            std::vector<Press>& presses = state.events.presses;
-            std::sort(presses.begin(), presses.end(),
-                      [](const Press& a, const Press& b) { return a.site < b.site; });
-            if (!presses.empty() || !emptied.empty()) {
+            std::vector<SiteLoad>& site_loads = state.events.site_loads;
+            std::sort(site_loads.begin(), site_loads.end(),
+                      [](const SiteLoad& a, const SiteLoad& b) { return a.site < b.site; });
+            if (!site_loads.empty() || !emptied.empty()) {
                 const std::vector<Index> unheld =
-                    state.standing->settle(presses, emptied, state.strength_of_site());
+                    state.standing->settle(site_loads, emptied, state.strength_of_site());
                 loose.insert(loose.end(), unheld.begin(), unheld.end());
             }
-            presses.clear();
+            site_loads.clear();
         }
     std::sort(loose.begin(), loose.end());
     if (!loose.empty()) land(state);  // what comes loose begins now, and not as those that fly took off

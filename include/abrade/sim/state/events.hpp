@@ -13,8 +13,8 @@ namespace abrade {
 /// order, or where lists are renewed.
 struct Events {
     // Put by an evaluation, taken by `settle_concrete`.
-    std::vector<Press> presses;   ///< on quasi-static concrete, beyond what it bears for certain
-    std::vector<Index> weakened;  ///< sites whose strength has fallen by a step
+    std::vector<SiteLoad> site_loads;  ///< on quasi-static concrete, beyond what it bears for certain
+    std::vector<Index> weakened;       ///< sites whose strength has fallen by a step
     // Put by an evaluation and by wear, taken by `State::free_loose_concrete`.
     bool bond_broke = false;
     // Put by `settle_concrete`, `State::free_loose_concrete` and changes between runs, taken by a renewal of
@@ -24,13 +24,13 @@ struct Events {
     std::vector<BondGraph::Component> components;  ///< that came loose and are to go on as clumps
     bool loosened = false;                         ///< concrete came loose or is gone: lists are due
 
-    void put(const std::vector<Press>& new_presses, const std::vector<Index>& new_weakened) {
-        presses.insert(presses.end(), new_presses.begin(), new_presses.end());
+    void put(const std::vector<SiteLoad>& new_loads, const std::vector<Index>& new_weakened) {
+        site_loads.insert(site_loads.end(), new_loads.begin(), new_loads.end());
         weakened.insert(weakened.end(), new_weakened.begin(), new_weakened.end());
     }
 
     static void fields(auto&& field) {
-        field.bytes("presses", &Events::presses), field("weakened", &Events::weakened),
+        field.bytes("site_loads", &Events::site_loads), field("weakened", &Events::weakened),
             field("bond_broke", &Events::bond_broke), field("worn_away", &Events::worn_away),
             field("removed", &Events::removed), field("components", &Events::components),
             field("loosened", &Events::loosened);
