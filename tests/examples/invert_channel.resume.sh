@@ -22,12 +22,13 @@ same_results() { # same_results WHAT FOLDER FOLDER
 
 # Some 3 s of wall time of one core.
 base=(--set channel.length=6 --set run.end_time=1.4 --set contact.stiffness=2e7 --set compare.gauge=3 --set compare.from=1 --set compare.to=5)
-every=0.002  # min: 0.12 s
 pause() { sleep "$(($1 / 1000)).$(printf '%03d' $(($1 % 1000)))"; }  # pause MILLISECONDS
 now_ms() { echo $(($(date +%s%N) / 1000000)); }
 began=$(now_ms)
 "$program" "${base[@]}" --threads 1 --out whole > whole.log || fail "the run that is left alone: $(cat whole.log)"
 took=$(($(now_ms) - began))
+every_ms=$((took / 30 + 20))
+every=$(awk "BEGIN {print $every_ms / 60000}")  # min
 
 # --- kill -9 at random moments, after a twentieth to a fifth of the whole run's time; a run that comes to its end before all of them is compared, and begun anew
 go_on() { # to the end
@@ -49,6 +50,7 @@ for ((kill = 0; kill < kills;)); do
     if kill -9 $pid 2> /dev/null; then
         kill=$((kill + 1))
         wait $pid 2> /dev/null || true
+        resume=()
         if [ -e killed.checkpoint.h5 ]; then resume=(--resume) resumed=$((resumed + 1)); fi
     else
         wait $pid || fail "the run that goes on fails: $(cat killed.log)"
@@ -62,13 +64,13 @@ ended "after $kill kills"
 # --- a run that is killed as it draws its pictures, which went on from one that was killed: its series is whole
 "$program" "${base[@]}" --threads 1 --set run.checkpoint_every=$every --out killed > killed.log 2>&1 &
 pid=$!
-pause $((took * 8 / 10))
+pause $((took * 6 / 10))
 kill -9 $pid || fail "the run is too short for this test"
 wait $pid 2> /dev/null || true
 for again in 1 2; do
     "$program" "${base[@]}" --threads 1 --set run.checkpoint_every=60 --out killed --resume > killed.log 2>&1 &
     pid=$!
-    until [ -n "$(find . -path './.killed.partial-*/summary.json')" ]; do sleep 0.02; done
+    until [ -n "$(find . -path './.killed.partial-*/summary.json')" ] || ! kill -0 $pid 2> /dev/null; do sleep 0.02; done
     kill -9 $pid || fail "the pictures are drawn too soon for this test"
     wait $pid 2> /dev/null || true
     rm -f .killed.partial-*/summary.json
@@ -83,8 +85,10 @@ pid=$!
 pause $((took / 2))
 kill -9 $pid || fail "the run is too short for this test"
 wait $pid 2> /dev/null || true
+[ -e young.checkpoint.h5 ] || fail "half a run leaves no checkpoint"
 age=$(($(now_ms) - $(date -r young.checkpoint.h5 +%s%N) / 1000000))
-[ $age -lt 1000 ] || fail "the last checkpoint is $age ms old, $every min are allowed"
+allowed=$((5 * every_ms + took / 20))
+[ $age -lt $allowed ] || fail "the last checkpoint is $age ms old, $every_ms ms are allowed, and what a save takes"
 
 # --- signals: results so far, a checkpoint, and on from there
 stopped_by() { # stopped_by SIGNAL OPTION...
@@ -92,8 +96,8 @@ stopped_by() { # stopped_by SIGNAL OPTION...
     shift
     "$program" "$@" --threads 1 --out ended > ended.log 2>&1 &
     pid=$!
-    sleep 1
-    kill "-$signal" $pid
+    pause $((took / 4))
+    kill "-$signal" $pid || fail "$signal: the run is too short for this test"
     wait $pid || fail "$signal: exit code $?: $(cat ended.log)"
     grep -q -- '--resume goes on' ended.log || fail "$signal: no word of how to go on: $(cat ended.log)"
     grep -q '"stopped_early": true' ended/summary.json || fail "$signal: the results do not say so"

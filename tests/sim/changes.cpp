@@ -159,23 +159,41 @@ TEST_CASE("what cannot be changed is refused, and nothing has changed") {
 TEST_CASE("a refused change leaves a run as it would have been, to the bit") {
     Scene scene;
     scene.add_wall({0, 0, 0}, {0, 0, 1}).add_sphere(0.01, {.position = {0, 0, 0.01}});
-    scene.add_sphere(0.01, {.position = {0.1, 0, 0.05}, .velocity = {0.3, 0, 0}});
-    const auto end_of = [&](bool asks) {
-        auto sim = simulate(scene).contact(law);
-        sim.run({.end_time = 0.09});
+    scene.add_sphere(0.01, {.position = {0.1, 0, 0.8}, .velocity = {0.3, 0, 0}});
+    const auto end_of = [&](const auto& contact, bool asks) {
+        auto sim = simulate(scene).contact(contact);
+        RunOptions options{.end_time = 0.2, .time_step = 1e-5, .sleep_speed = 0.01, .sleep_after = 0.02};
+        sim.run(options);
+        const auto& state = sim.world().state();
+        REQUIRE(state.sleep.asleep(0));
         if (asks) {
             CHECK_THROWS_AS(sim.remove(17), InputError);
+            CHECK_THROWS_AS(sim.remove_wall(1), InputError);
             CHECK_THROWS_AS(sim.let_go(0), InputError);
             CHECK_THROWS_AS(sim.hold(5), InputError);
-            CHECK_THROWS_AS(sim.add_sphere(0.01, {.material = 1}), InputError);
+            CHECK_THROWS_AS(sim.add_sphere(0.01, {.position = {0, 0, 0.5}, .material = 1}), InputError);
             CHECK_THROWS_AS(sim.add_wall({0, 0, 0}, {0, 0, 1}, 1), InputError);
+            CHECK_THROWS_AS(sim.set_gravity({0, 0, std::nan("")}), InputError);
         }
-        sim.run({.end_time = 0.2});
-        return sim.particles();
+        CHECK(state.sleep.asleep(0));
+        options.end_time = 0.3;
+        sim.run(options);
+        const Index next = sim.add_sphere(0.01, {.position = {0.2, 0, 0.01}});
+        return std::tuple(sim.particles(), sim.ledger().residual(), next, state.scene.walls.size());
     };
-    const Particles asked = end_of(true), left_alone = end_of(false);
-    for (std::size_t b : {0, 1}) {
-        CHECK(asked.position[b] == left_alone.position[b]);
-        CHECK(asked.velocity[b] == left_alone.velocity[b]);
-    }
+    const auto check = [&](const auto& contact) {
+        const auto [asked, residual, next, walls] = end_of(contact, true);
+        const auto [left_alone, residual_alone, next_alone, walls_alone] = end_of(contact, false);
+        REQUIRE(asked.bodies() == left_alone.bodies());
+        for (std::size_t b : {0, 1}) {
+            CHECK(asked.position[b] == left_alone.position[b]);
+            CHECK(asked.velocity[b] == left_alone.velocity[b]);
+        }
+        CHECK(residual == residual_alone);
+        CHECK(next == next_alone);
+        CHECK(walls == walls_alone);
+    };
+    check(law);
+    check(MaterialPairs<LinearSpring>{
+        {.materials = {"stone", "steel"}, .pairs = {{"stone", "stone", {.stiffness = 1e5}}}}});
 }

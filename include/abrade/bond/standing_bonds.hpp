@@ -61,8 +61,8 @@ public:
         std::vector<Index> loose;
         for (const Index site : emptied)
             if (!lost_[at(site)]) lose(site);
-        for (const SiteLoad& press : site_loads)
-            if (!lost_[at(press.site)] && !graph_.held(press.site)) check(press, left, loose);
+        for (const SiteLoad& site_load : site_loads)
+            if (!lost_[at(site_load.site)] && !graph_.held(site_load.site)) check(site_load, left, loose);
         seat_pieces(nullptr, loose);
         std::sort(loose.begin(), loose.end());
         return loose;
@@ -173,21 +173,21 @@ private:
     }
 
     template <class Left>
-    void check(const SiteLoad& press, Left&& left, std::vector<Index>& loose) {
-        const Real load2 = press.load.along.squaredNorm() + press.load.about.squaredNorm();
-        if (!known_[at(press.site)]) find_safe(press.site, left);
-        if (load2 <= safe2_[at(press.site)]) return;
-        const std::vector<Index> members = cluster_about(press.site);
+    void check(const SiteLoad& site_load, Left&& left, std::vector<Index>& loose) {
+        const Real load2 = site_load.load.along.squaredNorm() + site_load.load.about.squaredNorm();
+        if (!known_[at(site_load.site)]) find_safe(site_load.site, left);
+        if (load2 <= safe2_[at(site_load.site)]) return;
+        const std::vector<Index> members = cluster_about(site_load.site);
         for (bool breaks = true; breaks;) {
             set_up(members);
-            balance_.load[0].along += press.load.along, balance_.load[0].about += press.load.about;
+            balance_.load[0].along += site_load.load.along, balance_.load[0].about += site_load.load.about;
             balance_.solve(held_share * radius_);
             breaks = break_worst(left);
         }
-        const Index seat = seat_of_[at(press.site)];
-        seat_pieces(&press, loose);
-        if (seat >= 0 && !lost_[at(press.site)] && seat_of_[at(press.site)] == seat)
-            try_seat(seat, &press, loose);
+        const Index seat = seat_of_[at(site_load.site)];
+        seat_pieces(&site_load, loose);
+        if (seat >= 0 && !lost_[at(site_load.site)] && seat_of_[at(site_load.site)] == seat)
+            try_seat(seat, &site_load, loose);
     }
     /// Breaks the link that is overloaded most, if any is.
     template <class Left>
@@ -268,14 +268,14 @@ private:
     }
 
     /// Finds what has come off the ground, and sees whether it, and what else may have lost support, stays.
-    void seat_pieces(const SiteLoad* press, std::vector<Index>& loose) {
+    void seat_pieces(const SiteLoad* site_load, std::vector<Index>& loose) {
         for (bool more = true; more;) {
             for (const BondGraph::Component& component : graph_.take_loose()) add_seats(component);
             std::sort(doubtful_.begin(), doubtful_.end());
             doubtful_.erase(std::unique(doubtful_.begin(), doubtful_.end()), doubtful_.end());
             const std::vector<Index> now = std::exchange(doubtful_, {});
             for (const Index seat : now) split(seat);
-            for (const Index seat : std::exchange(fresh_, {})) try_seat(seat, press, loose);
+            for (const Index seat : std::exchange(fresh_, {})) try_seat(seat, site_load, loose);
             more = !doubtful_.empty() || !fresh_.empty();
         }
     }
@@ -297,7 +297,7 @@ private:
         std::erase_if(component, [&](Index site) { return lost_[at(site)] || seat_of_[at(site)] != seat; });
         if (!component.empty()) add_seats(component);
     }
-    void try_seat(Index seat, const SiteLoad* press, std::vector<Index>& loose) {
+    void try_seat(Index seat, const SiteLoad* site_load, std::vector<Index>& loose) {
         const BondGraph::Component component = seats_[at(seat)];
         if (component.empty()) return;
         Vec3 centre = Vec3::Zero();
@@ -308,10 +308,10 @@ private:
             for (const BondGraph::End& end : graph_.of(site))
                 if (!lost_[at(end.other)] && seat_of_[at(end.other)] != seat)
                     balance_.links.push_back(link_of(end.tie, site, 0, -1, centre, centre_[at(end.other)]));
-            if (!press || press->site != site) continue;
-            balance_.load[0].along += press->load.along;
+            if (!site_load || site_load->site != site) continue;
+            balance_.load[0].along += site_load->load.along;
             balance_.load[0].about +=
-                press->load.about + (centre_[at(site)] - centre).cross(press->load.along) / radius_;
+                site_load->load.about + (centre_[at(site)] - centre).cross(site_load->load.along) / radius_;
         }
         if (balance_.solve(held_share * radius_)) return;
         for (const Index site : component) loose.push_back(site);

@@ -51,12 +51,12 @@ struct FlowBody {
 
 /// Velocity that contacts gave a body since the last exchange, and what is left of it if it was a blow:
 /// what the last time had of it as well is a force that lasts.
-struct ContactImpulse {
+struct ContactVelocity {
     Vec3 velocity = Vec3::Zero(), blow = Vec3::Zero();  ///< [m/s]
 
-    ContactImpulse() = default;
+    ContactVelocity() = default;
     /// `had`: velocity after the last exchange, of a body that has fallen since then.
-    ContactImpulse(const FlowBody& body, const Vec3& had, const Vec3& before, const Vec3& falls, Real dt)
+    ContactVelocity(const FlowBody& body, const Vec3& had, const Vec3& before, const Vec3& falls, Real dt)
         : velocity(body.velocity - had -
                    dt * (falls + body.inverse_mass * (body.load.force + body.load.shared))),
           blow(velocity) {
@@ -76,9 +76,9 @@ struct ContactImpulse {
     /// Hands out how much water goes along from here on, and its part of the contacts' force.
     void hand_out(FlowBody& body, Real added, Real dt) const noexcept {
         if (body.inverse_mass == 0) return;
-        const Real mass = 1 / body.inverse_mass, impulse = mass + body.load.added_mass;  // over `velocity`
+        const Real mass = 1 / body.inverse_mass, moved = mass + body.load.added_mass;  // over `velocity`
         body.load.added_mass = near * added;
-        body.load.shared = body.load.added_mass / (mass + body.load.added_mass) * impulse / dt * velocity;
+        body.load.shared = body.load.added_mass / (mass + body.load.added_mass) * moved / dt * velocity;
     }
 };
 

@@ -145,7 +145,7 @@ private:
         Real rate = 0;                       ///< beta / (rho V) [1/s]
         Real coefficient = 0;                ///< C_m [-]
         Real added = 0;                      ///< C_m rho V, as far as there is water [kg]
-        ContactImpulse struck;               ///< by contacts
+        ContactVelocity struck;              ///< by contacts
     };
     /// What is known of a body from the last step.
     struct Memory {

@@ -112,8 +112,8 @@ protected:
         Six push = Six::Zero();         ///< its change by the last pressure
         Six by_friction = Six::Zero();  ///< [N], [N m]
         Real curvature = 0;
-        Real covers = 0;        ///< mass of water in the body's place [kg]
-        ContactImpulse struck;  ///< by contacts
+        Real covers = 0;         ///< mass of water in the body's place [kg]
+        ContactVelocity struck;  ///< by contacts
     };
     /// What is known of a body from the last step.
     struct Memory {
@@ -338,10 +338,11 @@ private:
         return sum;
     }
 
-    std::vector<Memory> memory_;               ///< by id
-    std::vector<SolidFlux> fluxes_;            ///< as the last step left them, plane by plane
-    std::vector<Real> beyond_, interstitial_;  ///< mixture's velocity beyond the water's there; this [m/s]
-    std::vector<std::size_t> flux_start_;      ///< [plane] in them
+    std::vector<Memory> memory_;     ///< by id
+    std::vector<SolidFlux> fluxes_;  ///< as the last step left them, plane by plane
+    std::vector<Real> beyond_,
+        interstitial_;  ///< mixture's velocity beyond the water's there; the water's own [m/s]
+    std::vector<std::size_t> flux_start_;  ///< [plane] in them
     Real fastest_ = 0;
     Real lost_to_friction_ = 0;       ///< in the last step [J]
     std::vector<Index> seen_, here_;  ///< ids of the bodies of the last step and of this one, sorted

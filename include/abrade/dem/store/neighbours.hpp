@@ -38,12 +38,12 @@ enum class SearchRole : char { all, passive, left_out };
 
 /// The spheres to search.
 struct NeighbourQuery {
-    std::span<const Vec3> centre;  ///< [m], within one period
-    std::span<const Real> radius;  ///< [m]
-    std::span<const Index> body;   ///< spheres of one body are never a pair
-    std::span<const SearchRole> role;
-    Real skin = 0;               ///< pairs whose surfaces are nearer than this [m]
-    Vec3 period = Vec3::Zero();  ///< of space along each axis [m]; 0 where it is open
+    std::span<const Vec3> centre;      ///< [m], within one period
+    std::span<const Real> radius;      ///< [m]
+    std::span<const Index> body;       ///< spheres of one body are never a pair
+    std::span<const SearchRole> role;  ///< [sphere]
+    Real skin = 0;                     ///< pairs whose surfaces are nearer than this [m]
+    Vec3 period = Vec3::Zero();        ///< of space along each axis [m]; 0 where it is open
 
     Vec3 image(std::size_t sphere, const ImageShift& shift) const noexcept {
         return shift.none() ? centre[sphere] : Vec3(centre[sphere] + shift.times(period));

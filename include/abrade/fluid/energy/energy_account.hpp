@@ -34,7 +34,7 @@ public:
                 if (const Boundary side = flow.params.boundaries[a][high];
                     side == Boundary::inflow || side == Boundary::outflow)
                     flow.grid.for_each_beside(a, high, [&](const CellNumber<Dim>&, Offset c) {
-                        open_sides_.push_back({c, a, high, side == Boundary::inflow});
+                        boundary_faces_.push_back({c, a, high, side == Boundary::inflow});
                     });
         look(flow);
         energy_.kinetic_start = energy_.kinetic, energy_.potential_start = energy_.potential;
@@ -45,12 +45,12 @@ public:
     /// Below a surface, when the liquid has moved with the velocity and nothing else has.
     void liquid_moved(const View& flow) {
         mid_ = flow.velocity;
-        for (OpenSide& o : open_sides_) {
+        for (BoundaryFace& o : boundary_faces_) {
             o.volume = (*flow.flux)[o.axis][o.face(flow.grid)];
             o.pressure = static_cast<Real>(pressure_at(flow, o));
         }
         for (const SolidVolume& s : flow.liquid->solid_moved())
-            if (OpenSide* o = opening_at(flow, s.axis, s.face)) o->volume -= s.volume;
+            if (BoundaryFace* o = boundary_face_at(flow, s.axis, s.face)) o->volume -= s.volume;
     }
     void walls_took(const typename WallFriction<Dim>::PerFace& taken) { taken_ = taken; }
 
@@ -68,7 +68,7 @@ public:
                     for (const FaceGain& g : (*flow.gains)[a]) of_face(a, g.face, g.gain - g.drained);
             });
         change.sources = brought_by_sources(flow);
-        const Real carried = through_openings(flow, change);
+        const Real carried = through_boundary(flow, change);
         if (!flow.liquid)
             change.advection =
                 carried - 0.5 * (advection(flow, flow.before, dt) + advection(flow, flow.stage, dt));
@@ -98,13 +98,14 @@ public:
     }
 
     static void fields(auto&& field) {
-        field("mid", "m/s", &EnergyAccount::mid_), field.bytes("open_sides", &EnergyAccount::open_sides_),
+        field("mid", "m/s", &EnergyAccount::mid_),
+            field.bytes("boundary_faces", &EnergyAccount::boundary_faces_),
             field("energy", &EnergyAccount::energy_);
     }
 
 private:
     /// A face through which water may flow in or out of the box.
-    struct OpenSide {
+    struct BoundaryFace {
         Offset cell = 0;
         int axis = 0;
         bool high = false, inflow = false;
@@ -141,26 +142,28 @@ private:
         for (const SolidVolume& s : solids) sum += s.volume * of_face(s.axis, s.face);
         return flow.params.density * sum;
     }
-    OpenSide* opening_at(const View& flow, int axis, Offset face) noexcept {
-        const auto found = std::ranges::find_if(
-            open_sides_, [&](const OpenSide& o) { return o.axis == axis && o.face(flow.grid) == face; });
-        return found == open_sides_.end() ? nullptr : &*found;
+    BoundaryFace* boundary_face_at(const View& flow, int axis, Offset face) noexcept {
+        const auto found = std::ranges::find_if(boundary_faces_, [&](const BoundaryFace& o) {
+            return o.axis == axis && o.face(flow.grid) == face;
+        });
+        return found == boundary_faces_.end() ? nullptr : &*found;
     }
 
-    /// Of a full box, the velocity in the middle of the step and what it carried through openings.
+    /// Of a full box, the velocity in the middle of the step and what it carried through faces of the
+    /// boundary.
     void find_middle(const View& flow, Real dt) {
         for (int a = 0; a < Dim; ++a)
             parallel_for(static_cast<Index>(mid_[a].size()), [&](Index c) {
                 mid_[a][c] = State(0.5) * (flow.before[a][c] + flow.velocity[a][c]);
             });
-        for (OpenSide& o : open_sides_) {
+        for (BoundaryFace& o : boundary_faces_) {
             const CellNumber<Dim> cell = flow.grid.layout().number(o.cell);
             o.volume = dt * static_cast<Real>(mid_[o.axis][o.face(flow.grid)]) * flow.grid.volume(cell) /
                        flow.grid.size(o.axis, cell[o.axis]);
             o.pressure = pressure_at(flow, o);
         }
         for (const SolidFlux& s : flow.solid_fluxes)
-            if (OpenSide* o = opening_at(flow, s.axis, s.face)) {
+            if (BoundaryFace* o = boundary_face_at(flow, s.axis, s.face)) {
                 const CellNumber<Dim> cell = flow.grid.layout().number(o->cell);
                 o->volume -= dt * s.speed * flow.grid.volume(cell) / flow.grid.size(s.axis, cell[s.axis]);
             }
@@ -203,13 +206,13 @@ private:
         const Real nu = flow.params.viscosity / flow.params.density;
         if (nu > 0) {
             change.viscous = -stage_work<Upwind, false>(flow, {mid_, still_, dt, nu});
-            change.viscous += work_in_solids(flow) - work_in_openings(flow);
+            change.viscous += work_in_solids(flow) - work_at_boundary(flow);
             change.boundaries = work_of_sides(flow, dt * flow.params.viscosity);
             change.viscous += change.boundaries;
         }
         if (flow.eddies) {
             change.turbulent = -stage_work<Upwind, true>(flow, {mid_, still_, dt, 0});
-            change.turbulent += work_in_solids(flow) - work_in_openings(flow);
+            change.turbulent += work_in_solids(flow) - work_at_boundary(flow);
         }
     }
     /// Work of the momentum that is carried about the control volumes of a velocity, on `mid_`.
@@ -252,11 +255,11 @@ private:
             });
         return flow.params.density * work;
     }
-    /// Friction: the half volume of a face in an opening has no momentum of its own, it loses what that of
-    /// the next face does. After `stage_work`.
-    Real work_in_openings(const View& flow) const {
+    /// Friction: the half volume of such a face of the boundary has no momentum of its own, it loses what
+    /// that of the next face does. After `stage_work`.
+    Real work_at_boundary(const View& flow) const {
         Real work = 0;
-        for (const OpenSide& o : open_sides_) {
+        for (const BoundaryFace& o : boundary_faces_) {
             const Offset face = o.face_inside(flow.grid);
             const Real gained =
                 static_cast<Real>(scratch_[o.axis][face]) - static_cast<Real>(mid_[o.axis][face]);
@@ -278,7 +281,7 @@ private:
             return moved ? (static_cast<Real>(scratch_[a][c]) - mid) * mid : 0;
         });
     }
-    static Real share_of_openings(const View& flow, int a, const CellNumber<Dim>& cell) noexcept {
+    static Real share_of_boundary(const View& flow, int a, const CellNumber<Dim>& cell) noexcept {
         const auto open = [](Boundary side) { return side == Boundary::inflow || side == Boundary::outflow; };
         const auto& ends = flow.params.boundaries[a];
         return 1 +
@@ -321,7 +324,7 @@ private:
                 content_.liquid_of_face(flow, a, c) - (found == solid.end() ? 0 : found->second);
             const CellNumber<Dim> cell = flow.grid.layout().number(c);
             const auto mid = static_cast<Real>(mid_[a][c]), now = static_cast<Real>(flow.velocity[a][c]);
-            work += share_of_openings(flow, a, cell) * std::max(liquid, Real(0)) * gained *
+            work += share_of_boundary(flow, a, cell) * std::max(liquid, Real(0)) * gained *
                     (flow.liquid ? 0.5 * (mid + now) : mid);
         });
         return flow.params.density * work;
@@ -345,7 +348,7 @@ private:
     }
 
     /// Led on to the face from two cells, if the second one is wet.
-    static Real pressure_at(const View& flow, const OpenSide& o) noexcept {
+    static Real pressure_at(const View& flow, const BoundaryFace& o) noexcept {
         const Offset in = (o.high ? -1 : 1) * flow.grid.layout().stride[o.axis];
         const auto p = static_cast<Real>(flow.pressure[o.cell]);
         const bool two = flow.grid.cells(o.axis) > 1 && (!flow.wet || (*flow.wet)[o.cell + in] != 0);
@@ -353,9 +356,9 @@ private:
     }
 
     /// Books what went through; answers how much kinetic energy came in [J].
-    Real through_openings(const View& flow, WaterEnergy& change) const {
+    Real through_boundary(const View& flow, WaterEnergy& change) const {
         Real carried = 0;
-        for (const OpenSide& o : open_sides_) {
+        for (const BoundaryFace& o : boundary_faces_) {
             if (o.volume == 0) continue;
             const CellNumber<Dim> cell = flow.grid.layout().number(o.cell);
             const Offset out = (o.high ? 1 : -1) * flow.grid.layout().stride[o.axis];
@@ -384,7 +387,7 @@ private:
     FaceField<Dim, State> mid_;      ///< the velocity that moves the water in the step [m/s]
     FaceField<Dim, State> scratch_;  ///< [m/s]
     FaceField<Dim, State> still_;    ///< 0: carries nothing
-    std::vector<OpenSide> open_sides_;
+    std::vector<BoundaryFace> boundary_faces_;
     typename WallFriction<Dim>::PerFace taken_{};  ///< by walls in the step [m/s]
     WaterEnergy energy_;
 };

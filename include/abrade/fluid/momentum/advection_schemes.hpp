@@ -17,12 +17,11 @@ concept AdvectionScheme = requires(double v) {
 
 /// First order: the value of the cell upstream,
 ///   q = q_u
-/// q        value at the face
+/// q        value at the face, of any unit
 /// q_u      value of the cell upstream
-/// Validity: damps all that is not smooth over many cells, as a viscosity of |u| h / 2 would.
-/// Throws nothing.
-/// Source: R. Courant, E. Isaacson & M. Rees, Comm. Pure Appl. Math. 5 (1952) 243-255,
-/// doi:10.1002/cpa.3160050303.
+/// Validity: damps all that is not smooth over many cells, as a viscosity of |u| h / 2 would, u the velocity
+/// [m/s], h the cell [m]. Throws nothing. Source: R. Courant, E. Isaacson & M. Rees, Comm. Pure Appl. Math. 5
+/// (1952) 243-255, doi:10.1002/cpa.3160050303.
 struct Upwind {
     static constexpr std::string_view name = "Upwind";
     template <class Number>
@@ -33,10 +32,10 @@ struct Upwind {
 
 /// Second order, without numerical diffusion: the mean of the cells on both sides,
 ///   q = (q_u + q_d) / 2
-/// q        value at the face
+/// q        value at the face, of any unit
 /// q_u, q_d values of the cells upstream and downstream
 /// Validity: conserves kinetic energy but for the time steps; wiggles where a cell is too coarse,
-/// |u| h / nu > 2 beside walls.
+/// |u| h / nu > 2 beside walls, u the velocity [m/s], h the cell [m], nu the viscosity [m2/s].
 /// Throws nothing.
 /// Source: F. H. Harlow & J. E. Welch, Phys. Fluids 8 (1965) 2182-2189, doi:10.1063/1.1761178.
 struct Central {
@@ -49,7 +48,7 @@ struct Central {
 
 /// Second order, third where the solution is smooth along a line, limited so that no new extremes arise:
 ///   q = q_u + 1/2 max(0, min(2 d1, (d1 + 2 d2) / 3, 2 d2)) for rising values, likewise for falling ones
-/// q        value at the face
+/// q        value at the face, of any unit
 /// d1, d2   differences q_u - q_uu and q_d - q_u
 /// q_uu, q_u, q_d  values of the cells far upstream, upstream and downstream
 /// Validity: cells of one size along a line, or nearly; an extreme of the solution is flattened.

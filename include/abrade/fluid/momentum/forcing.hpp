@@ -96,7 +96,7 @@ public:
     /// InputError where a force is no number or a resistance below 0.
     template <class State>
     void find(const F& forcing, const FaceField<Dim, State>& u, const Step& step) {
-        Real push_rate = 0;
+        Real push_per_cell = 0;
         for (int a = 0; a < Dim; ++a) {
             std::vector<Real> pushes(places_[a].size(), 0);
             parallel_for(static_cast<Index>(places_[a].size()), [&](Index n) {
@@ -125,9 +125,9 @@ public:
                 if (!std::isfinite(gains_[a][k].gain)) fail_at(forcing, u, a, k, step);
                 most = std::max(most, pushes[k]);
             }
-            push_rate += most;
+            push_per_cell += most;
         }
-        push_rate_ = push_rate;
+        push_per_cell_ = push_per_cell;
     }
     /// Gives a share of that.
     template <class State>
@@ -171,11 +171,11 @@ public:
 
     /// Sum over axes of the largest push over density and distance of cells [1/s2], and the largest source
     /// [1/s]: they limit the step.
-    Real push_rate() const noexcept { return push_rate_; }
+    Real push_per_cell() const noexcept { return push_per_cell_; }
     Real largest_rate() const noexcept { return largest_rate_; }
 
     static void fields(auto&& field) {
-        field("push_rate", "1/s2", &AppliedForcing::push_rate_),
+        field("push_per_cell", "1/s2", &AppliedForcing::push_per_cell_),
             field("largest_rate", "1/s", &AppliedForcing::largest_rate_);
     }
 
@@ -246,7 +246,7 @@ private:
     std::vector<Point<Dim>> centres_;            ///< of cells
     std::vector<CellSource> sources_;            ///< of the same
     Field<Real> rate_;                           ///< of sources, over the liquid of a cell [1/s]
-    Real push_rate_ = 0, largest_rate_ = 0;
+    Real push_per_cell_ = 0, largest_rate_ = 0;
 };
 
 }  // namespace detail

@@ -250,7 +250,7 @@ private:
         if (backup_.keep(flow.velocity, flow.pressure, water_, flow.history, dt)) {
             extend(flow, flow.velocity);
             bool can = true;
-            while_seeping(flow, [&] { can = water_.liquid().can_advance(flow.velocity, dt); });
+            while_superficial(flow, [&] { can = water_.liquid().can_advance(flow.velocity, dt); });
             if (flow.steps > 0 && !can)  // too long a first one is told
                 backup_.stay(flow.velocity), extend(flow, flow.velocity);
         }
@@ -264,7 +264,7 @@ private:
     void move_liquid(Flow& flow, Real dt) {
         std::span<CellSource> sources;
         if constexpr (Flow::has_sources) sources = flow.forced->find_sources(flow.forcing, flow.time + dt);
-        while_seeping(flow, [&] { water_.move(flow.velocity, dt, sources); });
+        while_superficial(flow, [&] { water_.move(flow.velocity, dt, sources); });
         if constexpr (Flow::has_sources) flow.forced->know_taken(*flow.grid, liquid_fraction(), dt);
         if (flow.energy) flow.energy->liquid_moved(energy_view(flow));
     }
@@ -350,7 +350,7 @@ private:
     }
 
     /// Calls use() while the velocity is what moves the water alone.
-    void while_seeping([[maybe_unused]] Flow& flow, auto&& use) {
+    void while_superficial([[maybe_unused]] Flow& flow, auto&& use) {
         if constexpr (Solids::present) {
             struct Back {  // a step that goes wrong takes it back, too
                 Flow& flow;

@@ -192,7 +192,7 @@ FluidStep GridFluid<Dim, Options>::stable_step() const {
         causes.viscosity += flow_.eddies->largest(), causes.combined = flow_.eddies->rate();
     Point<Dim> gravity;
     if constexpr (has_surface) gravity = flow_.params.acceleration(flow_.time), causes.gravity = &gravity;
-    if constexpr (Flow::has_forcing) causes.push_rate = flow_.forced->push_rate();
+    if constexpr (Flow::has_forcing) causes.push_per_cell = flow_.forced->push_per_cell();
     FluidStep step = detail::limit_of_step<Dim>(*flow_.grid, flow_.params, causes);
     if constexpr (Flow::has_sources) step.lower(0.5 / flow_.forced->largest_rate(), "source");
     if constexpr (has_surface) step = stepper_.limit(flow_, step);
@@ -309,7 +309,7 @@ void GridFluid<Dim, Options>::check(Real dt) {
         return;
     const std::string cause =
         brimful
-            ? "inflows, drains or solids ask for another volume of water, and no surface is left to rise or "
+            ? "inflows, sources or solids ask for another volume of water, and no surface is left to rise or "
               "fall; make a side that the water reaches an outflow, or leave air above it"
             : detail::wrong_flow(grid(), velocity(), flow_.report.after, flow_.most_left(), flow_.enters > 0);
     stepper_.restore(flow_);

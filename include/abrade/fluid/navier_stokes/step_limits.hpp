@@ -18,7 +18,7 @@ struct StepCauses {
     /// Largest rate of a cell with speed and eddies together, where it is known: eddies are seldom where
     /// water is fastest [1/s].
     Real combined = std::numeric_limits<Real>::infinity();
-    Real push_rate = 0;  ///< sum over the axes of the acceleration by a user's force, over h_a [1/s2]
+    Real push_per_cell = 0;  ///< sum over axes of a user's largest acceleration of the water, over h_a [1/s2]
     const Point<Dim>* gravity = nullptr;  ///< below a surface, body forces included [m/s2]
 };
 
@@ -40,8 +40,8 @@ FluidStep limit_of_step(const Grid<Dim>& grid, const GridFluidParams<Dim>& param
     // stable for real eigenvalues down to -2/dt; those of friction reach -4 nu sum 1/h^2.
     const Real friction = 2 * causes.viscosity * per_h2;
     const Real rate = std::max(causes.fastest, std::min(causes.fastest + friction, causes.combined));
-    // At its end gravity may have made the water faster by g dt.
-    const Real twice = rate + std::sqrt(square(rate) + 4 * (fall + causes.push_rate) * params.courant);
+    // At its end gravity and pushes may have made the water faster by their acceleration times dt.
+    const Real twice = rate + std::sqrt(square(rate) + 4 * (fall + causes.push_per_cell) * params.courant);
     if (twice > 0) {
         const Real dt = 2 * params.courant / twice;
         step.lower(dt, dt * friction > 0.5 * params.courant ? "viscosity" : "CFL");

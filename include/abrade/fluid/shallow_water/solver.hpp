@@ -74,7 +74,7 @@ public:
     FluidStep stable_step(Real courant) const noexcept {
         FluidStep step;
         if (largest_rate_ > 0) step.lower(courant / largest_rate_, "CFL", largest_rate_cell());
-        if (const Real inflow = inflow_swiftest(); inflow > 0)
+        if (const Real inflow = largest_inflow_rate(); inflow > 0)
             step.lower(courant / inflow, "CFL of the inflow");
         return step;
     }
@@ -191,17 +191,17 @@ private:
             tile.largest_rate = 0;
             for (Index j = tile.cells.first[1]; j < tile.cells.last[1]; ++j)
                 for (Index i = tile.cells.first[0]; i < tile.cells.last[0]; ++i) {
-                    const Real swift = swiftness(i, j);
-                    if (swift == 0) continue;
+                    const Real rate = rate_of(i, j);
+                    if (rate == 0) continue;
                     tile.wet = tile.wet.with({{i, j}, {i + 1, j + 1}});
-                    tile.largest_rate = std::max(tile.largest_rate, swift);
+                    tile.largest_rate = std::max(tile.largest_rate, rate);
                 }
             largest_rate_ = std::max(largest_rate_, tile.largest_rate);
         }
     }
 
     /// Sum over axes of (|u| + c)/dx [1/s], 0 in a dry cell.
-    Real swiftness(Index i, Index j) const noexcept {
+    Real rate_of(Index i, Index j) const noexcept {
         const std::size_t k = grid_.at(i, j);
         const Real h = state().depth[k];
         if (!(h > forces_.dry_depth)) return 0;
@@ -220,11 +220,10 @@ private:
         Real most = 0;
         for (Index j = fastest->cells.first[1]; j < fastest->cells.last[1]; ++j)
             for (Index i = fastest->cells.first[0]; i < fastest->cells.last[0]; ++i)
-                if (const Real swift = swiftness(i, j); swift > most)
-                    most = swift, found = j * grid_.count(0) + i;
+                if (const Real rate = rate_of(i, j); rate > most) most = rate, found = j * grid_.count(0) + i;
         return found;
     }
-    Real inflow_swiftest() const noexcept {
+    Real largest_inflow_rate() const noexcept {
         Real most = 0;
         for (int a = 0; a < Dim; ++a)
             for (const auto& side : boundaries_[static_cast<std::size_t>(a)])

@@ -28,8 +28,8 @@ public:
                  std::array<std::array<ShallowBoundaryCells<Dim>, 2>, Dim>& boundaries) noexcept
         : grid_(grid), bed_(bed), forces_(forces), boundaries_(boundaries) {}
 
-    /// Takes the tile's cells from one state to the next. Also finds which are wet, how swift they are, and
-    /// whether all is sound.
+    /// Takes the tile's cells from one state to the next. Also finds which are wet, how fast their waves are,
+    /// and whether all is sound.
     [[gnu::flatten]] void run(const ShallowState<Dim>& from, ShallowState<Dim>& to, Real dt,
                               ShallowTile& tile) noexcept {
         from_ = &from, to_ = &to, dt_ = dt;
@@ -278,7 +278,7 @@ private:
             const PackMask flows = depth > dry;
             const Pack thin = reciprocal(max(depth, dry)) * held,
                        wave = wave_speed(max(depth, dry), forces_.pressing);
-            Pack swift = wave * (Dim == 2 ? each_x + each_y : each_x);
+            Pack rate = wave * (Dim == 2 ? each_x + each_y : each_x);
             PackMask sound = depth >= Pack(0);
             for (std::size_t c = 0; c < Dim; ++c) {
                 const Pack flow =
@@ -286,14 +286,14 @@ private:
                 const Pack speed = select(flows, flow * thin, Pack(0)), size = max(speed, -speed);
                 put(&to_->speed[c][k], speed);
                 sound = sound & (size <= Pack(forces_.velocity_limit));
-                swift += size * (c == 0 ? each_x : each_y);
+                rate += size * (c == 0 ? each_x : each_y);
             }
             put(&to_->depth[k], depth);
             PackMask counts = flows, unsound = !sound;
             if (i + lanes > grid_.count(0))
                 counts = counts & inside_row(i), unsound = unsound & inside_row(i);
             tile.unsound |= any(unsound);
-            largest_rate = max(largest_rate, select(counts, swift, Pack(0)));
+            largest_rate = max(largest_rate, select(counts, rate, Pack(0)));
             if (any(counts)) wet_first = std::min(wet_first, i), wet_last = i + lanes;
         }
         tile.largest_rate = std::max(tile.largest_rate, largest(largest_rate));

@@ -117,7 +117,7 @@ private:
         Offset cell = 0;
         Real room = 1, lag = 0;
     };
-    struct Reconstructed {
+    struct CoveredCell {
         Offset cell;
         CellNumber<Dim> number{};
         int beside = 0;
@@ -157,13 +157,13 @@ private:
     void reconstruct_covered(const Grid<Dim>& grid, const BoundaryConditions<Dim>& boundaries, Real full,
                              Field<Real>& fraction, Field<Real>& volume_defect) {
         constexpr std::uint8_t known = 1, unknown = 2;
-        std::vector<Reconstructed> covered_cells;
+        std::vector<CoveredCell> covered_cells;
         for (const Offset c : cells_) {
             if (!(open_of(c) > 0 && next_[c] < covered * open_of(c))) continue;
             covered_cells.push_back({c, grid.layout().number(c)}), marks_[c] = unknown;
         }
         for (std::size_t left = covered_cells.size(); left > 0;) {
-            for (Reconstructed& cell : covered_cells) {
+            for (CoveredCell& cell : covered_cells) {
                 if (marks_[cell.cell] == known) continue;
                 Real sum = 0;
                 cell.beside = 0;
@@ -174,7 +174,7 @@ private:
                 cell.fraction = sum < 1 - full ? 0 : sum > full ? 1 : sum;
             }
             const std::size_t before = std::exchange(left, 0);
-            for (Reconstructed& cell : covered_cells) {
+            for (CoveredCell& cell : covered_cells) {
                 if (marks_[cell.cell] == known) continue;
                 if (cell.beside == 0)
                     ++left;
@@ -183,9 +183,9 @@ private:
             }
             if (left == before) break;
         }
-        for (const Reconstructed& cell : covered_cells) marks_[cell.cell] = known;
+        for (const CoveredCell& cell : covered_cells) marks_[cell.cell] = known;
     }
-    void reconstruct(const Reconstructed& cell, Field<Real>& fraction, Field<Real>& volume_defect) {
+    void reconstruct(const CoveredCell& cell, Field<Real>& fraction, Field<Real>& volume_defect) {
         const Offset c = cell.cell;
         lag_[c] += (fraction[c] + volume_defect[c] - cell.fraction) * room_[c];
         fraction[c] = cell.fraction, volume_defect[c] = 0;

@@ -9,8 +9,8 @@
 namespace abrade {
 
 /// What these do to a state whose `particles` are as of now and whose velocities are whole. What they put in
-/// is the ledger's `fed_*`, what they take out its `left_*`. Lists must be renewed afterwards. Each throws
-/// InputError before it acts; one that does not act only checks, of any state.
+/// is the ledger's `fed_*`, what they take out its `left_*`. Lists must be renewed afterwards. With
+/// `Acts::no` each only checks: it throws InputError where it cannot be, and leaves the state as it was.
 template <class P>
 class Changes {
 public:

@@ -32,10 +32,11 @@ public:
     /// Writes the present state into `particles()` and the ledger. What moves is left as it is.
     const Ledger& publish();
 
-    /// Between steps: `change(Changes)` is checked first, then made of velocities and particles that are those
-    /// of now; then forces are found anew, over no time, with what contacts remember.
+    /// Between steps: `change(Changes)` is checked first, then made of velocities and particles that are
+    /// those of now; then forces are found anew, over no time, with what contacts remember.
     void change(auto&& change) {
         using Acts = typename Changes<P>::Acts;
+        publish();
         change(Changes<P>(state_, Acts::no));
         make_whole();
         publish();

@@ -12,7 +12,7 @@ namespace abrade {
 
 /// Until when a fluid's next step would lead, found once for each of them: solids ask before every step of
 /// theirs. Water whose cells bodies cross (`step_of_body`) is due sooner where a body is fast, and twice
-/// early as it first meets bodies: what starts at once is no load that lasts, so the second tells that.
+/// early as it first meets bodies: the first load includes the start, the second is the load that lasts.
 class NextFluidStep {
 public:
     Real fastest = 0;  ///< of bodies as they moved last [m/s]

@@ -232,6 +232,9 @@ private:
             require_finite(stone.clump.members[m].centre, member + ".centre", "m");
         }
         require_positive(stone.clump.volume, name + ".clump.volume", "m3", "make clumps with make_clump()");
+        require(stone.clump.principal_moments.minCoeff() > 0,
+                {name + ".clump.principal_moments", "> 0", "m5", "make clumps with make_clump()"},
+                stone.clump.principal_moments.minCoeff());
         const Real mass = stone.density * stone.clump.volume;
         require(mass >= 1e-30 && mass <= 1e30,  // beyond, products of what follows overflow
                 {name + ": mass", "from 1e-30 to 1e+30 kg", "kg", "look at the units of density and radius"},
