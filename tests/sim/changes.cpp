@@ -185,7 +185,7 @@ TEST_CASE("a refused change leaves a run as it would have been, to the bit") {
         const auto [asked, residual, next, walls] = end_of(contact, true);
         const auto [left_alone, residual_alone, next_alone, walls_alone] = end_of(contact, false);
         REQUIRE(asked.bodies() == left_alone.bodies());
-        for (std::size_t b : {0, 1}) {
+        for (const std::size_t b : {0u, 1u}) {
             CHECK(asked.position[b] == left_alone.position[b]);
             CHECK(asked.velocity[b] == left_alone.velocity[b]);
         }
