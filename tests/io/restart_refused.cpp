@@ -81,7 +81,7 @@ TEST_CASE("what is no checkpoint, cut off, of another version or another process
         file.close();
     };
     with("older.h5", 0, pack_lanes);
-    CHECK_THROWS_WITH_AS(restored("older.h5"), doctest::Contains("it is of version 0, not 3"), InputError);
+    CHECK_THROWS_WITH_AS(restored("older.h5"), doctest::Contains("it is of version 0, not "), InputError);
     with("wide.h5", detail::state_version, 2 * pack_lanes);
     CHECK_THROWS_WITH_AS(restored("wide.h5"), doctest::Contains("numbers at a time"), InputError);
 

@@ -19,9 +19,11 @@ concept AdvectionScheme = requires(double v) {
 ///   q = q_u
 /// q        value at the face, of any unit
 /// q_u      value of the cell upstream
-/// Validity: damps all that is not smooth over many cells, as a viscosity of |u| h / 2 would, u the velocity
-/// [m/s], h the cell [m]. Throws nothing. Source: R. Courant, E. Isaacson & M. Rees, Comm. Pure Appl. Math. 5
-/// (1952) 243-255, doi:10.1002/cpa.3160050303.
+/// Validity: damps all that is not smooth over many cells, as a viscosity of |u| h / 2 would
+/// (u: velocity [m/s], h: cell [m]).
+/// Throws nothing.
+/// Source: R. Courant, E. Isaacson & M. Rees, Comm. Pure Appl. Math. 5 (1952) 243-255,
+/// doi:10.1002/cpa.3160050303.
 struct Upwind {
     static constexpr std::string_view name = "Upwind";
     template <class Number>
