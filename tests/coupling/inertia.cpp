@@ -2,8 +2,11 @@
 // and lift, as forces and through the engine.
 #include "../message_of.hpp"
 
-#include <abrade/abrade.hpp>
+#include <abrade/coupling/drag/drag.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/fluid/uniform_flow.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,8 +2,9 @@
 // and through the engine.
 #include "../message_of.hpp"
 
-#include <abrade/abrade.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/dem/laws/lubrication.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,12 @@
 // Stones in water that resolves them, saved between two steps: the same bits afterwards, with any number of
 // threads.
-#include <abrade/abrade.hpp>
 #include <abrade/coupling/exchange/monolithic.hpp>
 #include <abrade/coupling/exchange/one_fluid.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/geometry/stone_shapes.hpp>
 #include <abrade/io/restart.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,9 @@
 // Bodies and a fluid that resolves them, with one that is none: it pushes with a force and a torque that are
 // given. What loads do to bodies between exchanges and at them, and the ledger.
-#include <abrade/abrade.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
+#include <abrade/fluid/uniform_flow.hpp>
+#include <abrade/geometry/stone_shapes.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,8 @@
 //
 // Lengths are in grain diameters d, times in sqrt(d/g), until they meet the library.
 
-#include <abrade/abrade.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,10 @@
 // Two equal spheres settle one above the other, through the whole engine: the upper one is drawn into the
 // wake of the lower one (drafting), touches it (kissing), and they turn over and part (tumbling).
 
-#include <abrade/abrade.hpp>
 #include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>

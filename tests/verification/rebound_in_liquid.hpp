@@ -1,10 +1,11 @@
 #pragma once
 // A sphere falls onto a floor in a liquid and comes back, through the whole engine.
 
-#include <abrade/abrade.hpp>
 #include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/dem/laws/lubrication.hpp>
 #include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>

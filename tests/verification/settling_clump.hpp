@@ -2,9 +2,10 @@
 // A clump of two touching spheres settles in wide still water, through the whole engine, beside the sphere of
 // its volume.
 
-#include <abrade/abrade.hpp>
 #include <abrade/coupling/exchange/monolithic.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>

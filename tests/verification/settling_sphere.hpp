@@ -4,8 +4,9 @@
 
 #include "reference_table.hpp"
 
-#include <abrade/abrade.hpp>
+#include <abrade/dem/laws/linear_spring.hpp>
 #include <abrade/fluid/navier_stokes/grid_fluid.hpp>
+#include <abrade/sim/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>
