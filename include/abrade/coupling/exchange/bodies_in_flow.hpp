@@ -338,10 +338,10 @@ private:
         return sum;
     }
 
-    std::vector<Memory> memory_;     ///< by id
-    std::vector<SolidFlux> fluxes_;  ///< as the last step left them, plane by plane
-    std::vector<Real> beyond_,
-        interstitial_;  ///< mixture's velocity beyond the water's there; the water's own [m/s]
+    std::vector<Memory> memory_;           ///< by id
+    std::vector<SolidFlux> fluxes_;        ///< as the last step left them, plane by plane
+    std::vector<Real> beyond_;             ///< mixture's velocity beyond the water's there [m/s]
+    std::vector<Real> interstitial_;       ///< the water's own, while the superficial one is asked for [m/s]
     std::vector<std::size_t> flux_start_;  ///< [plane] in them
     Real fastest_ = 0;
     Real lost_to_friction_ = 0;       ///< in the last step [J]
