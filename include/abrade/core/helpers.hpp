@@ -1,6 +1,7 @@
 #pragma once
 // Threads that help the one that asks.
 
+#include <abrade/core/function_ref.hpp>
 #include <abrade/core/types.hpp>
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
-#include <type_traits>
 #include <vector>
 
 namespace abrade::detail {
@@ -47,16 +47,14 @@ public:
     /// Calls task(k) for 0 <= k < tasks by this thread and up to `threads` - 1 others. Each begins with its
     /// own part of them and then takes of the others'. From within a loop, or while another thread asks, by
     /// this thread alone. `task` must not throw.
-    template <class Task>
-    void run(Index tasks, int threads, Task&& task) noexcept {
+    void run(Index tasks, int threads, FunctionRef<Index> task) noexcept {
         std::unique_lock<std::mutex> asks(asking_, std::defer_lock);
         if (within_loop() || !asks.try_lock()) {
             for (Index k = 0; k < tasks; ++k) task(k);
             return;
         }
         hire(threads - 1);
-        call_ = [](void* what, Index k) { (*static_cast<std::remove_reference_t<Task>*>(what))(k); };
-        task_ = const_cast<void*>(static_cast<const void*>(&task));
+        task_ = task;
         parts_ = std::min(threads, static_cast<int>(threads_.size()) + 1);
         for (int p = 0; p < parts_; ++p) {
             const auto begin = [&](std::int64_t part) { return static_cast<Index>(tasks * part / parts_); };
@@ -128,7 +126,7 @@ private:
                 if (front.next.load(std::memory_order_relaxed) >= front.end) break;
                 const Index k = front.next.fetch_add(1, std::memory_order_relaxed);
                 if (k >= front.end) break;
-                call_(task_, k);
+                task_(k);
             }
         }
     }
@@ -136,8 +134,7 @@ private:
     std::mutex asking_;
     std::vector<std::thread> threads_;
     std::vector<Front> fronts_;  ///< [part]
-    void (*call_)(void*, Index) = nullptr;
-    void* task_ = nullptr;
+    FunctionRef<Index> task_;
     int parts_ = 1;
     std::atomic<int> loop_{0};       ///< counts loops
     std::atomic<int> gate_{closed};  ///< helpers within the loop, and whether it is closed

@@ -3,6 +3,7 @@
 // blocks of fixed size and sums are added up in block order. How much there is to do decides whether a loop
 // asks for other threads at all.
 
+#include <abrade/core/function_ref.hpp>
 #include <abrade/core/helpers.hpp>
 #include <abrade/core/types.hpp>
 
@@ -45,8 +46,7 @@ class LoopWork {
 
 public:
     /// Calls task(k) for 0 <= k < tasks, of `items` altogether, by as many threads as are worth waking.
-    template <class Task>
-    void run(Index tasks, Index items, Task&& task) {
+    void run(Index tasks, Index items, FunctionRef<Index> task) {
         const auto alone = [&] {
             for (Index k = 0; k < tasks; ++k) task(k);
         };
@@ -99,8 +99,7 @@ void parallel_tasks(Index tasks, Body&& body) {
 }
 
 /// The same of tasks that are known to be worth other threads: of runs of a large grid's planes.
-template <class Body>
-void parallel_runs(Index runs, Body&& body) {
+inline void parallel_runs(Index runs, detail::FunctionRef<Index> body) {
     const int threads = static_cast<int>(std::min<Index>(thread_count(), runs));
     if (threads > 1) return detail::Helpers::one().run(runs, threads, body);
     for (Index run = 0; run < runs; ++run) body(run);

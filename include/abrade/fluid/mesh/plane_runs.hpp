@@ -44,8 +44,7 @@ PlaneRuns plane_runs(const Layout<Dim>& layout, int least, Range&& range) {
 /// own, part by part; when it is done it helps with the others': cells do not all cost the same, and cores
 /// have other work. So body meets its neighbours at work, in any order, and writes to its own planes only. It
 /// must not throw.
-template <class Body>
-void parallel_parts(const PlaneRuns& runs, int least, Body&& body) {
+inline void parallel_parts(const PlaneRuns& runs, int least, FunctionRef<int, int> body) {
     const std::size_t count = runs.size() - 1;
     if (count == 1) return body(0, runs.back());
     struct alignas(64) Front {
