@@ -51,6 +51,9 @@ TEST_CASE("a tree that keeps the rules has no offence") {
     tree.add("abrade/dem/linear.hpp",
              once + "#include <abrade/dem/time/stepper.hpp>\n// #include <iostream>\n");
     tree.add("abrade/abrade.hpp", once + "#include <abrade/dem/linear.hpp>\n");
+    tree.add("abrade/dem/declared.hpp",
+             once + "#ifndef ABRADE_COMPILED\n#include <abrade/dem/bodies.hpp>\n#endif\n");
+    tree.add("abrade/dem/bodies.hpp", once + "#include <abrade/dem/declared.hpp>\n");
     CHECK(tree.offences() == "");
 }
 

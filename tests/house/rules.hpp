@@ -68,6 +68,7 @@ struct Header {
         int line;
         std::string path;  ///< as written between <> or ""
         bool quoted;
+        bool of_bodies;  ///< of what it declares, where abrade::compiled does not hold them: no cycle
     };
     std::string path;  ///< from the include folder: "abrade/dem/linear.hpp"
     std::string first_line;
@@ -96,11 +97,12 @@ inline Header read(const std::filesystem::path& file, std::string path) {
     static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
     Header header{std::move(path), {}, 0, {}};
     std::ifstream in(file);
-    for (std::string line; std::getline(in, line);) {
+    for (std::string line, last; std::getline(in, line); last = line) {
         if (++header.lines == 1) header.first_line = line;
         std::smatch match;
         if (std::regex_search(line, match, include))
-            header.includes.push_back({header.lines, match[2], match[1] == "\""});
+            header.includes.push_back(
+                {header.lines, match[2], match[1] == "\"", last == "#ifndef ABRADE_COMPILED"});
     }
     return header;
 }
@@ -147,7 +149,7 @@ inline std::vector<std::string> offences(const std::filesystem::path& include_di
         if (own_level >= 0 && own_folder.find('/') != std::string::npos && inner == inner_rooms.end())
             offence(header, 1, "stands in no known folder of its room");
 
-        for (const auto& [line, target, quoted] : header.includes) {
+        for (const auto& [line, target, quoted, of_bodies] : header.includes) {
             if (target.starts_with("abrade/")) {
                 if (!headers.contains(target))
                     offence(header, line, "includes " + target + ", which does not exist");
@@ -189,7 +191,8 @@ inline std::vector<std::string> offences(const std::filesystem::path& include_di
         }
         if (!headers.contains(path) || done.contains(path)) return;
         open.push_back(path);
-        for (const auto& include : headers.at(path).includes) visit(include.path);
+        for (const auto& include : headers.at(path).includes)
+            if (!include.of_bodies) visit(include.path);
         open.pop_back();
         done.insert(path);
     };

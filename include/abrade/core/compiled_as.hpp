@@ -4,6 +4,14 @@
 #include <abrade/core/simd.hpp>
 #include <abrade/core/types.hpp>
 
+/// Before a function of which abrade::compiled holds the body. Its header takes in the body, too, where a
+/// program does without that library.
+#ifdef ABRADE_COMPILED
+#define ABRADE_INLINE
+#else
+#define ABRADE_INLINE inline
+#endif
+
 namespace abrade::detail {
 
 /// Where linking misses `CompiledAs<lanes, alignment>::same`, abrade::compiled was compiled for another

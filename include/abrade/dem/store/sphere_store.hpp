@@ -2,6 +2,7 @@
 // The moving state of all bodies, laid out for speed: spheres in slots, sorted slab by slab, with images
 // where a slab's contacts reach beyond what its chunk owns.
 
+#include <abrade/core/parallel.hpp>
 #include <abrade/dem/store/hot_arrays.hpp>
 #include <abrade/dem/store/neighbours.hpp>
 #include <abrade/dem/store/particles.hpp>

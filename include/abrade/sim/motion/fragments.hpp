@@ -3,8 +3,6 @@
 
 #include <abrade/sim/motion/advance.hpp>
 
-#include <Eigen/Eigenvalues>
-
 namespace abrade {
 
 /// A piece as it is to go on: its spheres joined, with their mass, momentum and angular momentum.
@@ -45,18 +43,16 @@ Fragment join(const State<P>& state, std::span<const Index> bodies, Real density
         all.angular_momentum +=
             m * arm.cross(moves.velocity - velocity) + 0.4 * m * at.radius * moves.surface_velocity;
     });
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
-    Mat3 axes = solver.eigenvectors();
-    if (axes.determinant() < 0) axes.col(0) = -axes.col(0).eval();  // a rotation, not a mirror
+    const PrincipalFrame frame = principal_frame(inertia);
     all.clump.name = "fragment";
-    all.clump.volume = mass / density, all.clump.principal_moments = solver.eigenvalues() / density;
+    all.clump.volume = mass / density, all.clump.principal_moments = frame.moments / density;
     each([&](Real, const SpherePlace& at, const SphereMotion&) {
-        const Vec3 arm = axes.transpose() * (at.centre - centroid);
+        const Vec3 arm = frame.axes.transpose() * (at.centre - centroid);
         all.clump.members.push_back({arm, at.radius});
         all.clump.bounding_radius = std::max(all.clump.bounding_radius, arm.norm() + at.radius);
     });
     all.state.position = centroid, all.state.velocity = velocity;
-    all.state.orientation = Quaternion(axes).normalized();
+    all.state.orientation = Quaternion(frame.axes).normalized();
     return all;
 }
 

@@ -1,0 +1,4 @@
+// Functions that are no templates, of abrade::compiled.
+
+#include <abrade/dem/store/cell_lists.hpp>
+#include <abrade/geometry/sphere_union_moments.hpp>
