@@ -1,5 +1,5 @@
 // Volume, centre and inertia of unions of spheres against closed forms and independent integrals.
-#include <abrade/geometry/sphere_union.hpp>
+#include <abrade/geometry/sphere_union_moments.hpp>
 
 #include "../message_of.hpp"
 

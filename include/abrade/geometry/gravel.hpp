@@ -3,6 +3,7 @@
 
 #include <abrade/core/require.hpp>
 #include <abrade/geometry/rounded_polyhedron.hpp>
+#include <abrade/geometry/sphere_slices.hpp>
 #include <abrade/geometry/sphere_union.hpp>
 
 #include <algorithm>
