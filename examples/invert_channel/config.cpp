@@ -15,7 +15,8 @@ namespace {
 constexpr std::array<std::string_view, 3> levels{"static", "rigid", "dynamic"},
     contact_laws{"hysteretic", "linear", "elastic_plastic"}, exchanges{"monolithic", "mixture", "direct"};
 constexpr std::array<std::string_view, 4> worn_outs{"fines", "grain", "recorded", "recedes"},
-    overflows{"crater", "patch", "epoch", "drop"}, wear_laws{"sub_particle", "archard", "ishibashi", "none"};
+    overflows{"crater", "patch", "epoch", "drop"};
+constexpr std::array<std::string_view, 4> wear_laws{"sub_particle", "archard", "ishibashi", "none"};
 
 constexpr std::string_view heaviest = "quartz has 2650 kg/m3, gold 19300";
 

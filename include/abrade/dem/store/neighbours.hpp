@@ -85,7 +85,7 @@ inline VerletPair ordered(std::size_t i, std::size_t j, ImageShift shift) noexce
 /// against.
 ABRADE_INLINE std::vector<VerletPair> verlet_pairs_brute_force(const NeighbourQuery& q);
 
-/// The same, by cells; in an order that depends on the spheres alone.
+/// The same, by cells (cell_lists.hpp); in an order that depends on the spheres alone.
 ABRADE_INLINE std::vector<VerletPair> verlet_pairs(const NeighbourQuery& q);
 
 }  // namespace abrade

@@ -1,6 +1,6 @@
 #pragma once
-// Turbulence: what eddies below a cell do to the flow, as an eddy viscosity nu_t. The file to copy for
-// another model.
+// Turbulence: what eddies below a cell do to the flow, as an eddy viscosity nu_t. Another model goes
+// here: copy a class.
 
 #include <abrade/core/law.hpp>
 #include <abrade/core/types.hpp>

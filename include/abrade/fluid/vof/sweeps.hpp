@@ -242,9 +242,9 @@ void Sweeps<Dim>::sweep(const PerAxis<int, Dim>& axes, int number) {
     if (!last) fill_periodic(liquid_.fraction, layout_, liquid_.boundaries);
 }
 
-/// Faces of the band whose donor is full or dry, or a ghost: what is swept times its fraction. Whole packs:
-/// of others those with a cut donor get theirs from `fluxes_of_planes`, the rest again what `carry_bulk`
-/// gave.
+/// Faces of the band whose donor is full or dry, or a ghost: what is swept times its fraction. Whole packs
+/// are written: faces with a cut donor are overwritten by `fluxes_of_planes`, those out of the band get again
+/// what `carry_bulk` gave.
 template <int Dim>
 void Sweeps<Dim>::fluxes_of_band(int axis) {
     const Offset step = layout_.stride[axis];

@@ -4,7 +4,7 @@
 #include <abrade/bond/bond_law.hpp>
 #include <abrade/core/fields.hpp>
 #include <abrade/coupling/drag/drag.hpp>
-#include <abrade/sim/scene/body_force.hpp>
+#include <abrade/sim/scene/force_on_bodies.hpp>
 #include <abrade/wear/wear_law.hpp>
 
 namespace abrade {
