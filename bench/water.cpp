@@ -13,7 +13,8 @@ using namespace abrade;
 
 namespace {
 
-/// n^3 cells, a lid of speed 1 on top along x, Re 1000, Courant number 0.32 or what is stable.
+/// n^3 cells, a lid of speed 1 on top along x, Re 1000, steps of Courant number 0.32, or
+/// `stable_step()` where that is shorter.
 struct Cavity {
     GridFluid<3, FullBox> fluid;
     Real dt;

@@ -1,5 +1,6 @@
 // Volume, centre and inertia of unions of spheres against closed forms and independent integrals.
-#include <abrade/geometry/sphere_union_moments.hpp>
+#include <abrade/geometry/sphere_slices.hpp>
+#include <abrade/geometry/sphere_union.hpp>
 
 #include "../message_of.hpp"
 

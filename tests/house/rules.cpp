@@ -90,6 +90,15 @@ TEST_CASE("each rule can be broken") {
         CHECK(says("abrade/dem/b.hpp", once + "#include <abrade/dem/a.hpp>\n") ==
               "cycle: abrade/dem/a.hpp -> abrade/dem/b.hpp -> abrade/dem/a.hpp\n");
     }
+    SUBCASE("a cycle by way of a header's bodies") {
+        tree.add("abrade/dem/bodies.hpp",
+                 once + "#include <abrade/dem/slices.hpp>\n#include <abrade/dem/declared.hpp>\n");
+        tree.add("abrade/dem/declared.hpp",
+                 once + "#ifndef ABRADE_COMPILED\n#include <abrade/dem/bodies.hpp>\n#endif\n");
+        CHECK(says("abrade/dem/slices.hpp", once + "#include <abrade/dem/declared.hpp>\n") ==
+              "cycle: abrade/dem/bodies.hpp -> abrade/dem/slices.hpp -> abrade/dem/declared.hpp -> "
+              "abrade/dem/bodies.hpp\n");
+    }
     SUBCASE("no pragma once first") {
         CHECK(says("abrade/core/a.hpp", "// a\n#pragma once\n") ==
               "abrade/core/a.hpp:1: must begin with #pragma once\n");

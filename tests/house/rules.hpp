@@ -68,7 +68,7 @@ struct Header {
         int line;
         std::string path;  ///< as written between <> or ""
         bool quoted;
-        bool of_bodies;  ///< of what it declares, where abrade::compiled does not hold them: no cycle
+        bool of_bodies;  ///< of what this header declares: included unless abrade::compiled holds them
     };
     std::string path;  ///< from the include folder: "abrade/dem/linear.hpp"
     std::string first_line;
@@ -97,12 +97,14 @@ inline Header read(const std::filesystem::path& file, std::string path) {
     static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
     Header header{std::move(path), {}, 0, {}};
     std::ifstream in(file);
-    for (std::string line, last; std::getline(in, line); last = line) {
+    bool of_bodies = false;
+    for (std::string line; std::getline(in, line);) {
+        if (line.starts_with("#ifndef ABRADE_COMPILED")) of_bodies = true;
+        if (line.starts_with("#endif")) of_bodies = false;
         if (++header.lines == 1) header.first_line = line;
         std::smatch match;
         if (std::regex_search(line, match, include))
-            header.includes.push_back(
-                {header.lines, match[2], match[1] == "\"", last == "#ifndef ABRADE_COMPILED"});
+            header.includes.push_back({header.lines, match[2], match[1] == "\"", of_bodies});
     }
     return header;
 }
@@ -178,6 +180,15 @@ inline std::vector<std::string> offences(const std::filesystem::path& include_di
         }
     }
 
+    // A header of bodies includes the one that declares them, which is no cycle.
+    const auto holds_bodies_of = [&](const std::string& bodies, const std::string& declares) {
+        const auto at = headers.find(declares);
+        return at != headers.end() && std::any_of(at->second.includes.begin(), at->second.includes.end(),
+                                                  [&](const Header::Include& include) {
+                                                      return include.of_bodies && include.path == bodies;
+                                                  });
+    };
+
     // Cycles: the path from the root of the search back to a header that is still open.
     std::set<std::string> done;
     std::vector<std::string> open;
@@ -192,7 +203,7 @@ inline std::vector<std::string> offences(const std::filesystem::path& include_di
         if (!headers.contains(path) || done.contains(path)) return;
         open.push_back(path);
         for (const auto& include : headers.at(path).includes)
-            if (!include.of_bodies) visit(include.path);
+            if (!holds_bodies_of(path, include.path)) visit(include.path);
         open.pop_back();
         done.insert(path);
     };

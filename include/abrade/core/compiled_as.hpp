@@ -4,8 +4,8 @@
 #include <abrade/core/simd.hpp>
 #include <abrade/core/types.hpp>
 
-/// Before a function that is no template: `inline`, unless abrade::compiled (src/plain.cpp) holds its body.
-/// Its header takes in the body where a program does without that library.
+/// Before a function that is no template: `inline`, unless abrade::compiled (src/functions.cpp) holds its
+/// body. Its header takes in the body where a program does without that library.
 #ifdef ABRADE_COMPILED
 #define ABRADE_INLINE
 #else

@@ -7,25 +7,26 @@
 
 namespace abrade::detail {
 
-/// Whatever can be called with Args, by its address, as C++26's std::function_ref: what takes it is compiled
-/// once and not for each callable. The callable must outlive it.
+/// Refers to an object that can be called with Args without owning it, as C++26's std::function_ref does: a
+/// function that takes one is compiled once and not for each callable. The object must outlive it.
 template <class... Args>
 class FunctionRef {
 public:
     FunctionRef() = default;
     template <class Callable>
-    requires(!std::same_as<std::remove_cvref_t<Callable>, FunctionRef>) FunctionRef(Callable&& callable)
+    requires(!std::same_as<std::remove_cvref_t<Callable>, FunctionRef> && std::invocable<Callable&, Args...>)
+        FunctionRef(Callable&& callable)
     noexcept
         : call_([](void* what, Args... args) {
               (*static_cast<std::remove_reference_t<Callable>*>(what))(args...);
           }),
-          what_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))) {}
+          callable_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))) {}
 
-    void operator()(Args... args) const { call_(what_, args...); }
+    void operator()(Args... args) const { call_(callable_, args...); }
 
 private:
     void (*call_)(void*, Args...) = nullptr;
-    void* what_ = nullptr;
+    void* callable_ = nullptr;
 };
 
 }  // namespace abrade::detail

@@ -12,10 +12,10 @@
 namespace abrade {
 
 /// Volume, centroid and inertia tensor of the union of `spheres`: what overlaps counts once.
-/// One and two spheres: closed form (slices of balls). More: detail::SphereSlices, whose error was measured
-/// at 1e-12 of each quantity on rows, grids and heaps of spheres.
-/// Throws InputError when there is no sphere, a centre that is not finite or a radius that is not > 0;
-/// `field` says in messages whose spheres they are.
+/// One and two spheres: closed form (slices of balls). More: detail::SphereSlices (sphere_slices.hpp), whose
+/// error was measured at 1e-12 of each quantity on rows, grids and heaps of spheres. Throws InputError when
+/// there is no sphere, a centre that is not finite or a radius that is not > 0; `field` says in messages
+/// whose spheres they are.
 ABRADE_INLINE SolidMoments union_moments(std::span<const Sphere> spheres,
                                          std::string_view field = "union_moments.spheres");
 
@@ -32,11 +32,12 @@ struct Clump {
 /// Whether the spheres of a clump must hang together.
 enum class ClumpParts { joined, apart };
 
-/// A body's frame of principal axes.
+/// The principal axes of a tensor of inertia and its moments about them.
 struct PrincipalFrame {
-    Mat3 axes;     ///< its columns, of a rotation: principal frame to world
-    Vec3 moments;  ///< of inertia about them, as the tensor has them
+    Mat3 axes = Mat3::Identity();  ///< columns: the axes, right-handed; principal frame to world
+    Vec3 moments = Vec3::Zero();   ///< ascending, in the unit of the tensor
 };
+/// Of a symmetric tensor.
 ABRADE_INLINE PrincipalFrame principal_frame(const Mat3& inertia);
 
 /// Moves `members` into the principal frame of their union. A single sphere stays where it is, exactly.

@@ -13,48 +13,10 @@
 #include <limits>
 #include <utility>
 
+// Nothing, where abrade::compiled holds them.
+#if !defined(ABRADE_COMPILED) || defined(ABRADE_COMPILES_FUNCTIONS)
+
 namespace abrade {
-
-namespace detail {
-
-/// Adds the part of a ball between the planes `from` and `to` (signed distances from its centre along
-/// `axis`). The integrands are polynomials of degree 4 at most, so three Gauss points are exact.
-inline void add_ball_slice(RawMoments& sum, const Sphere& ball, const Vec3& axis, Real from, Real to) {
-    if (to <= from) return;
-    static constexpr std::array<std::pair<Real, Real>, 3> gauss{
-        {{-0.7745966692414834, 5.0 / 9}, {0.0, 8.0 / 9}, {0.7745966692414834, 5.0 / 9}}};
-    const Mat3 along = axis * axis.transpose();
-    const Mat3 across = Mat3::Identity() - along;
-    for (const auto& [node, weight] : gauss) {
-        const Real s = 0.5 * (from + to) + 0.5 * (to - from) * node;
-        const Real rho2 = std::max(0.0, square(ball.radius) - s * s);
-        const Real area = 0.5 * (to - from) * weight * pi * rho2;
-        const Vec3 centre = ball.centre + s * axis;
-        sum.volume += area;
-        sum.first += area * centre;
-        sum.second += area * (centre * centre.transpose() + 0.25 * rho2 * across);
-    }
-}
-
-/// Exact moments of one sphere or of the union of two.
-inline RawMoments exact_moments(std::span<const Sphere> spheres) {
-    RawMoments sum;
-    if (spheres.size() == 1) {
-        add_ball_slice(sum, spheres[0], Vec3::UnitX(), -spheres[0].radius, spheres[0].radius);
-        return sum;
-    }
-    const Sphere &a = spheres[0], &b = spheres[1];
-    const Real distance = (b.centre - a.centre).norm();
-    if (distance <= std::abs(a.radius - b.radius)) return exact_moments({a.radius > b.radius ? &a : &b, 1});
-    const Vec3 axis = (b.centre - a.centre) / distance;
-    // The plane of the common circle, seen from a; beyond the touching distance each ball is whole.
-    const Real plane = (square(distance) + square(a.radius) - square(b.radius)) / (2 * distance);
-    add_ball_slice(sum, a, axis, -a.radius, std::min(plane, a.radius));
-    add_ball_slice(sum, b, axis, std::max(plane - distance, -b.radius), b.radius);
-    return sum;
-}
-
-}  // namespace detail
 
 ABRADE_INLINE SolidMoments union_moments(std::span<const Sphere> spheres, std::string_view field) {
     require(!spheres.empty(), {field, "at least 1 sphere", "", "give each its centre and its radius"}, 0);
@@ -132,3 +94,5 @@ ABRADE_INLINE Clump make_clump(std::string name, std::vector<Sphere> members, Cl
 }
 
 }  // namespace abrade
+
+#endif

@@ -1,10 +1,12 @@
 #pragma once
 // A handful of gravel shapes, each a clump of overlapping spheres without gaps.
 
+#include <abrade/core/require.hpp>
 #include <abrade/geometry/sphere_union.hpp>
 
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace abrade {
 

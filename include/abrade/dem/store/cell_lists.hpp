@@ -10,6 +10,9 @@
 #include <cmath>
 #include <limits>
 
+// Nothing, where abrade::compiled holds them.
+#if !defined(ABRADE_COMPILED) || defined(ABRADE_COMPILES_FUNCTIONS)
+
 namespace abrade {
 
 namespace detail {
@@ -232,3 +235,5 @@ ABRADE_INLINE std::vector<VerletPair> verlet_pairs(const NeighbourQuery& q) {
 }
 
 }  // namespace abrade
+
+#endif

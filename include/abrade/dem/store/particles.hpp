@@ -2,6 +2,7 @@
 // The columns of rigid bodies and of the spheres that they are made of.
 
 #include <abrade/core/fields.hpp>
+#include <abrade/core/require.hpp>
 #include <abrade/geometry/sphere_union.hpp>
 
 #include <vector>

@@ -1,6 +1,7 @@
 #pragma once
 // Pieces of concrete that came loose, handed on as rigid clumps.
 
+#include <abrade/geometry/sphere_union.hpp>
 #include <abrade/sim/motion/advance.hpp>
 
 namespace abrade {
