@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -32,7 +33,8 @@ std::vector<std::string> not_shown(const fs::path& root) {
 
 /// Pages of docs below `root` that show a picture and no command that draws one.
 std::vector<std::string> without_command(const fs::path& root) {
-    static const std::regex picture(R"(!\[[^\]]*\]\([^)]+\))"), command(R"((bench|bench/charts|examples|docs)/run)");
+    static const std::regex picture(R"(!\[[^\]]*\]\([^)]+\))"),
+        command(R"((bench|bench/charts|examples|docs)/run)");
     std::vector<std::string> found;
     for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
         if (entry.path().extension() == ".md")
@@ -61,7 +63,40 @@ std::vector<std::string> broken_links(const fs::path& root) {
     return found;
 }
 
+/// Pages of docs below `root`, those of verification apart, which its site's index (docs/site/index.md) does
+/// not list.
+std::vector<std::string> not_listed(const fs::path& root) {
+    const std::string index = read(root / "docs/site/index.md");
+    std::vector<std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(root / "docs")) {
+        const fs::path page = entry.path().lexically_relative(root / "docs");
+        const std::string folder = page.begin()->string();
+        if (page.extension() != ".md" || folder == "site" || folder == "verification") continue;
+        if (index.find("\n../" + fs::path(page).replace_extension().generic_string() + "\n") ==
+            std::string::npos)
+            found.push_back(page.generic_string());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
 }  // namespace
+
+TEST_CASE("the site lists each page") {
+    for (const std::string& page : not_listed(fs::path(ABRADE_INCLUDE_DIR).parent_path()))
+        FAIL_CHECK("docs/" << page << " stands in no list of docs/site/index.md");
+}
+
+TEST_CASE("a page that the site does not list is found") {
+    const fs::path root = "made_up_site";
+    fs::remove_all(root);
+    fs::create_directories(root / "docs/site");
+    fs::create_directories(root / "docs/howto");
+    std::ofstream(root / "docs/site/index.md") << "```{toctree}\n../howto/a\n../a\n```\n";
+    for (const char* page : {"howto/a", "howto/ab", "a", "verification"})
+        std::ofstream(root / "docs" / (std::string(page) + ".md")) << "#\n";
+    CHECK(not_listed(root) == std::vector<std::string>{"howto/ab.md", "verification.md"});
+}
 
 TEST_CASE("what pages show is what is tested, to the letter") {
     for (const std::string& file : not_shown(fs::path(ABRADE_INCLUDE_DIR).parent_path()))
