@@ -8,6 +8,7 @@
 #include <iterator>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fs = std::filesystem;
@@ -80,6 +81,22 @@ std::vector<std::string> not_listed(const fs::path& root) {
     return found;
 }
 
+/// A folder of these files alone.
+struct MadeUp {
+    fs::path root;
+
+    MadeUp(const char* name, const std::vector<std::pair<std::string, std::string>>& files) : root(name) {
+        fs::remove_all(root);
+        for (const auto& [file, text] : files) {
+            fs::create_directories((root / file).parent_path());
+            std::ofstream(root / file) << text;
+        }
+    }
+    ~MadeUp() { fs::remove_all(root); }
+    MadeUp(const MadeUp&) = delete;
+    MadeUp& operator=(const MadeUp&) = delete;
+};
+
 }  // namespace
 
 TEST_CASE("the site lists each page") {
@@ -88,14 +105,12 @@ TEST_CASE("the site lists each page") {
 }
 
 TEST_CASE("a page that the site does not list is found") {
-    const fs::path root = "made_up_site";
-    fs::remove_all(root);
-    fs::create_directories(root / "docs/site");
-    fs::create_directories(root / "docs/howto");
-    std::ofstream(root / "docs/site/index.md") << "```{toctree}\n../howto/a\n../a\n```\n";
-    for (const char* page : {"howto/a", "howto/ab", "a", "verification"})
-        std::ofstream(root / "docs" / (std::string(page) + ".md")) << "#\n";
-    CHECK(not_listed(root) == std::vector<std::string>{"howto/ab.md", "verification.md"});
+    const MadeUp site("made_up_site", {{"docs/site/index.md", "```{toctree}\n../howto/a\n../a\n```\n"},
+                                       {"docs/howto/a.md", ""},
+                                       {"docs/howto/ab.md", ""},
+                                       {"docs/a.md", ""},
+                                       {"docs/verification.md", ""}});
+    CHECK(not_listed(site.root) == std::vector<std::string>{"howto/ab.md", "verification.md"});
 }
 
 TEST_CASE("what pages show is what is tested, to the letter") {
@@ -108,13 +123,11 @@ TEST_CASE("links of pages lead somewhere") {
 }
 
 TEST_CASE("a link that leads nowhere is found") {
-    const fs::path root = "made_up_links";
-    fs::remove_all(root);
-    fs::create_directories(root / "docs/howto");
-    std::ofstream(root / "README.md") << "[a](docs/howto/a.md#top), [web](https://example.org), `f[0](x)`\n";
-    std::ofstream(root / "docs/howto/a.md") << "[up](../../README.md) and [gone](../gone.md)\n";
-    CHECK(broken_links(root) == std::vector<std::string>{"README.md: x", "docs/howto/a.md: ../gone.md"});
-    fs::remove_all(root);
+    const MadeUp links("made_up_links",
+                       {{"README.md", "[a](docs/howto/a.md#top), [web](https://example.org), `f[0](x)`\n"},
+                        {"docs/howto/a.md", "[up](../../README.md) and [gone](../gone.md)\n"}});
+    CHECK(broken_links(links.root) ==
+          std::vector<std::string>{"README.md: x", "docs/howto/a.md: ../gone.md"});
 }
 
 TEST_CASE("pages with pictures say what draws them") {
@@ -123,22 +136,16 @@ TEST_CASE("pages with pictures say what draws them") {
 }
 
 TEST_CASE("a page with a picture and no command is found") {
-    const fs::path root = "made_up_pictures";
-    fs::remove_all(root);
-    fs::create_directories(root / "docs");
-    std::ofstream(root / "docs/a.md") << "![a curve](a.png)\n";
-    std::ofstream(root / "docs/b.md") << "    bench/run charts b\n\n![a curve](b.png)\n";
-    std::ofstream(root / "docs/c.md") << "No picture.\n";
-    CHECK(without_command(root) == std::vector<std::string>{"docs/a.md"});
-    fs::remove_all(root);
+    const MadeUp pictures("made_up_pictures", {{"docs/a.md", "![a curve](a.png)\n"},
+                                               {"docs/b.md", "    bench/run charts b\n\n![a curve](b.png)\n"},
+                                               {"docs/c.md", "No picture.\n"}});
+    CHECK(without_command(pictures.root) == std::vector<std::string>{"docs/a.md"});
 }
 
 TEST_CASE("a page that shows something else is found") {
-    const fs::path root = "made_up_house";
-    fs::remove_all(root);
-    fs::create_directories(root / "docs/howto");
-    fs::create_directories(root / "tests/consumer/shown");
-    std::ofstream(root / "tests/consumer/shown/law.hpp") << "int law;\n";
+    const MadeUp house("made_up_house",
+                       {{"tests/consumer/shown/law.hpp", "int law;\n"}, {"docs/howto/law.md", ""}});
+    const fs::path& root = house.root;
     const auto shows = [&](const std::string& page, const std::string& text) {
         std::ofstream(root / page) << text;
         return not_shown(root).empty();
@@ -149,5 +156,4 @@ TEST_CASE("a page that shows something else is found") {
     CHECK(shows("docs/howto/law.md", "\n```cpp\nint law;\n```\n"));
     CHECK(!shows("docs/howto/law.md", "Gone.\n"));
     CHECK(shows("README.md", "\n```cpp\nint law;\n```\n"));
-    fs::remove_all(root);
 }

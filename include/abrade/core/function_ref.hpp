@@ -16,7 +16,6 @@ public:
     template <class Callable>
     requires(!std::same_as<std::remove_cvref_t<Callable>, FunctionRef> && std::invocable<Callable&, Args...>)
         FunctionRef(Callable&& callable)
-    noexcept
         : call_([](void* what, Args... args) {
               (*static_cast<std::remove_reference_t<Callable>*>(what))(args...);
           }),

@@ -37,7 +37,7 @@ struct PrincipalFrame {
     Mat3 axes = Mat3::Identity();  ///< columns: the axes, right-handed; principal frame to world
     Vec3 moments = Vec3::Zero();   ///< ascending, in the unit of the tensor
 };
-/// Of a symmetric tensor.
+/// Axes and moments of a symmetric tensor of inertia.
 ABRADE_INLINE PrincipalFrame principal_frame(const Mat3& inertia);
 
 /// Moves `members` into the principal frame of their union. A single sphere stays where it is, exactly.

@@ -8,12 +8,11 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-// Nothing, where abrade::compiled holds them.
+// Nothing where abrade::compiled holds them, which compiles them by src/functions.cpp.
 #if !defined(ABRADE_COMPILED) || defined(ABRADE_COMPILES_FUNCTIONS)
 
 namespace abrade {

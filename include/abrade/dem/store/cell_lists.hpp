@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-// Nothing, where abrade::compiled holds them.
+// Nothing where abrade::compiled holds them, which compiles them by src/functions.cpp.
 #if !defined(ABRADE_COMPILED) || defined(ABRADE_COMPILES_FUNCTIONS)
 
 namespace abrade {
