@@ -47,30 +47,11 @@ public:
     /// Calls task(k) for 0 <= k < tasks by this thread and up to `threads` - 1 others. Each begins with its
     /// own part of them and then takes of the others'. From within a loop, or while another thread asks, by
     /// this thread alone. `task` must not throw.
-    void run(Index tasks, int threads, FunctionRef<Index> task) noexcept {
+    void run(Index tasks, int threads, FunctionRef<Index> task) {
+        threads = static_cast<int>(std::min<Index>(threads, tasks));
         std::unique_lock<std::mutex> asks(asking_, std::defer_lock);
-        if (within_loop() || !asks.try_lock()) {
-            for (Index k = 0; k < tasks; ++k) task(k);
-            return;
-        }
-        hire(threads - 1);
-        task_ = task;
-        parts_ = std::min(threads, static_cast<int>(threads_.size()) + 1);
-        for (int p = 0; p < parts_; ++p) {
-            const auto begin = [&](std::int64_t part) { return static_cast<Index>(tasks * part / parts_); };
-            fronts_[index(p)].next.store(begin(p), std::memory_order_relaxed);
-            fronts_[index(p)].end = begin(p + 1);
-        }
-        gate_.store(0, std::memory_order_release);
-        loop_.fetch_add(1, std::memory_order_release);
-        loop_.notify_all();
-        within_loop() = true;
-        work(0);
-        within_loop() = false;
-        // Nobody comes in any more; those within end what they have begun.
-        int within = gate_.fetch_or(closed, std::memory_order_acq_rel) | closed;
-        for (int look = 0; within != closed; within = gate_.load(std::memory_order_acquire))
-            ++look < looks ? relax() : gate_.wait(within, std::memory_order_acquire);
+        if (threads > 1 && !within_loop() && asks.try_lock()) return share(tasks, threads, task);
+        for (Index k = 0; k < tasks; ++k) task(k);
     }
 
     Helpers(const Helpers&) = delete;
@@ -91,6 +72,27 @@ private:
     static bool& within_loop() noexcept {
         thread_local bool within = false;
         return within;
+    }
+
+    void share(Index tasks, int threads, FunctionRef<Index> task) noexcept {
+        hire(threads - 1);
+        task_ = task;
+        parts_ = std::min(threads, static_cast<int>(threads_.size()) + 1);
+        for (int p = 0; p < parts_; ++p) {
+            const auto begin = [&](std::int64_t part) { return static_cast<Index>(tasks * part / parts_); };
+            fronts_[index(p)].next.store(begin(p), std::memory_order_relaxed);
+            fronts_[index(p)].end = begin(p + 1);
+        }
+        gate_.store(0, std::memory_order_release);
+        loop_.fetch_add(1, std::memory_order_release);
+        loop_.notify_all();
+        within_loop() = true;
+        work(0);
+        within_loop() = false;
+        // Nobody comes in any more; those within end what they have begun.
+        int within = gate_.fetch_or(closed, std::memory_order_acq_rel) | closed;
+        for (int look = 0; within != closed; within = gate_.load(std::memory_order_acquire))
+            ++look < looks ? relax() : gate_.wait(within, std::memory_order_acquire);
     }
 
     void hire(int count) {

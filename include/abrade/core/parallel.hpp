@@ -47,24 +47,20 @@ class LoopWork {
 public:
     /// Calls task(k) for 0 <= k < tasks, of `items` altogether, by as many threads as are worth waking.
     void run(Index tasks, Index items, FunctionRef<Index> task) {
-        const auto alone = [&] {
-            for (Index k = 0; k < tasks; ++k) task(k);
-        };
+        const auto by = [&](int threads) { Helpers::one().run(tasks, threads, task); };
         const int threads = static_cast<int>(std::min<Index>(thread_count(), tasks));
-        if (threads <= 1) return alone();
-        if (share_every_loop.load(std::memory_order_relaxed)) return Helpers::one().run(tasks, threads, task);
+        if (threads <= 1 || share_every_loop.load(std::memory_order_relaxed)) return by(threads);
         const std::uint32_t call = 1 + calls_.fetch_add(1, std::memory_order_relaxed);
         if ((call & (call - 1)) == 0 || call % 4096 == 0) {
             const auto start = Clock::now();
-            alone();
+            by(1);
             took(std::chrono::duration<double>(Clock::now() - start).count() / items);
             return;
         }
         // Less than this for each of them, and waking them costs more than they save [s].
         constexpr double least = 20e-6;
         const double share = per_item_.load(std::memory_order_relaxed) * items / least;
-        const int worth = share < threads ? static_cast<int>(share) : threads;
-        worth > 1 ? Helpers::one().run(tasks, worth, task) : alone();
+        by(share < threads ? static_cast<int>(share) : threads);
     }
 
 private:
@@ -100,9 +96,7 @@ void parallel_tasks(Index tasks, Body&& body) {
 
 /// The same of tasks that are known to be worth other threads: of runs of a large grid's planes.
 inline void parallel_runs(Index runs, detail::FunctionRef<Index> body) {
-    const int threads = static_cast<int>(std::min<Index>(thread_count(), runs));
-    if (threads > 1) return detail::Helpers::one().run(runs, threads, body);
-    for (Index run = 0; run < runs; ++run) body(run);
+    detail::Helpers::one().run(runs, thread_count(), body);
 }
 
 /// Calls `body(i)` for each i in [0, items), in parallel. `body` must not throw.
