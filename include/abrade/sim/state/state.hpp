@@ -118,8 +118,8 @@ struct State {
     /// What is left of the strength of a site's sphere.
     auto strength_of_site() const noexcept {
         if constexpr (P::has_wear)
-            return [this](Index site) -> Real {
-                return policies.wear.strength_left(is_frozen() ? 0 : concrete.fracture(site));
+            return [this, frozen = is_frozen()](Index site) -> Real {
+                return policies.wear.strength_left(frozen ? 0 : concrete.fracture(site));
             };
         else
             return [](Index) -> Real { return 1; };
@@ -127,7 +127,9 @@ struct State {
     /// The same of a body of concrete, for bonds.
     auto strength_left() const noexcept {
         if constexpr (P::has_wear)
-            return [this](Index body) { return strength_of_site()(particles.site[at(body)]); };
+            return [this, of_site = strength_of_site()](Index body) {
+                return of_site(particles.site[at(body)]);
+            };
         else
             return Unworn{};
     }
