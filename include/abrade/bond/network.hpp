@@ -239,7 +239,7 @@ public:
 
 private:
     static std::size_t at(Index i) noexcept { return static_cast<std::size_t>(i); }
-    /// What woke late may have the smaller member's number behind the larger one's.
+    /// Pairs are found whichever way round they are given.
     static BondedPair in_order_of(const BondedPair& pair) noexcept {
         return {std::min(pair.first, pair.second), std::max(pair.first, pair.second)};
     }
