@@ -14,6 +14,9 @@ namespace {
 
 const LinearSpring law{{.stiffness = 1e5, .restitution = 0.5, .friction = 0.3}};
 
+/// A force by its address: one simulation is compiled for all of them.
+using Force = Vec3 (*)(const BodyView&, Real) noexcept;
+
 Scene one_ball(const Vec3& velocity) {
     Scene scene;
     scene.gravity.setZero();
@@ -39,10 +42,11 @@ Real left_of_speed(Real dt) {
 
 TEST_CASE("a spring to the origin: half a period later it stands on the other side") {
     constexpr Real rate = 20;  // [1/s]
-    auto sim =
-        simulate(one_ball(Vec3::Zero())).contact(law).force([](const BodyView& body, Real) noexcept -> Vec3 {
-            return -body.mass * square(rate) * body.position;
-        });
+    auto sim = simulate(one_ball(Vec3::Zero()))
+                   .contact(law)
+                   .force(Force([](const BodyView& body, Real) noexcept -> Vec3 {
+                       return -body.mass * square(rate) * body.position;
+                   }));
     sim.run({.end_time = pi / rate, .time_step = 1e-5});
     CHECK(sim.particles().position[0].x() == doctest::Approx(-0.1).epsilon(1e-7).scale(0));
     // A state function that the ledger does not know: what it gives it takes back. In between that was:
@@ -78,9 +82,9 @@ TEST_CASE("pressed on a floor by a force alone, a ball stands as deep as the spr
     Scene scene;
     scene.gravity.setZero();
     scene.add_wall({0, 0, 0}, {0, 0, 1}).add_sphere(0.01, {.position = {0, 0, 0.01}});
-    auto sim = simulate(scene).contact(law).force([](const BodyView&, Real) noexcept -> Vec3 {
+    auto sim = simulate(scene).contact(law).force(Force([](const BodyView&, Real) noexcept -> Vec3 {
         return {0, 0, -3};
-    });
+    }));
     sim.run({.end_time = 0.2});
     CHECK(sim.particles().position[0].z() == doctest::Approx(0.01 - 3e-5).epsilon(1e-7).scale(0));
     CHECK(sim.particles().force[0].norm() < 1e-3);
@@ -89,9 +93,9 @@ TEST_CASE("pressed on a floor by a force alone, a ball stands as deep as the spr
 TEST_CASE("what is fixed feels nothing; who may sleep and fly is told") {
     Scene scene = one_ball(Vec3::Zero());
     scene.add_fixed(make_clump("ball", {{Vec3::Zero(), 0.01}}), {0, 1, 0});
-    auto sim = simulate(scene).contact(law).force([](const BodyView& body, Real) noexcept -> Vec3 {
+    auto sim = simulate(scene).contact(law).force(Force([](const BodyView& body, Real) noexcept -> Vec3 {
         return body.kind == Kind::fixed ? Vec3::Constant(1e300).eval() : Vec3(0, 0, body.mass);
-    });
+    }));
     CHECK(message_of([&] { sim.run({.end_time = 1, .sleep_speed = 1e-3, .sleep_after = 1}); }) ==
           "RunOptions.sleep_speed must be 0 where walls move or a force of yours acts on bodies, got 0.001 "
           "m/s; "

@@ -58,10 +58,10 @@ class Simulation;
 template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
 class Slots {
 public:
-    Slots(Scene scene, C contact, B bond, W wear, F fluid, D drag, U force)
+    Slots(Scene scene, C contact, B bond, W wear, F fluid, D drag, U on_bodies)
         : scene_(std::move(scene)), contact_(std::move(contact)), bond_(std::move(bond)),
-          wear_(std::move(wear)), fluid_(std::move(fluid)), drag_(std::move(drag)), force_(std::move(force)) {
-    }
+          wear_(std::move(wear)), fluid_(std::move(fluid)), drag_(std::move(drag)),
+          force_(std::move(on_bodies)) {}
 
     template <class L, class One = PairLaw<L>>
     auto contact(L law) && {
