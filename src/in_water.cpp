@@ -4,12 +4,12 @@
 
 namespace abrade {
 
-#define ABRADE_COMPILES(...) template class GridFluid<__VA_ARGS__>;
-ABRADE_USUAL_WATER_AMONG_BODIES(ABRADE_COMPILES)
-#undef ABRADE_COMPILES
-#define ABRADE_COMPILES(...)                     \
-    template class World<Policies<__VA_ARGS__>>; \
-    template class Simulation<__VA_ARGS__>;
+#define ABRADE_COMPILES(Surface)                                                                     \
+    template class GridFluid<3, Among<MonolithicSolids<>, Surface>>;                                 \
+    template class World<                                                                            \
+        Policies<LinearSpring, NoBond, NoWear, WaterAmongBodies<Surface>, NoDrag, NoForceOnBodies>>; \
+    template class Simulation<LinearSpring, NoBond, NoWear, WaterAmongBodies<Surface>, NoDrag,       \
+                              NoForceOnBodies>;
 ABRADE_USUAL_IN_WATER(ABRADE_COMPILES)
 #undef ABRADE_COMPILES
 

@@ -46,7 +46,7 @@ public:
 
     /// Calls task(k) for 0 <= k < tasks by this thread and up to `threads` - 1 others. Each begins with its
     /// own part of them and then takes of the others'. From within a loop, or while another thread asks, by
-    /// this thread alone. `task` must not throw.
+    /// this thread alone. `task` must not throw: that ends the program where the loop is shared.
     void run(Index tasks, int threads, FunctionRef<Index> task) {
         threads = static_cast<int>(std::min<Index>(threads, tasks));
         std::unique_lock<std::mutex> asks(asking_, std::defer_lock);

@@ -48,8 +48,9 @@ public:
     /// Calls task(k) for 0 <= k < tasks, of `items` altogether, by as many threads as are worth waking.
     void run(Index tasks, Index items, FunctionRef<Index> task) {
         const auto by = [&](int threads) { Helpers::one().run(tasks, threads, task); };
-        const int threads = static_cast<int>(std::min<Index>(thread_count(), tasks));
-        if (threads <= 1 || share_every_loop.load(std::memory_order_relaxed)) return by(threads);
+        const int threads = thread_count();
+        if (threads <= 1 || tasks <= 1 || share_every_loop.load(std::memory_order_relaxed))
+            return by(threads);
         const std::uint32_t call = 1 + calls_.fetch_add(1, std::memory_order_relaxed);
         if ((call & (call - 1)) == 0 || call % 4096 == 0) {
             const auto start = Clock::now();

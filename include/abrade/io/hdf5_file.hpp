@@ -140,7 +140,7 @@ public:
     void write_rows(std::string_view name, std::string_view unit, const detail::ColumnOf& of,
                     std::span<const std::byte> values) {
         const std::string whole{name};
-        make_group(name.substr(0, name.rfind('/')));
+        if (const std::size_t end = name.rfind('/'); end != name.npos) make_group(name.substr(0, end));
         const hdf5::Quiet quiet;
         const std::array<hsize_t, 2> shape{values.size() / of.row(), static_cast<hsize_t>(of.numbers)};
         const hdf5::Handle space{H5Screate_simple(2, shape.data(), nullptr)};
@@ -163,7 +163,7 @@ public:
         const hdf5::Quiet quiet;
         return static_cast<std::size_t>(open_rows(name, of).second);
     }
-    /// Reads it, as many values as `out` holds.
+    /// Reads all of its rows, for which `out` has room exactly; else InputError.
     void read_rows(std::string_view name, const detail::ColumnOf& of, std::span<std::byte> out) const {
         const hdf5::Quiet quiet;
         const auto [set, count] = open_rows(name, of);

@@ -1,6 +1,6 @@
 #pragma once
-// The usual simulations, which abrade::compiled has compiled: a program that links it does not compile them
-// again. Without that library this declares nothing.
+// The usual simulations without water on a grid, which abrade::compiled has compiled: a program that links it
+// does not compile them again. Without that library this declares nothing.
 
 #include <abrade/bond/mohr_coulomb.hpp>
 #include <abrade/bond/parallel_bond.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-// One simulation from four policies: the builder, the loop and its guards.
+// A simulation of a scene by its laws: its run, what can be asked of it, and changes between runs.
 
 // First, so that a message about a law shows a short way to what it misses.
 #include <abrade/sim/slots.hpp>

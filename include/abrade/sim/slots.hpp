@@ -58,6 +58,7 @@ class Simulation;
 template <class C, BondLaw B, WearLaw W, FluidModel F, DragLaw D, ForceOnBodies U>
 class Slots {
 public:
+    // Not `force`: g++ warns where a function by its address hides the member of that name.
     Slots(Scene scene, C contact, B bond, W wear, F fluid, D drag, U on_bodies)
         : scene_(std::move(scene)), contact_(std::move(contact)), bond_(std::move(bond)),
           wear_(std::move(wear)), fluid_(std::move(fluid)), drag_(std::move(drag)),

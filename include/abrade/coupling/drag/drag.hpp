@@ -150,8 +150,8 @@ static_assert(FeelsInertia<WithInertia<>> && !FeelsInertia<CliftGauvin>);
 
 /// Drag 1/2 rho C_d A |u - v| (u - v) and buoyancy -rho g V of the submerged share, `surroundings`
 /// sampled at the centroid. Uniform flow pushes with its whole stress, -grad p + div tau = -rho g, so
-/// buoyancy opposes gravity, also along the slope. C_d is that of the whole sphere; area and volume are those
-/// submerged.
+/// buoyancy opposes gravity, also along the slope. C_d is that of the whole sphere; the submerged share of the
+/// volume counts for the cross-section, too.
 template <DragLaw Drag>
 FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Immersed& body,
                      const Vec3& gravity) noexcept {
@@ -162,7 +162,6 @@ FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Imm
     const Real speed = relative.norm();
     const Real reynolds = surroundings.density * speed * 2 * radius / surroundings.viscosity;
     const Real area = share * pi * square(radius);
-    // Written with Re C_d so that it stays finite at rest.
     const Real factor = speed > 0 ? 0.5 * surroundings.density * law.coefficient(reynolds) * area * speed : 0;
     return {.drag = factor * relative,
             .buoyancy = -share * surroundings.density * body.volume * gravity,
@@ -170,7 +169,7 @@ FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Imm
 }
 
 /// The same, of a law that asks for how the fluid changes. What added mass takes is known once all forces
-/// are: `take_along`.
+/// are: `share_with_added_mass`.
 template <FeelsInertia Drag>
 FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const FlowChange& change,
                      const Immersed& body, const Vec3& gravity) noexcept {
@@ -186,7 +185,7 @@ FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Flo
 
 /// Contacts and all other forces move the water along that a body takes with it: its added mass. `other`: all
 /// that acts on the body beside the fluid [N].
-inline void take_along(FluidLoad& fluid, const Vec3& other, Real mass) noexcept {
+inline void share_with_added_mass(FluidLoad& fluid, const Vec3& other, Real mass) noexcept {
     if (fluid.added_mass > 0)
         fluid.inertial -= fluid.added_mass / (mass + fluid.added_mass) * (other + force_of(fluid));
 }

@@ -48,7 +48,9 @@ struct ContactLoad {
     Vec3Of<Number> couple = Vec3Of<Number>::Zero();  ///< on i, its opposite on j [N m]
     Number lost_rolling = Number(0);                 ///< [J]
 
-    Number lost_film = Number(0);  ///< of laws that act before surfaces touch alone [J]
+    // Of laws that act before surfaces touch alone.
+    Number film = Number(0);       ///< what is in `force` of the film between them, along the normal [N]
+    Number lost_film = Number(0);  ///< [J]
 };
 
 /// What a law answers: the load, and what it wants to remember.

@@ -26,7 +26,8 @@ namespace abrade {
 /// long for the film.
 ///
 /// The film is there wherever the law is asked, above a surface of water, too. Its loss is of its own kind,
-/// `lost_film`: no wear law takes any of it. Contacts are answered one by one, not in packs.
+/// `lost_film`, and observers see the contact's force without the film's: it wears nothing. Contacts are
+/// answered one by one, not in packs.
 /// `Lubricated<RollingResistance<L>>` adds both; `RollingResistance<Lubricated<L>>` does not compile, for
 /// this law offers no `normal_stiffness`.
 template <ContactLaw Law>
@@ -76,6 +77,7 @@ public:
         const Real x = rate * contact.inverse_mass * dt;
         const Real force = rate * approach / (1 + 0.5 * x + x * x);
         answer.load.force += force * contact.normal;
+        answer.load.film = force;
         answer.load.lost_film = force * (approach - 0.5 * force * contact.inverse_mass * dt) * dt;
         return answer;
     }

@@ -16,7 +16,7 @@ namespace abrade::detail {
 /// Books a WaterEnergy. Forces and fluxes are those of one velocity a step, by which the liquid moves from
 /// its beginning to its end: in a full box the mean of the velocities before and after the step; below a
 /// surface the velocity itself, which is staggered in time. There the kinetic energy at the liquid's time is
-/// that of the mean of the velocities half a step before and behind it. Both are of second order in the step.
+/// that of the mean of the velocities half a step before and after it. Both are of second order in the step.
 template <int Dim, class State, class Scheme, class Liquid = VolumeOfFluid<Dim>>
 class EnergyAccount {
     static constexpr int vertical = Grid<Dim>::vertical;

@@ -108,7 +108,7 @@ public:
     const LevelTable<Dim, Real>& control_volume(int a) const noexcept { return control_volume_[a]; }
 
     /// [J]; of each cell half the mean square of the speed at its faces. Below a surface that speed is the
-    /// mean of `mid`, half a step before the liquid's time, and of the velocity now, half a step behind it.
+    /// mean of `mid`, half a step before the liquid's time, and of the velocity now, half a step after it.
     Real kinetic(const View& flow, const FaceField<Dim, State>& mid) const {
         return flow.params.density * sum_over_rows(rows(flow), [&](int plane, int row, const RowRange& r) {
                    const Offset start = flow.grid.layout().row_start(plane, row);

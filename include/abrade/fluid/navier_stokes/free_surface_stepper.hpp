@@ -247,7 +247,7 @@ private:
 
     /// Keeps what there is, and moves the velocity on to where this step wants it.
     void lead_velocity(Flow& flow, Real dt) {
-        if (backup_.keep(flow.velocity, flow.pressure, water_, flow.history, dt)) {
+        if (backup_.keep_and_lead(flow.velocity, flow.pressure, water_, flow.history, dt)) {
             extend(flow, flow.velocity);
             bool can = true;
             while_superficial(flow, [&] { can = water_.liquid().can_advance(flow.velocity, dt); });
@@ -270,7 +270,7 @@ private:
     }
 
     /// Both stages of momentum: all but the new pressure. The velocity goes from half a step before the new
-    /// surface to half a step behind it. The second stage takes half of what friction took from the first:
+    /// surface to half a step after it. The second stage takes half of what friction took from the first:
     /// a steady flow feels just what drives it, whatever the step.
     void predict(Flow& flow, Real dt) {
         falls_ = flow.params.acceleration(flow.time + dt);

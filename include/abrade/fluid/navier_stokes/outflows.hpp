@@ -79,7 +79,7 @@ private:
         Real outwards = 1;  ///< sign of u that leaves
         Real length = 0;    ///< of the box [m]
         std::vector<Face> faces;
-        std::optional<Real> mean_speed, next_mean;  ///< U_T before the step, behind it [m/s]
+        std::optional<Real> mean_speed, next_mean;  ///< U_T before the step, after it [m/s]
         std::vector<std::uint8_t> wet;              ///< columns
         static void fields(auto&& field) {
             field("mean_speed", "m/s", &OutflowSide::mean_speed),

@@ -1,5 +1,6 @@
 #pragma once
-// The Verlet list and the inner list: how long they last, and what happens when they are renewed.
+// The Verlet list and the inner list: how long they last, and what happens when they are renewed, when bodies also come
+// (feed, concrete that came loose) and go (outlet, concrete that wore out, bodies that a user takes out).
 
 #include <abrade/sim/motion/fragments.hpp>
 #include <abrade/sim/motion/wrap.hpp>
@@ -34,7 +35,7 @@ public:
         const bool traffic =
             state.feed || state.scene.outlet || state.sites.recede() || !state.sites.worn_out.empty();
         const bool due = state.feed && age_ >= shortest_life && state.feed->due(t);
-        if ((traffic && age_ >= longest_life) || due || state.events.loosened)
+        if ((traffic && age_ >= longest_life) || due || state.events.lists_due)
             renew(state, t, dt);
         else if ((2 * moved_ > inner_skin_ || state.flight.drifts > state.flight.horizon) &&
                  !refine(state, dt))
@@ -166,7 +167,7 @@ private:
         built_at_.resize(at(state.store.spheres()));
         parallel_for(state.store.spheres(),
                      [&](Index s) { built_at_[at(s)] = state.store.lines.place[at(s)].centre; });
-        state.events.loosened = false;
+        state.events.lists_due = false;
         age_ = 0, walls_moved_ = 0;
     }
 

@@ -9,7 +9,7 @@
 
 namespace abrade {
 
-/// Between steps the lines hold places of now and velocities half a step old. Forces of now are either
+/// Between steps the lines of the store (`HotArrays`) hold places of now and velocities half a step old. Forces of now are either
 /// evaluated already, for an observation, or will be at the start of the next step, slab by slab, each slab
 /// moved on while it is in cache. Both ways give the same bits.
 template <class P>
@@ -44,7 +44,7 @@ public:
         rouse_all(state_);
         change(Changes<P>(state_, Acts::yes));
         state_.outline.renew(state_.scene, state_.policies);
-        state_.events.loosened = true;
+        state_.events.lists_due = true;
         evaluated_ = false, led_here_ = kicked_ = last_kick_ = 0;
     }
 
@@ -217,7 +217,7 @@ private:
             if (!flies(image)) store.refresh(image);
     }
 
-    /// What flies is in no contact, and `State::land` brings its image up to the present.
+    /// What flies is in no contact, and `land` brings its image up to the present.
     bool flies(const SphereImage& image) const noexcept {
         return state_.mode[at(image.owner)] == IntegrationMode::flying;
     }

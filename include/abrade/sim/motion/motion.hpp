@@ -77,7 +77,7 @@ inline void take_along(FlowLoad& fluid, const Vec3& contacts, Real mass, const V
     if (fluid.added_mass > 0) fluid.force = fluid.force_among(contacts, mass);
 }
 inline void take_along(FluidLoad& fluid, const Vec3& contacts, Real mass, const Vec3& gravity) noexcept {
-    take_along(fluid, contacts + mass * gravity, mass);
+    share_with_added_mass(fluid, contacts + mass * gravity, mass);
 }
 template <class FromFluid>
 void take_along(WithForce<FromFluid>& load, const Vec3& contacts, Real mass, const Vec3& gravity) noexcept {

@@ -17,12 +17,12 @@ struct Events {
     std::vector<Index> weakened;       ///< sites whose strength has fallen by a step
     // Put by an evaluation and by wear, taken by `State::free_loose_concrete`.
     bool bond_broke = false;
-    // Put by `settle_concrete`, `State::free_loose_concrete` and changes between runs, taken by a renewal of
-    // lists.
+    // Put by `settle_concrete`, `State::free_loose_concrete`, `reshape` and changes between runs, taken by a
+    // renewal of lists.
     std::vector<Index> worn_away;                  ///< sites whose bodies are to go
     std::vector<Index> removed;                    ///< bodies that a user takes out
     std::vector<BondGraph::Component> components;  ///< that came loose and are to go on as clumps
-    bool loosened = false;                         ///< concrete came loose or is gone: lists are due
+    bool lists_due = false;                        ///< who is where has changed: lists are to be renewed
 
     void put(const std::vector<SiteLoad>& new_loads, const std::vector<Index>& new_weakened) {
         site_loads.insert(site_loads.end(), new_loads.begin(), new_loads.end());
@@ -33,7 +33,7 @@ struct Events {
         field.bytes("site_loads", &Events::site_loads), field("weakened", &Events::weakened),
             field("bond_broke", &Events::bond_broke), field("worn_away", &Events::worn_away),
             field("removed", &Events::removed), field("components", &Events::components),
-            field("loosened", &Events::loosened);
+            field("lists_due", &Events::lists_due);
     }
 };
 

@@ -184,7 +184,7 @@ struct State {
                     concrete.set_gone(site);
                     if (const Index body = sites.body_of[at(site)]; body >= 0)
                         particles.kind[at(body)] = Kind::grain;
-                    events.loosened = true;
+                    events.lists_due = true;
                 }
             }
         }
@@ -196,7 +196,7 @@ struct State {
             if (!sites.stand) network.sever(site), events.bond_broke = true;
         leave_place(site);
         if (sites.body_of[at(site)] >= 0) events.worn_away.push_back(site);
-        events.loosened = true;
+        events.lists_due = true;
     }
 
     /// The sphere of a site that stands is free from now on: a grain. One that has sunk into another, or that
@@ -215,7 +215,7 @@ struct State {
             store.lines.motion[at(store.slot_of(sphere))].inverse_mass = 1 / mass;
         accounts.sum.fed_potential += potential_energy(body, particles.position[at(body)]);
         leave_place(site);
-        events.loosened = true;
+        events.lists_due = true;
     }
 
     /// Concrete that is where it was built touches nobody but those it is bonded to. Bonds that hold are no

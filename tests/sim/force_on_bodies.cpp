@@ -14,7 +14,7 @@ namespace {
 
 const LinearSpring law{{.stiffness = 1e5, .restitution = 0.5, .friction = 0.3}};
 
-/// A force by its address: one simulation is compiled for all of them.
+/// A force by its address: one simulation is compiled for all of its kind.
 using Force = Vec3 (*)(const BodyView&, Real) noexcept;
 
 Scene one_ball(const Vec3& velocity) {
