@@ -123,3 +123,26 @@ TEST_CASE("the caller's own handler of HDF5 errors is back after a call") {
     CHECK(now_data == &marker);
     H5Eset_auto2(H5E_DEFAULT, before, before_data);
 }
+
+TEST_CASE("rows as they lie in memory come back, at the root and in groups, as many as there are") {
+    const std::vector<float> rows{1, 2, 3, 4, 5, 6};
+    const auto of = abrade::detail::column_of<float>(3);
+    {
+        Hdf5File file = Hdf5File::create("rows.h5");
+        for (const char* name : {"plain", "in/groups/below"})
+            file.write_rows(name, "m", of, std::as_bytes(std::span(rows)));
+        file.close();
+    }
+    const Hdf5File file = Hdf5File::open("rows.h5");
+    for (const char* name : {"plain", "in/groups/below"}) {
+        CAPTURE(name);
+        REQUIRE(file.count_rows(name, of) == 2);
+        std::vector<float> read(6);
+        file.read_rows(name, of, std::as_writable_bytes(std::span(read)));
+        CHECK(read == rows);
+        read.resize(3);
+        CHECK(message_of<InputError>([&] {
+                  file.read_rows(name, of, std::as_writable_bytes(std::span(read)));
+              }).find("2 rows and not the 1") != std::string::npos);
+    }
+}
