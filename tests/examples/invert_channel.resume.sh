@@ -133,11 +133,12 @@ refused "foreign" "cannot (open|read) .*refused.checkpoint.h5" "${base[@]}"
 cp whole/series.h5 refused.checkpoint.h5
 refused "another HDF5 file" "not what save_state\(\) wrote" "${base[@]}"
 
-# --- a full disk ends the run, and the last checkpoint is whole
+# --- a full disk ends the run, and the last checkpoint is whole: saved every 10 ms, the first is there before the series
+# has filled the disk, and a later one does not fit beside it
 mkdir -p small
 if mount -t tmpfs -o size=12m none small 2> /dev/null; then
     code=0
-    (cd small && "$program" "${base[@]}" --threads 1 --set run.output_every=0.002 --set run.checkpoint_every=$every --out full > ../full.log 2>&1) || code=$?
+    (cd small && "$program" "${base[@]}" --threads 1 --set run.output_every=0.002 --set run.checkpoint_every=0.0002 --out full > ../full.log 2>&1) || code=$?
     [ $code -eq 1 ] || fail "a full disk: exit code $code: $(cat full.log)"
     grep -qiE 'no space|disk' full.log || fail "a full disk is not named: $(cat full.log)"
     if [ -e small/full.checkpoint.h5 ]; then
