@@ -142,8 +142,8 @@ inline ContactKinematics<Real> lane_of(const ContactKinematics<Pack>& c, int lan
             lane_of(c.rotation, lane),     c.inverse_turning[lane]};
 }
 inline ContactLoad<Real> lane_of(const ContactLoad<Pack>& l, int lane) noexcept {
-    return {lane_of(l.force, lane),  l.stored[lane],       l.lost_normal[lane], l.lost_tangential[lane],
-            lane_of(l.couple, lane), l.lost_rolling[lane], l.film[lane], l.lost_film[lane]};
+    return {lane_of(l.force, lane),  l.stored[lane],       l.lost_normal[lane],   l.lost_tangential[lane],
+            lane_of(l.couple, lane), l.lost_rolling[lane], lane_of(l.film, lane), l.lost_film[lane]};
 }
 
 /// The law's answer to a pack; commits the memory of the lanes that touch or did.
@@ -168,8 +168,10 @@ ContactLoad<Pack> answer(const Law& law, const ContactKinematics<Pack>& contact,
                 for (int a = 0; a < 3; ++a) all.couple[a].set(lane, load.couple[a]);
                 all.lost_rolling.set(lane, load.lost_rolling);
             }
-            if constexpr (ActsBeforeTouch<Law>)
-                all.film.set(lane, load.film), all.lost_film.set(lane, load.lost_film);
+            if constexpr (ActsBeforeTouch<Law>) {
+                for (int a = 0; a < 3; ++a) all.film[a].set(lane, load.film[a]);
+                all.lost_film.set(lane, load.lost_film);
+            }
         }
         return all;
     }
@@ -383,7 +385,7 @@ template <KernelKind kind, ContactLaw Law, ContactObserver Observer>
             for (int k = 0; k < pack_lanes; ++k)
                 sides.set(k, run.watched_sides[p * pack_lanes + static_cast<std::size_t>(k)]);
             ContactLoad<Pack> of_surfaces = answer;
-            if constexpr (ActsBeforeTouch<Law>) of_surfaces.force -= answer.film * contact.normal;
+            if constexpr (ActsBeforeTouch<Law>) of_surfaces.force -= answer.film;
             seen = detail::observed(observer, contact, of_surfaces);
             sums.watched_lost_normal += sides * answer.lost_normal;
             sums.watched_lost_tangential += sides * answer.lost_tangential;

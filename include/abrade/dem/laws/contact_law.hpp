@@ -49,8 +49,8 @@ struct ContactLoad {
     Number lost_rolling = Number(0);                 ///< [J]
 
     // Of laws that act before surfaces touch alone.
-    Number film = Number(0);       ///< what is in `force` of the film between them, along the normal [N]
-    Number lost_film = Number(0);  ///< [J]
+    Vec3Of<Number> film = Vec3Of<Number>::Zero();  ///< what is in `force` of the film between them [N]
+    Number lost_film = Number(0);                  ///< [J]
 };
 
 /// What a law answers: the load, and what it wants to remember.

@@ -76,8 +76,8 @@ public:
         const Real rate = 6 * pi * params_.viscosity / square(contact.curvature) * per_gap;
         const Real x = rate * contact.inverse_mass * dt;
         const Real force = rate * approach / (1 + 0.5 * x + x * x);
-        answer.load.force += force * contact.normal;
-        answer.load.film = force;
+        answer.load.film = force * contact.normal;
+        answer.load.force += answer.load.film;
         answer.load.lost_film = force * (approach - 0.5 * force * contact.inverse_mass * dt) * dt;
         return answer;
     }
