@@ -27,9 +27,9 @@ Lubricated<LinearSpring> wet(Real viscosity) {
 }
 
 /// What each law says that a contact wears [m3], in a simulation that none of them changes.
-struct EachLaw {
+struct EachLaw : NoWear {
+    using NoWear::NoWear;
     static constexpr std::string_view name = "EachLaw";
-    using Params = NoParams;
     static inline std::array<Real, 5> worn{};
 
     static auto laws() {
@@ -37,9 +37,6 @@ struct EachLaw {
                           Finnie{{.flow_stress = 1e7}}, SklarDietrich{{.tensile = 2.7e6, .youngs = 2.7e10}},
                           Ishibashi{{.impact = 1e-9, .friction = 1e-10}});
     }
-    EachLaw() = default;
-    explicit EachLaw(Params) {}
-    const Params& params() const noexcept { return none_.params(); }
     WearIncrement<Real> increment(const ContactKinematics<Real>& contact,
                                   const ContactLoad<Real>& load) const noexcept {
         std::size_t k = 0;
@@ -50,10 +47,6 @@ struct EachLaw {
         std::apply([&](const auto&... law) { (add(law), ...); }, laws());
         return {0, 0};
     }
-    Real strength_left(Real /*fracture*/) const noexcept { return 1; }
-
-private:
-    NoWear none_;
 };
 
 struct Struck {

@@ -150,8 +150,8 @@ static_assert(FeelsInertia<WithInertia<>> && !FeelsInertia<CliftGauvin>);
 
 /// Drag 1/2 rho C_d A |u - v| (u - v) and buoyancy -rho g V of the submerged share, `surroundings`
 /// sampled at the centroid. Uniform flow pushes with its whole stress, -grad p + div tau = -rho g, so
-/// buoyancy opposes gravity, also along the slope. C_d is that of the whole sphere; the submerged share of the
-/// volume counts for the cross-section, too.
+/// buoyancy opposes gravity, also along the slope. C_d is that of the whole sphere; the submerged share of
+/// the volume counts for the cross-section, too.
 template <DragLaw Drag>
 FluidLoad fluid_load(const Drag& law, const FluidSample& surroundings, const Immersed& body,
                      const Vec3& gravity) noexcept {

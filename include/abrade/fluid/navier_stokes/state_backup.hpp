@@ -34,8 +34,8 @@ public:
     /// acceleration in the last step. Or waves would gain energy by steps that follow their speed. No further
     /// than a quarter of a cell: an impact's acceleration does not go on. In a step that is brief beside late
     /// ones the velocity stays where it stands, half of those ahead.
-    bool keep_and_lead(FaceField<Dim>& velocity, const Field<Real>& pressure, const SurfaceWater<Dim, Liquid>& water,
-              const StepHistory& history, Real dt) {
+    bool keep_and_lead(FaceField<Dim>& velocity, const Field<Real>& pressure,
+                       const SurfaceWater<Dim, Liquid>& water, const StepHistory& history, Real dt) {
         const WetRows<Dim> before = std::exchange(rows_, water.rows());
         const auto bounded = [](Real x, Real most) {
             const Real below = x > most ? most : x;

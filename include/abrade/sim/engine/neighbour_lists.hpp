@@ -1,6 +1,6 @@
 #pragma once
-// The Verlet list and the inner list: how long they last, and what happens when they are renewed, when bodies also come
-// (feed, concrete that came loose) and go (outlet, concrete that wore out, bodies that a user takes out).
+// The Verlet list and the inner list: how long they last, and what happens when they are renewed. Then bodies
+// also come (feed, concrete that came loose) and go (outlet, worn out concrete, what a user takes out).
 
 #include <abrade/sim/motion/fragments.hpp>
 #include <abrade/sim/motion/wrap.hpp>

@@ -9,9 +9,9 @@
 
 namespace abrade {
 
-/// Between steps the lines of the store (`HotArrays`) hold places of now and velocities half a step old. Forces of now are either
-/// evaluated already, for an observation, or will be at the start of the next step, slab by slab, each slab
-/// moved on while it is in cache. Both ways give the same bits.
+/// Between steps the lines of the store (`HotArrays`) hold places of now and velocities half a step old.
+/// Forces of now are either evaluated already, for an observation, or will be at the start of the next step,
+/// slab by slab, each slab moved on while it is in cache. Both ways give the same bits.
 template <class P>
 class World {
 public:

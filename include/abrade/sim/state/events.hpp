@@ -22,7 +22,7 @@ struct Events {
     std::vector<Index> worn_away;                  ///< sites whose bodies are to go
     std::vector<Index> removed;                    ///< bodies that a user takes out
     std::vector<BondGraph::Component> components;  ///< that came loose and are to go on as clumps
-    bool lists_due = false;                        ///< who is where has changed: lists are to be renewed
+    bool lists_due = false;                        ///< lists are to be renewed before the next forces
 
     void put(const std::vector<SiteLoad>& new_loads, const std::vector<Index>& new_weakened) {
         site_loads.insert(site_loads.end(), new_loads.begin(), new_loads.end());
